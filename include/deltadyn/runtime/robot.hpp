@@ -1,0 +1,75 @@
+#pragma once
+
+/// \file
+/// One run-time face for all robot types, so that the tools dispatch once on the robot file.
+/// The mathematics stays in the fixed-size templates below; this only forwards to them.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deltadyn/core/status.hpp"
+#include "deltadyn/runtime/robot_description.hpp"
+
+namespace deltadyn {
+
+/// Which columns the parameter vector has.
+struct ParameterOptions {
+  bool individual_limbs = false;  ///< each limb has its own upper_armK and strutK
+  bool tool = true;               ///< the tool's ten parameters (delta4)
+  bool rotor_inertia = false;     ///< driveK.rotor_inertia
+  bool offset = false;            ///< driveK.offset
+};
+
+/// Kinematic and dynamic state of a robot in double precision; all vectors have one entry a drive (= task coordinate).
+struct TaskState {
+  Eigen::VectorXd z, zd, zdd;
+};
+
+/// A robot with its parameter layout. Immutable after construction; safe to use from several threads.
+class Robot {
+ public:
+  using Vector = Eigen::VectorXd;
+  using ConstRef = Eigen::Ref<const Eigen::VectorXd>;
+
+  virtual ~Robot() = default;
+
+  [[nodiscard]] virtual const RobotDescription& description() const = 0;
+  [[nodiscard]] virtual const ParameterOptions& parameter_options() const = 0;
+  [[nodiscard]] int drives() const { return description().drives(); }
+  /// Names of the columns of the regressor, e.g. "strut.Iyy", "drive1.viscous"; paper (4) order in each body.
+  [[nodiscard]] virtual const std::vector<std::string>& parameter_names() const = 0;
+  /// Unit of each parameter, e.g. "kg*m^2".
+  [[nodiscard]] virtual const std::vector<std::string>& parameter_units() const = 0;
+  [[nodiscard]] int parameters() const { return static_cast<int>(parameter_names().size()); }
+
+  /// q = f_IK(z) (paper III.A).
+  [[nodiscard]] virtual Status inverse_kinematics(const ConstRef& z, Eigen::Ref<Vector> q) const = 0;
+  /// z = f_FK(q).
+  [[nodiscard]] virtual Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z) const = 0;
+  /// Drive motion of a task-space motion.
+  [[nodiscard]] virtual Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd,
+                                         Eigen::Ref<Vector> qdd) const = 0;
+  /// Task-space motion of a drive motion.
+  [[nodiscard]] virtual Status to_task(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, TaskState& task) const = 0;
+  /// Jacobian dz/dq (drives x drives) and its condition number, a measure of the distance to a singular pose (1 is best).
+  [[nodiscard]] virtual Status jacobian(const ConstRef& q, Eigen::Ref<Eigen::MatrixXd> J_q_z) const = 0;
+
+  /// Y(q, qd, qdd), drives x parameters (paper (3)-(7)).
+  [[nodiscard]] virtual Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                         Eigen::Ref<Eigen::MatrixXd> Y) const = 0;
+  /// tau = Y p without forming Y [N m | N].
+  [[nodiscard]] virtual Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
+                                                Eigen::Ref<Vector> tau) const = 0;
+  /// M(q) of (1), drives x drives, symmetric.
+  [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M) const = 0;
+  /// Rates of the joints with friction: drives, then the telescope's prismatic joint if there is one [rad/s | m/s].
+  [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const = 0;
+  [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
+};
+
+/// Throws deltadyn::Error if the description is not a robot we know.
+[[nodiscard]] std::unique_ptr<Robot> make_robot(const RobotDescription& description, const ParameterOptions& options = {});
+
+}  // namespace deltadyn
