@@ -1,0 +1,143 @@
+#pragma once
+
+namespace deltadyn {
+
+namespace detail {
+
+/// Upper arm (rotates about +y of L, frame x along the arm) or carriage (translates, frame L).
+template <class T, class Robot>
+void upper_arm_motion(const LimbPosture<T, Robot::kDrives>& limb, int i, const Vector3<T>& gravity_L, const T& qd, const T& qdd,
+                      BodyMotion<T, Robot::kDrives>& body) {
+  body.J_v.setZero();
+  body.J_w.setZero();
+  if constexpr (Robot::kDrive == DriveKind::revolute) {
+    body.a = rot_y(limb.q).transpose() * -gravity_L;
+    body.w = Vector3<T>(T(0), qd, T(0));
+    body.w_d = Vector3<T>(T(0), qdd, T(0));
+    body.J_w(1, i) = T(1);
+  } else {
+    body.a = limb.p_DE.first * qdd - gravity_L;
+    body.w.setZero();
+    body.w_d.setZero();
+    body.J_v.col(i) = limb.p_DE.first;
+  }
+}
+
+/// Strut: R_LS = Ry(beta) Rz(gamma), origin at the elbow.
+template <class T, int N>
+void strut_motion(const LimbPosture<T, N>& limb, const LimbMotion<T>& rates, int i, const Vector3<T>& gravity_L, const T& qd,
+                  const T& qdd, BodyMotion<T, N>& body) {
+  const Matrix3<T> R_SL = rot_z(limb.gamma).transpose() * rot_y(limb.beta).transpose();
+  const T& s = limb.gamma.sin;
+  const T& c = limb.gamma.cos;
+  body.w << s * rates.beta_d, c * rates.beta_d, rates.gamma_d;
+  body.w_d << s * rates.beta_dd + c * rates.gamma_d * rates.beta_d, c * rates.beta_dd - s * rates.gamma_d * rates.beta_d,
+      rates.gamma_dd;
+  body.J_w.row(0) = s * limb.J_beta;
+  body.J_w.row(1) = c * limb.J_beta;
+  body.J_w.row(2) = limb.J_gamma;
+  body.a = R_SL * (limb.p_DE.first * qdd + limb.p_DE.second * (qd * qd) - gravity_L);
+  body.J_v.setZero();
+  body.J_v.col(i) = R_SL * limb.p_DE.first;
+}
+
+/// Part k of the plate: offset c + Rz(theta) a + theta b from r, orientation Rz(kappa theta).
+template <class T, class Robot>
+void platform_motion(const PlatePart<T>& part, const Vector3<T>& gravity, const Motion<T, Robot>& motion,
+                     BodyMotion<T, Robot::kDrives>& body) {
+  body.a = motion.zdd.template head<3>() - gravity;
+  body.J_v = motion.posture.J_plate.template topRows<3>();
+  body.w.setZero();
+  body.w_d.setZero();
+  body.J_w.setZero();
+  if constexpr (Robot::kPlateTurns) {
+    const T theta = motion.posture.z(3);
+    const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
+    const Vector3<T> first = cross_z(turned) + part.b;
+    const Vector3<T> second = cross_z<T>(cross_z(turned));
+    body.a += first * motion.zdd(3) + second * (motion.zd(3) * motion.zd(3));
+    body.J_v += first * motion.posture.J_plate.row(3);
+    const Matrix3<T> R_BW = rot_z(SinCos<T>(T(part.kappa * theta))).transpose();
+    body.a = Vector3<T>(R_BW * body.a);
+    body.J_v = Matrix<T, 3, Robot::kDrives>(R_BW * body.J_v);
+    body.w.z() = part.kappa * motion.zd(3);
+    body.w_d.z() = part.kappa * motion.zdd(3);
+    body.J_w.row(2) = part.kappa * motion.posture.J_plate.row(3);
+  } else {
+    (void)part;
+  }
+}
+
+/// Tool: at the plate's centre, turned by psi about the vertical.
+template <class T, class Robot>
+void tool_motion(const Vector3<T>& gravity, const Motion<T, Robot>& motion, BodyMotion<T, Robot::kDrives>& body) {
+  constexpr int kPsi = Robot::kDrives - 1;
+  const Matrix3<T> R_BW = rot_z(motion.posture.telescope.psi).transpose();
+  body.a = R_BW * (motion.zdd.template head<3>() - gravity);
+  body.J_v = R_BW * motion.posture.J_plate.template topRows<3>();
+  body.w = Vector3<T>(T(0), T(0), motion.qd(kPsi));
+  body.w_d = Vector3<T>(T(0), T(0), motion.qdd(kPsi));
+  body.J_w.setZero();
+  body.J_w(2, kPsi) = T(1);
+}
+
+/// Both parts of the bar: R_WT = Rz(psi) Rx(a) Ry(b); the upper part about its fixed joint, the lower one about the plate's.
+template <class T, class Robot>
+void telescope_motion(const Vector3<T>& gravity, const Motion<T, Robot>& motion, BodyMotion<T, Robot::kDrives>& upper,
+                      BodyMotion<T, Robot::kDrives>& lower) {
+  constexpr int kPsi = Robot::kDrives - 1;
+  const auto& bar = motion.posture.telescope;
+  const auto& r = motion.telescope;
+  const T psi_d = motion.qd(kPsi);
+  const T psi_dd = motion.qdd(kPsi);
+  const T &sa = bar.a.sin, &ca = bar.a.cos, &sb = bar.b.sin, &cb = bar.b.cos;
+
+  upper.w << cb * r.a_d - sb * ca * psi_d, r.b_d + sa * psi_d, sb * r.a_d + cb * ca * psi_d;
+  upper.w_d << cb * r.a_dd - sb * r.b_d * r.a_d - (cb * ca * r.b_d - sb * sa * r.a_d) * psi_d - sb * ca * psi_dd,
+      r.b_dd + ca * r.a_d * psi_d + sa * psi_dd,
+      sb * r.a_dd + cb * r.b_d * r.a_d - (sb * ca * r.b_d + cb * sa * r.a_d) * psi_d + cb * ca * psi_dd;
+  upper.J_w.row(0) = cb * bar.J_a;
+  upper.J_w.row(1) = bar.J_b;
+  upper.J_w.row(2) = sb * bar.J_a;
+  upper.J_w.col(kPsi) += Vector3<T>(-sb * ca, sa, cb * ca);
+
+  const Matrix3<T> R_TW = rot_y(bar.b).transpose() * rot_x(bar.a).transpose() * rot_z(bar.psi).transpose();
+  upper.a = R_TW * -gravity;
+  upper.J_v.setZero();
+  lower.w = upper.w;
+  lower.w_d = upper.w_d;
+  lower.J_w = upper.J_w;
+  lower.a = R_TW * (motion.zdd.template head<3>() - gravity);
+  lower.J_v = R_TW * motion.posture.J_plate.template topRows<3>();
+}
+
+}  // namespace detail
+
+template <class T, class Robot, class Visitor>
+void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, Visitor&& visit) {
+  BodyMotion<T, Robot::kDrives> body;
+  for (int i = 0; i < Robot::kLimbs; ++i) {
+    const auto& limb = motion.posture.limbs[i];
+    const Vector3<T> gravity_L = rot_z(limb.azimuth).transpose() * geometry.gravity;
+    detail::upper_arm_motion<T, Robot>(limb, i, gravity_L, motion.qd(i), motion.qdd(i), body);
+    visit(Body::upper_arm, i, 1, body);
+    if constexpr (kHasPlate<Robot>) {
+      detail::strut_motion(limb, motion.limbs[i], i, gravity_L, motion.qd(i), motion.qdd(i), body);
+      visit(Body::strut, i, 2, body);
+    }
+  }
+  for (int k = 0; k < Robot::kPlateParts; ++k) {
+    detail::platform_motion(geometry.parts[k], geometry.gravity, motion, body);
+    visit(Body::platform, k, 1, body);
+  }
+  if constexpr (Robot::kTelescope) {
+    detail::tool_motion(geometry.gravity, motion, body);
+    visit(Body::tool, 0, 1, body);
+    BodyMotion<T, Robot::kDrives> lower;
+    detail::telescope_motion(geometry.gravity, motion, body, lower);
+    visit(Body::telescope_upper, 0, 1, body);
+    visit(Body::telescope_lower, 0, 1, lower);
+  }
+}
+
+}  // namespace deltadyn

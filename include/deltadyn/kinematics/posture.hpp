@@ -1,0 +1,109 @@
+#pragma once
+
+/// \file
+/// Everything about one robot posture that does not depend on speed: positions, joint angles, Jacobians.
+///
+/// Notation: q drives; y plate coordinates (r, and theta if the plate turns); z task coordinates. For limb i: D drive origin,
+/// E elbow, A attachment, u the unit vector from E to A, L the limb frame with R_WL = Rz(azimuth).
+
+#include "deltadyn/core/rotation.hpp"
+#include "deltadyn/core/status.hpp"
+#include "deltadyn/core/types.hpp"
+#include "deltadyn/model/geometry.hpp"
+
+namespace deltadyn {
+
+/// A vector-valued function of one scalar coordinate with its first two derivatives.
+template <class T>
+struct PointCurve {
+  Vector3<T> value = Vector3<T>::Zero();
+  Vector3<T> first = Vector3<T>::Zero();
+  Vector3<T> second = Vector3<T>::Zero();
+};
+
+/// Posture of one limb; vectors in the limb frame L.
+template <class T, int N>
+struct LimbPosture {
+  SinCos<T> azimuth;             ///< of R_WL
+  SinCos<T> q;                   ///< of the drive angle (revolute drives)
+  PointCurve<T> p_DE;            ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
+  PointCurve<T> p_BA;            ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  Vector3<T> u;                  ///< unit vector of the strut
+  SinCos<T> beta;                ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
+  SinCos<T> gamma;               ///< strut angle about its own z
+  RowVector<T, N> J_beta;        ///< d beta / dq
+  RowVector<T, N> J_gamma;       ///< d gamma / dq
+};
+
+/// Posture of the telescope bar, R_WT = Rz(psi) Rx(a) Ry(b), z of T along the bar, pointing up.
+template <class T, int N>
+struct TelescopePosture {
+  SinCos<T> psi, a, b;
+  T length = T(1);               ///< distance of the universal joints [m]
+  Vector3<T> e;                  ///< unit vector along the bar from the lower to the upper joint, in W
+  Vector3<T> e_P;                ///< the same in the frame turned by psi
+  Matrix<T, 3, N> J_e;           ///< de/dq, in W
+  RowVector<T, N> J_length;      ///< d length / dq [m/rad]
+  RowVector<T, N> J_a, J_b;      ///< da/dq, db/dq
+};
+
+template <class T, class Robot>
+struct Posture {
+  static constexpr int N = Robot::kDrives;
+  static constexpr int P = kPlateCoordinates<Robot>;
+  static constexpr int kRows = P > 0 ? P : 1;
+  Vector<T, N> q = Vector<T, N>::Zero();
+  Vector<T, N> z = Vector<T, N>::Zero();
+  LimbPosture<T, N> limbs[Robot::kLimbs];
+  Matrix<T, kRows, N> J_plate = Matrix<T, kRows, N>::Zero();               ///< dy/dq
+  Matrix<T, kRows, kRows> J_plate_loops = Matrix<T, kRows, kRows>::Zero(); ///< inverse of the loop matrix with rows u_i^T dA_i/dy
+  TelescopePosture<T, N> telescope;
+};
+
+/// |det| of the loop matrix, whose rows are unit vectors, below which a posture counts as singular.
+inline constexpr double kSingularLoop = 1e-6;
+
+/// Elbow of limb `limb` at drive coordinate q_i, with derivatives, and sin/cos of the drive angle.
+template <class T, class Robot>
+void elbow(const LimbGeometry<T>& geometry, const T& q, LimbPosture<T, Robot::kDrives>& limb) {
+  if constexpr (Robot::kDrive == DriveKind::revolute) {
+    limb.q = SinCos<T>(q);
+    const Vector3<T> d = rot_y(limb.q) * geometry.p_DE_0;
+    limb.p_DE.value = d;
+    limb.p_DE.first = Vector3<T>(d.z(), T(0), -d.x());  // e_y x d
+    limb.p_DE.second = Vector3<T>(-d.x(), T(0), -d.z());
+  } else {
+    limb.p_DE.value = geometry.p_DE_0 + q * geometry.axis_L;
+    limb.p_DE.first = geometry.axis_L;
+    limb.p_DE.second.setZero();
+  }
+}
+
+/// Attachment of limb i relative to r, in W, as a function of theta.
+template <class T, class Robot>
+PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& theta) {
+  const LimbGeometry<T>& limb = geometry.limbs[i];
+  PointCurve<T> p;
+  if constexpr (Robot::kPlateTurns) {
+    const PlatePart<T>& part = geometry.parts[limb.part];
+    const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
+    const Vector3<T> arm = rot_z(SinCos<T>(T(part.kappa * theta))) * limb.p_BA;
+    p.value = part.c + turned + theta * part.b + arm;
+    p.first = cross_z(turned) + part.b + part.kappa * cross_z(arm);
+    p.second = cross_z<T>(cross_z(turned)) + part.kappa * part.kappa * cross_z<T>(cross_z(arm));
+  } else {
+    (void)theta;
+    p.value = geometry.parts[limb.part].c + geometry.parts[limb.part].a + limb.p_BA;
+  }
+  return p;
+}
+
+/// Fills `posture` from consistent q and z: joint angles and every Jacobian. The two must belong together (see forward.hpp, inverse.hpp).
+/// \return singular where the drives do not determine the plate, or a strut lies along its limb's axis
+template <class T, class Robot>
+Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
+                        const Vector<T, Robot::kDrives>& z, Posture<T, Robot>& posture);
+
+}  // namespace deltadyn
+
+#include "deltadyn/kinematics/posture.hxx"

@@ -1,0 +1,20 @@
+#pragma once
+
+/// \file
+/// The moving bodies of a Delta-like robot and the ten parameters of each.
+
+namespace deltadyn {
+
+enum class Body { upper_arm, strut, platform, tool, telescope_upper, telescope_lower };
+
+inline constexpr const char* kBodyNames[] = {"upper_arm", "strut", "platform", "tool", "telescope_upper", "telescope_lower"};
+constexpr const char* name(Body body) { return kBodyNames[static_cast<int>(body)]; }
+
+/// Paper (4): mass [kg], first moments [kg m], inertia about the body frame's origin [kg m^2].
+inline constexpr int kInertialParameters = 10;
+inline constexpr const char* kInertialNames[kInertialParameters] = {"m",   "mcx", "mcy", "mcz", "Ixx",
+                                                                    "Iyy", "Izz", "Ixy", "Iyz", "Ixz"};
+inline constexpr const char* kInertialUnits[kInertialParameters] = {"kg",     "kg*m",   "kg*m",   "kg*m",   "kg*m^2",
+                                                                    "kg*m^2", "kg*m^2", "kg*m^2", "kg*m^2", "kg*m^2"};
+
+}  // namespace deltadyn

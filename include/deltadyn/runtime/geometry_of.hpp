@@ -1,0 +1,39 @@
+#pragma once
+
+/// \file
+/// From the run-time description to the fixed-size geometry of the core.
+
+#include "deltadyn/runtime/robot_description.hpp"
+
+namespace deltadyn {
+
+/// Fixed-size geometry in scalar T of a description that belongs to type Robot (its counts must match).
+template <class T, class Robot>
+Geometry<T, Robot> geometry_of(const RobotDescription& description) {
+  Geometry<T, Robot> geometry;
+  for (int i = 0; i < Robot::kLimbs; ++i) {
+    const LimbGeometry<double>& from = description.limbs[static_cast<std::size_t>(i)];
+    LimbGeometry<T>& to = geometry.limbs[i];
+    to.azimuth = static_cast<T>(from.azimuth);
+    to.p_WD = from.p_WD.cast<T>();
+    to.axis_L = from.axis_L.cast<T>();
+    to.p_DE_0 = from.p_DE_0.cast<T>();
+    to.strut = static_cast<T>(from.strut);
+    to.strut_spacing = static_cast<T>(from.strut_spacing);
+    to.p_BA = from.p_BA.cast<T>();
+    to.part = from.part;
+    to.elbow = static_cast<T>(from.elbow);
+  }
+  for (int k = 0; k < Robot::kPlateParts; ++k) {
+    const PlatePart<double>& from = description.parts[static_cast<std::size_t>(k)];
+    geometry.parts[k] = {from.c.cast<T>(), from.a.cast<T>(), from.b.cast<T>(), static_cast<T>(from.kappa)};
+  }
+  if constexpr (Robot::kTelescope) {
+    geometry.telescope.p_WU = description.telescope->p_WU.cast<T>();
+    geometry.telescope.p_BV = description.telescope->p_BV.cast<T>();
+  }
+  geometry.gravity = description.gravity.cast<T>();
+  return geometry;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,185 @@
+#pragma once
+
+/// \file
+/// Robot for one compile-time type and layout. Columns that the options leave out are dropped here, once, by index.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/mass_matrix.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+namespace deltadyn::detail {
+
+/// Name and unit of every column of a layout.
+struct ColumnText {
+  std::vector<std::string> names, units;
+};
+
+template <class R, Limbs kSharing>
+ColumnText column_text(const RobotDescription& description) {
+  using Layout = ParameterLayout<R, kSharing>;
+  ColumnText text;
+  const auto add_body = [&text](const std::string& body) {
+    for (int k = 0; k < kInertialParameters; ++k) {
+      text.names.push_back(body + "." + kInertialNames[k]);
+      text.units.emplace_back(kInertialUnits[k]);
+    }
+  };
+  const auto number = [](int i, bool always) { return always || i > 0 ? std::to_string(i + 1) : std::string(); };
+  constexpr bool kNumbered = kSharing == Limbs::individual;
+  for (int i = 0; i < Layout::kLimbSets; ++i) add_body(name(Body::upper_arm) + number(i, kNumbered));
+  for (int i = 0; i < Layout::kStruts; ++i) add_body(name(Body::strut) + number(i, kNumbered));
+  for (int k = 0; k < R::kPlateParts; ++k) add_body(name(Body::platform) + number(k, false));
+  if (R::kTelescope) {
+    add_body(name(Body::tool));
+    add_body(name(Body::telescope_upper));
+    add_body(name(Body::telescope_lower));
+  }
+  const auto turns = [&](int joint) { return joint < R::kDrives && description.kind_of_drive(joint) == DriveKind::revolute; };
+  for (int j = 0; j < Layout::kFrictionJoints; ++j) {
+    const std::string joint = j < R::kDrives ? "drive" + std::to_string(j + 1) : "telescope";
+    text.names.push_back(joint + ".viscous");
+    text.units.emplace_back(turns(j) ? "N*m*s/rad" : "N*s/m");
+    text.names.push_back(joint + ".coulomb");
+    text.units.emplace_back(turns(j) ? "N*m" : "N");
+  }
+  for (int j = 0; j < R::kDrives; ++j) {
+    text.names.push_back("drive" + std::to_string(j + 1) + ".rotor_inertia");
+    text.units.emplace_back(turns(j) ? "kg*m^2" : "kg");
+  }
+  for (int j = 0; j < R::kDrives; ++j) {
+    text.names.push_back("drive" + std::to_string(j + 1) + ".offset");
+    text.units.emplace_back(turns(j) ? "N*m" : "N");
+  }
+  return text;
+}
+
+template <class R, Limbs kSharing>
+class RobotOf final : public Robot {
+ public:
+  using Layout = ParameterLayout<R, kSharing>;
+  static constexpr int N = R::kDrives;
+  using Drives = deltadyn::Vector<double, N>;
+
+  RobotOf(const RobotDescription& description, const ParameterOptions& options)
+      : description_(description), options_(options), geometry_(geometry_of<double, R>(description)) {
+    const ColumnText text = column_text<R, kSharing>(description);
+    for (int column = 0; column < Layout::kColumns; ++column) {
+      const bool tool = R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
+      const bool rotor = column >= Layout::kRotorInertia && column < Layout::kOffset;
+      const bool offset = column >= Layout::kOffset;
+      if ((tool && !options.tool) || (rotor && !options.rotor_inertia) || (offset && !options.offset)) continue;
+      columns_.push_back(column);
+      names_.push_back(text.names[static_cast<std::size_t>(column)]);
+      units_.push_back(text.units[static_cast<std::size_t>(column)]);
+    }
+  }
+
+  const RobotDescription& description() const override { return description_; }
+  const ParameterOptions& parameter_options() const override { return options_; }
+  const std::vector<std::string>& parameter_names() const override { return names_; }
+  const std::vector<std::string>& parameter_units() const override { return units_; }
+
+  Status inverse_kinematics(const ConstRef& z, Eigen::Ref<Vector> q) const override {
+    Drives out;
+    const Status status = deltadyn::inverse_kinematics(geometry_, Drives(z), out);
+    if (status == Status::ok) q = out;
+    return status;
+  }
+
+  Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z) const override {
+    Drives out;
+    const Status status = deltadyn::forward_kinematics(geometry_, Drives(q), out);
+    if (status == Status::ok) z = out;
+    return status;
+  }
+
+  Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd, Eigen::Ref<Vector> qdd) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_task(geometry_, Drives(task.z), Drives(task.zd), Drives(task.zdd), motion);
+    if (status == Status::ok) {
+      q = motion.posture.q;
+      qd = motion.qd;
+      qdd = motion.qdd;
+    }
+    return status;
+  }
+
+  Status to_task(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, TaskState& task) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status == Status::ok) task = {motion.posture.z, motion.zd, motion.zdd};
+    return status;
+  }
+
+  Status jacobian(const ConstRef& q, Eigen::Ref<Eigen::MatrixXd> J_q_z) const override {
+    Posture<double, R> posture;
+    const Status status = posture_from_drives(geometry_, Drives(q), posture);
+    if (status == Status::ok) J_q_z = task_jacobian(posture);
+    return status;
+  }
+
+  Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, Eigen::Ref<Eigen::MatrixXd> Y) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status != Status::ok) return status;
+    Matrix<double, N, Layout::kColumns> full;
+    deltadyn::regressor<Layout>(geometry_, motion, full);
+    for (std::size_t k = 0; k < columns_.size(); ++k) Y.col(static_cast<Eigen::Index>(k)) = full.col(columns_[k]);
+    return status;
+  }
+
+  Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
+                          Eigen::Ref<Vector> tau) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status == Status::ok) tau = deltadyn::inverse_dynamics<Layout>(geometry_, motion, all_columns(p));
+    return status;
+  }
+
+  Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M) const override {
+    Posture<double, R> posture;
+    const Status status = posture_from_drives(geometry_, Drives(q), posture);
+    if (status == Status::ok) M = deltadyn::mass_matrix<Layout>(geometry_, posture, all_columns(p));
+    return status;
+  }
+
+  Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
+    if (status != Status::ok) return status;
+    for (int j = 0; j < Layout::kFrictionJoints; ++j) rates(j) = friction_joint(motion, j).rate;
+    return status;
+  }
+
+ private:
+  deltadyn::Vector<double, Layout::kColumns> all_columns(const ConstRef& p) const {
+    deltadyn::Vector<double, Layout::kColumns> full = deltadyn::Vector<double, Layout::kColumns>::Zero();
+    for (std::size_t k = 0; k < columns_.size(); ++k) full(columns_[k]) = p(static_cast<Eigen::Index>(k));
+    return full;
+  }
+
+  RobotDescription description_;
+  ParameterOptions options_;
+  Geometry<double, R> geometry_;
+  std::vector<int> columns_;  // of the full layout, in order
+  std::vector<std::string> names_, units_;
+};
+
+/// One translation unit for each type, so that they build side by side.
+template <class R>
+std::unique_ptr<Robot> make_robot_of(const RobotDescription& description, const ParameterOptions& options) {
+  if (options.individual_limbs) return std::make_unique<RobotOf<R, Limbs::individual>>(description, options);
+  return std::make_unique<RobotOf<R, Limbs::shared>>(description, options);
+}
+extern template std::unique_ptr<Robot> make_robot_of<Delta3>(const RobotDescription&, const ParameterOptions&);
+extern template std::unique_ptr<Robot> make_robot_of<LinearDelta3>(const RobotDescription&, const ParameterOptions&);
+extern template std::unique_ptr<Robot> make_robot_of<Delta4>(const RobotDescription&, const ParameterOptions&);
+extern template std::unique_ptr<Robot> make_robot_of<Axis>(const RobotDescription&, const ParameterOptions&);
+extern template std::unique_ptr<Robot> make_robot_of<LinearAxis>(const RobotDescription&, const ParameterOptions&);
+
+}  // namespace deltadyn::detail
