@@ -1,0 +1,105 @@
+#include "deltadyn/identification/base_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/workspace.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+constexpr double kNegligible = 1e-8;  // of a coefficient of B beside 1: rounding of the QR
+
+Eigen::MatrixXd random_regressor(const Robot& robot, const BaseParameterOptions& options) {
+  const int n = robot.drives();
+  WorkspaceSampler sampler(robot, options.seed);
+  Eigen::MatrixXd W(n * options.states, robot.parameters());
+  Eigen::MatrixXd Y(n, robot.parameters());
+  Eigen::VectorXd q, qd, qdd;
+  for (int row = 0; row < options.states;) {
+    sampler.next(q, qd, qdd);
+    if (robot.regressor(q, qd, qdd, Y) != Status::ok) continue;
+    W.middleRows(n * row, n) = Y;
+    ++row;
+  }
+  return W;
+}
+
+std::string term(double coefficient, const std::string& name, bool first) {
+  const double size = std::abs(coefficient);
+  const std::string sign = coefficient < 0 ? (first ? "-" : " - ") : (first ? "" : " + ");
+  return sign + (std::abs(size - 1) < kNegligible ? name : fmt::format("{:.6g} {}", size, name));
+}
+
+std::string expression(const Eigen::RowVectorXd& b, int independent, const std::vector<std::string>& names) {
+  std::string text = term(1.0, names[static_cast<std::size_t>(independent)], true);
+  for (Eigen::Index k = 0; k < b.size(); ++k) {
+    if (k != independent && b(k) != 0) text += term(b(k), names[static_cast<std::size_t>(k)], false);
+  }
+  return text;
+}
+
+}  // namespace
+
+BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptions& options) {
+  if (options.states * robot.drives() < 2 * robot.parameters() || !(options.tolerance > 0 && options.tolerance < 1)) {
+    throw Error("options for the base parameters are out of range", "states, tolerance",
+                fmt::format("use at least {} states and a tolerance between 0 and 1",
+                            2 * robot.parameters() / robot.drives() + 1),
+                ExitCode::usage);
+  }
+  Eigen::MatrixXd W = random_regressor(robot, options);
+  const Eigen::Index P = W.cols();
+  Eigen::VectorXd norm = W.colwise().norm();
+  for (Eigen::Index k = 0; k < P; ++k) {
+    if (norm(k) < 1e-14) norm(k) = 1.0;  // a column without any effect, like the mass of an arm that turns about a fixed axis
+    W.col(k) /= norm(k);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
+  const Eigen::VectorXd diagonal = qr.matrixQR().diagonal().cwiseAbs();
+  Eigen::Index rank = 0;
+  while (rank < P && diagonal(rank) > options.tolerance * diagonal(0)) ++rank;
+
+  BaseParameters base;
+  base.rank_gap = rank < P ? diagonal(rank - 1) / std::max(diagonal(rank), 1e-300) : 1.0 / options.tolerance;
+  if (base.rank_gap < 1e3) {
+    throw Error(fmt::format("the number of base parameters cannot be told: the diagonal of R falls only {:.1f}-fold at {}", base.rank_gap,
+                            rank),
+                robot.description().name, "check the lengths of the robot; an almost singular design has no clear rank",
+                ExitCode::not_trusted);
+  }
+  // W_dep = W_ind K, so that Y p = Y_ind (p_ind + K p_dep); undo the column scaling.
+  const Eigen::MatrixXd R = qr.matrixQR().topLeftCorner(rank, P).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd K = R.leftCols(rank).triangularView<Eigen::Upper>().solve(R.rightCols(P - rank));
+  const auto& order = qr.colsPermutation().indices();
+  std::vector<Eigen::Index> rows(static_cast<std::size_t>(rank));
+  for (Eigen::Index i = 0; i < rank; ++i) rows[static_cast<std::size_t>(i)] = i;
+  std::sort(rows.begin(), rows.end(), [&](Eigen::Index a, Eigen::Index b) { return order(a) < order(b); });
+  base.B = Eigen::MatrixXd::Zero(rank, P);
+  for (Eigen::Index i = 0; i < rank; ++i) {
+    const Eigen::Index row = rows[static_cast<std::size_t>(i)];
+    const int independent = order(row);
+    base.independent.push_back(independent);
+    base.B(i, independent) = 1.0;
+    for (Eigen::Index j = 0; j < P - rank; ++j) {
+      const int dependent = order(rank + j);
+      const double k = K(row, j);
+      if (std::abs(k) > kNegligible) base.B(i, dependent) = k * norm(dependent) / norm(independent);
+    }
+    base.expressions.push_back(expression(base.B.row(i), independent, robot.parameter_names()));
+    base.units.push_back(robot.parameter_units()[static_cast<std::size_t>(independent)]);
+  }
+  Eigen::MatrixXd W_B(W.rows(), rank);
+  for (Eigen::Index i = 0; i < rank; ++i) W_B.col(i) = W.col(base.independent[static_cast<std::size_t>(i)]);
+  const Eigen::VectorXd s = Eigen::BDCSVD<Eigen::MatrixXd>(W_B).singularValues();
+  base.condition_number = s(0) / s(rank - 1);
+  return base;
+}
+
+}  // namespace deltadyn

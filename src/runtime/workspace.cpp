@@ -1,0 +1,109 @@
+#include "deltadyn/runtime/workspace.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+constexpr double kLargestCondition = 50.0;  // of dz_r/dq, beyond which a pose says little about the machine in use
+constexpr double kTurnRange = 3.0;          // of a telescope drive, rad
+
+/// A drive position in the middle of its limits, 0 if it has none.
+double middle(const DriveLimits& limits) {
+  return std::isfinite(limits.lower) && std::isfinite(limits.upper) ? (limits.lower + limits.upper) / 2 : 0.0;
+}
+
+/// Size of the machine's moves: a share of the arm, or of the strut where the drives are prismatic [m].
+double move_size(const RobotDescription& robot) {
+  const LimbGeometry<double>& limb = robot.limbs.front();
+  return robot.drive_kind == DriveKind::revolute ? 0.5 * limb.p_DE_0.norm() : 0.25 * limb.strut;
+}
+
+}  // namespace
+
+WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : robot_(robot), random_(seed) {
+  const RobotDescription& description = robot.description();
+  if (description.parts.empty()) return;  // an axis has no plate
+  const int n = robot.drives();
+  const auto limbs = static_cast<Eigen::Index>(description.limbs.size());
+  Eigen::VectorXd q(n), z(n);
+  for (int i = 0; i < n; ++i) q(i) = middle(description.limits[static_cast<std::size_t>(i)]);
+  // The middle of wide limits may be out of reach; then look for a regular pose with all limbs alike.
+  bool found = regular(q);
+  for (int k = 0; !found && k < 81; ++k) {
+    const double share = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) / 40.0;
+    const double reach = description.drive_kind == DriveKind::revolute ? 1.5 : 2.0 * description.limbs.front().strut;
+    q.head(limbs).setConstant(share * reach);
+    found = regular(q);
+  }
+  if (!found || robot.forward_kinematics(q, z) != Status::ok) {
+    throw Error("no regular pose of the robot was found", description.name, "check the lengths in the robot file");
+  }
+  ball_.centre = z.head<3>();
+  ball_.radius = move_size(description);
+}
+
+double WorkspaceSampler::uniform(double lower, double upper) {
+  // 53 random bits: the same number with every standard library.
+  const double unit = static_cast<double>(random_() >> 11U) * 0x1.0p-53;
+  return lower + (upper - lower) * unit;
+}
+
+bool WorkspaceSampler::regular(const Eigen::VectorXd& q) const {
+  const int n = robot_.drives();
+  Eigen::MatrixXd J(n, n);
+  if (robot_.jacobian(q, J) != Status::ok) return false;
+  const auto plate = static_cast<Eigen::Index>(robot_.description().limbs.size());
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.topLeftCorner(plate, plate));
+  return svd.singularValues()(plate - 1) * kLargestCondition > svd.singularValues()(0);
+}
+
+void WorkspaceSampler::draw_task(TaskState& task) {
+  const int n = robot_.drives();
+  const double size = ball_.radius;
+  task.z.resize(n);
+  task.zd.resize(n);
+  task.zdd.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const double scale = i < 3 ? size : kTurnRange;
+    task.z(i) = scale * uniform(-1, 1);
+    task.zd(i) = 10 * scale * uniform(-1, 1);
+    task.zdd(i) = 100 * scale * uniform(-1, 1);
+  }
+}
+
+void WorkspaceSampler::next(Eigen::VectorXd& q, Eigen::VectorXd& qd, Eigen::VectorXd& qdd) {
+  const int n = robot_.drives();
+  q.resize(n);
+  qd.resize(n);
+  qdd.resize(n);
+  if (robot_.description().parts.empty()) {
+    for (int i = 0; i < n; ++i) {
+      q(i) = uniform(-1, 1);
+      qd(i) = uniform(-5, 5);
+      qdd(i) = uniform(-50, 50);
+    }
+    return;
+  }
+  TaskState task;
+  for (int attempt = 0; attempt < 100000; ++attempt) {
+    draw_task(task);
+    if (task.z.head<3>().squaredNorm() > ball_.radius * ball_.radius) continue;
+    task.z.head<3>() += ball_.centre;
+    if (robot_.to_drives(task, q, qd, qdd) == Status::ok && regular(q)) return;
+  }
+  throw Error("the workspace of the robot has hardly any regular pose", robot_.description().name,
+              "check the lengths in the robot file");
+}
+
+void WorkspaceSampler::next(Eigen::VectorXd& q) {
+  Eigen::VectorXd qd, qdd;
+  next(q, qd, qdd);
+}
+
+}  // namespace deltadyn
