@@ -1,0 +1,23 @@
+# Fails if OBJECT calls a function that is not in ALLOWED.
+cmake_minimum_required(VERSION 3.25)
+
+execute_process(COMMAND ${NM} --undefined-only --format=posix ${OBJECT}
+  OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^\n]+" lines "${listing}")
+if(NOT lines)
+  message(FATAL_ERROR "${OBJECT} calls nothing at all, not even a sine: is it the right object?")
+endif()
+set(foreign)
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE " .*" "" symbol "${line}")
+  if(NOT symbol IN_LIST ALLOWED)
+    list(APPEND foreign ${symbol})
+  endif()
+endforeach()
+if(foreign)
+  list(SORT foreign)
+  list(JOIN foreign "\n  " foreign)
+  message(FATAL_ERROR " ${OBJECT}\n must not call:\n  ${foreign}")
+endif()
+list(LENGTH lines count)
+message("${count} symbols, all allowed")

@@ -1,0 +1,127 @@
+// Calls every function of the core that firmware may want, for one scalar (GATE_SCALAR) and every robot.
+
+#include "core_calls.hpp"
+
+#include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/mass_matrix.hpp"
+#include "deltadyn/dynamics/regressor.hpp"
+#include "deltadyn/firmware/feed_forward.hpp"
+#include "deltadyn/kinematics/forward.hpp"
+#include "deltadyn/kinematics/inverse.hpp"
+#include "deltadyn/kinematics/motion.hpp"
+
+namespace deltadyn::firmware_gate {
+namespace {
+
+/// A robot about the size of the paper's, not its exact lengths.
+template <class T, class Robot>
+Geometry<T, Robot> plausible_geometry() {
+  Geometry<T, Robot> geometry;
+  for (int i = 0; i < Robot::kLimbs; ++i) {
+    LimbGeometry<T>& limb = geometry.limbs[i];
+    limb.azimuth = T(i) * T(2.0943951023931953);
+    const Matrix3<T> R_WL = rot_z(SinCos<T>(limb.azimuth));
+    limb.p_BA = R_WL * Vector3<T>(T(0.045), T(0), T(0));
+    limb.strut = T(0.8);
+    if (Robot::kDrive == DriveKind::revolute) {
+      limb.p_WD = R_WL * Vector3<T>(T(0.2), T(0), T(0));
+      limb.p_DE_0 = Vector3<T>(T(0.35), T(0), T(0));
+    } else {
+      limb.p_WD = R_WL * Vector3<T>(T(0.4), T(0), T(0));
+      limb.axis_L = -Vector3<T>::UnitZ();
+    }
+  }
+  geometry.telescope.p_BV = Vector3<T>(T(0), T(0), T(0.02));
+  return geometry;
+}
+
+template <class T, class Derived>
+double largest(const Eigen::MatrixBase<Derived>& values) {
+  T result = T(0);
+  for (int j = 0; j < values.cols(); ++j) {
+    for (int i = 0; i < values.rows(); ++i) {
+      const T magnitude = values(i, j) < T(0) ? -values(i, j) : values(i, j);
+      if (!(magnitude <= result)) result = magnitude;
+    }
+  }
+  return static_cast<double>(result);
+}
+
+template <class T, class Robot, Limbs kSharing>
+void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, T phase, Outcome& outcome) {
+  constexpr int N = Robot::kDrives;
+  using Layout = ParameterLayout<Robot, kSharing>;
+  Vector<T, Layout::kColumns> p;
+  for (int i = 0; i < Layout::kColumns; ++i) p(i) = T(0.1) + T(0.02) * T(i % 7) + T(0.001) * phase;
+
+  const Vector<T, N> tau = inverse_dynamics<Layout>(geometry, motion, p);
+  Matrix<T, N, Layout::kColumns> Y;
+  regressor<Layout>(geometry, motion, Y);
+  const Vector<T, N> tau_Y = Y.lazyProduct(p);
+  const Matrix<T, N, N> M = mass_matrix<Layout>(geometry, motion.posture, p);
+
+  const FeedForward<T, Robot, kSharing> feed_forward(geometry, p);
+  Vector<T, N> q, qd, tau_task, tau_drives;
+  const Status from_task = feed_forward.from_task(motion.posture.z, motion.zd, motion.zdd, q, qd, tau_task);
+  const Status from_drives = feed_forward.from_drives(motion.posture.q, motion.qd, motion.qdd, tau_drives);
+  outcome.ok = outcome.ok && from_task == Status::ok && from_drives == Status::ok;
+
+  const auto keep_larger = [](double value, double& kept) {
+    if (!(value <= kept)) kept = value;
+  };
+  const double scale = largest<T>(tau);
+  keep_larger(scale, outcome.largest_torque);
+  keep_larger(largest<T>(tau_Y - tau) / scale, outcome.regressor_gap);
+  keep_larger(largest<T>(M - M.transpose()), outcome.mass_asymmetry);
+  keep_larger(largest<T>(tau_task - tau) / scale, outcome.feed_forward_gap);
+  keep_larger(largest<T>(tau_drives - tau) / scale, outcome.feed_forward_gap);
+}
+
+template <class T, class Robot>
+Outcome run(T phase) {
+  constexpr int N = Robot::kDrives;
+  using std::cos;
+  using std::sin;
+  const Geometry<T, Robot> geometry = plausible_geometry<T, Robot>();
+  Vector<T, N> z, zd, zdd;
+  for (int i = 0; i < N; ++i) {
+    const T angle = phase + T(i);
+    z(i) = T(0.1) * sin(angle) - (kHasPlate<Robot> && i == 2 ? T(0.8) : T(0));
+    zd(i) = T(2) * cos(angle);
+    zdd(i) = T(-20) * sin(T(2) * angle);
+  }
+
+  Outcome outcome;
+  Vector<T, N> q, z_again;
+  Motion<T, Robot> motion;
+  outcome.ok = inverse_kinematics(geometry, z, q) == Status::ok && forward_kinematics(geometry, q, z_again) == Status::ok &&
+               motion_from_task(geometry, z, zd, zdd, motion) == Status::ok;
+  if (!outcome.ok) return outcome;
+  if constexpr (Robot::kTelescope) z_again(N - 1) = q(N - 1);
+  outcome.round_trip = largest<T>(z_again - z);
+  run_dynamics<T, Robot, Limbs::shared>(geometry, motion, phase, outcome);
+  run_dynamics<T, Robot, Limbs::individual>(geometry, motion, phase, outcome);
+  return outcome;
+}
+
+template <class T>
+Outcome run_robot(int robot, T phase) {
+  switch (robot) {
+    case 0: return run<T, Delta3>(phase);
+    case 1: return run<T, LinearDelta3>(phase);
+    case 2: return run<T, Delta4>(phase);
+    case 3: return run<T, Axis>(phase);
+    case 4: return run<T, LinearAxis>(phase);
+    default: return Outcome();
+  }
+}
+
+}  // namespace
+
+#define GATE_JOIN_(a, b) a##b
+#define GATE_JOIN(a, b) GATE_JOIN_(a, b)
+Outcome GATE_JOIN(run_, GATE_SCALAR)(int robot, GATE_SCALAR phase) {
+  return run_robot<GATE_SCALAR>(robot, phase);
+}
+
+}  // namespace deltadyn::firmware_gate
