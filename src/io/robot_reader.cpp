@@ -1,0 +1,431 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "robot_file_format.hpp"
+#include "urdf_tree.hpp"
+
+namespace deltadyn {
+namespace {
+
+using robot_file::Joint;
+using robot_file::Loop;
+using robot_file::Pose;
+using robot_file::UrdfTree;
+using Vec = Vector3<double>;
+
+constexpr double kTolerance = 1e-6;  // [m], [rad]: files by hand or from CAD have six digits
+
+std::string words(const Vec& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z()); }
+
+/// One strut as found in the tree.
+struct Strut {
+  int body = -1;
+  std::string name;
+  Vec elbow = Vec::Zero();       ///< in the arm's frame
+  bool closed = false;           ///< its other end is known
+  Vec end = Vec::Zero();         ///< in the strut's frame
+  Vec p_BE = Vec::Zero();        ///< the same point from the plate's centre
+};
+
+class Reader {
+ public:
+  explicit Reader(const UrdfTree& tree) : tree_(tree) {}
+
+  RobotDescription run() {
+    sort_drives();
+    robot_.name = tree_.name;
+    robot_.gravity = tree_.gravity;
+    if (drives_.size() == 1 && body(drives_[0]->child).joints.empty()) {
+      axis();
+    } else {
+      delta();
+    }
+    for (const Joint* drive : drives_) robot_.limits.push_back(drive->limits);
+    extension();
+    robot_.validate(tree_.where);
+    return robot_;
+  }
+
+ private:
+  // --- messages -------------------------------------------------------------------------------
+  [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) const {
+    throw Error(what, where, mend);
+  }
+  [[nodiscard]] std::string at(const Joint& joint) const {
+    return fmt::format("{}, line {}, joint {}", tree_.where, joint.line, joint.name);
+  }
+  [[nodiscard]] std::string at(const Loop& loop) const {
+    return fmt::format("{}, line {}, loop {}", tree_.where, loop.line, loop.name);
+  }
+  [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
+
+  // --- access and rules for single joints -------------------------------------------------------
+  [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const Joint& joint(int index) const { return tree_.joints[static_cast<std::size_t>(index)]; }
+
+  /// The only moving joint below a body.
+  const Joint& only_joint(int index, const std::string& rule) const {
+    const robot_file::Body& b = body(index);
+    if (b.joints.size() != 1)
+      refuse(fmt::format("{} moving joints hang on this link, but {}", b.joints.size(), rule), at(b.name),
+             "compare with a file of delta-model create");
+    return joint(b.joints[0]);
+  }
+
+  void require_axis(const Joint& j, const Vec& axis, bool prismatic, const std::string& what) const {
+    if (j.prismatic != prismatic)
+      refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j), "");
+    if ((j.axis - axis).norm() > kTolerance)
+      refuse(fmt::format("wrong axis: {} has axis {}, but must have {}", what, words(j.axis), words(axis)), at(j),
+             "turn the joint's origin, or swap the signs");
+  }
+
+  /// A passive joint whose frame is turned about nothing but its own axis, which does not change the mechanism.
+  void require_passive(const Joint& j, const Vec& axis, const std::string& what) const {
+    require_axis(j, axis, false, what);
+    if ((j.X_PJ.linear() * axis - axis).norm() > kTolerance)
+      refuse(fmt::format("wrong axis: the origin of {} is turned about another axis than its own", what), at(j),
+             "set the origin's rpy to 0 0 0");
+  }
+
+  void require_no_offset(const Joint& j, const std::string& what) const {
+    if (j.X_PJ.translation().norm() > kTolerance)
+      refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what, j.X_PJ.translation().norm()), at(j),
+             "set the origin's xyz to 0 0 0");
+  }
+
+  void require_parallel(const Eigen::Matrix3d& R, const std::string& where, const std::string& what) const {
+    if ((R - Eigen::Matrix3d::Identity()).norm() > kTolerance)
+      refuse(what + " must be parallel to the base frame when all joints are in their middle", where, "mend the rpy of the fixed joint");
+  }
+
+  // --- drives -----------------------------------------------------------------------------------
+  void sort_drives() {
+    const robot_file::Body& base = body(0);
+    drives_.assign(base.joints.size(), nullptr);
+    if (drives_.empty()) refuse("no moving joint hangs on the base link", at(base.name), "the drives are the joints drive1, drive2, ...");
+    for (const int index : base.joints) {
+      const Joint& j = joint(index);
+      bool found = false;
+      for (std::size_t k = 0; k < drives_.size(); ++k)
+        if (j.name == robot_file::drive_name(k)) {
+          drives_[k] = &j;
+          found = true;
+        }
+      if (!found)
+        refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}", drives_.size(),
+                           drives_.size()),
+               at(j), "rename the joint");
+      if (j.mimic) refuse("a drive cannot mimic another joint", at(j), "remove the <mimic> element");
+    }
+  }
+
+  /// Azimuth in [0, 2 pi).
+  double azimuth(const Joint& drive) const {
+    const Eigen::Matrix3d& R = drive.X_PJ.linear();
+    if (std::abs(R(2, 2) - 1) > kTolerance * kTolerance && std::hypot(R(0, 2), R(1, 2)) > kTolerance)
+      refuse("the limb frame must be turned about z of the base only", at(drive), "write the azimuth as the third number of rpy");
+    const double angle = std::atan2(R(1, 0), R(0, 0));
+    return angle < -1e-9 ? angle + 2 * std::numbers::pi : angle;
+  }
+
+  LimbGeometry<double> limb_of(const Joint& drive) const {
+    LimbGeometry<double> limb;
+    limb.azimuth = azimuth(drive);
+    limb.p_WD = drive.X_PJ.translation();
+    if (drive.prismatic) {
+      limb.axis_L = drive.axis;
+    } else {
+      require_axis(drive, Vec::UnitY(), false, "a limb's revolute drive");
+      limb.axis_L = Vec::UnitY();
+    }
+    return limb;
+  }
+
+  void axis() {
+    robot_.type = "axis";
+    robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
+    LimbGeometry<double> limb = limb_of(*drives_[0]);
+    const robot_file::Body& arm = body(drives_[0]->child);
+    for (const std::string& link : arm.links)
+      if (link == arm.name + "_tip") limb.p_DE_0 = tree_.links.at(link).X_BL.translation();
+    robot_.limbs.push_back(limb);
+    if (!tree_.loops.empty()) refuse("an axis has no loops", at(tree_.loops[0]), "remove the loop, or give the whole robot");
+  }
+
+  // --- Delta --------------------------------------------------------------------------------------
+  /// The telescope's drive turns about z and carries one chain; a limb's carries two struts.
+  [[nodiscard]] bool is_telescope(const Joint& drive) const {
+    return !drive.prismatic && body(drive.child).joints.size() == 1 && std::abs(drive.axis.z()) > 0.5;
+  }
+
+  void delta() {
+    std::size_t limbs = 0;
+    while (limbs < drives_.size() && !is_telescope(*drives_[limbs])) ++limbs;
+    if (drives_.size() - limbs > 1)
+      refuse("the telescope's drive must be the last one", at(*drives_[limbs]), "call the limbs' drives drive1 to drive3");
+    if (limbs != 3)
+      refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
+             limbs == 4 ? "robots with four limbs (h4, i4, par4) are not supported yet" : "a limb is a drive on the base with two struts");
+    const bool telescope = limbs < drives_.size();
+    robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
+    robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
+    for (std::size_t i = 0; i < limbs; ++i) {
+      if (drives_[i]->prismatic != drives_[0]->prismatic)
+        refuse("the drives of the limbs are of different kinds", at(*drives_[i]), "make all of them revolute or all prismatic");
+      robot_.limbs.push_back(limb_of(*drives_[i]));
+      find_struts(*drives_[i]);
+    }
+    if (telescope && drives_[0]->prismatic)
+      refuse("a telescope bar with prismatic drives is not a known type", at(*drives_[limbs]), "use revolute drives (delta4)");
+    find_plate();
+    for (const Loop& loop : tree_.loops) close(loop);
+    for (std::size_t i = 0; i < limbs; ++i) parallelogram(i);
+    robot_.parts.emplace_back();
+    if (telescope) {
+      find_telescope(*drives_[limbs]);
+    } else if (!tool_loops_.empty()) {
+      refuse(fmt::format("link {} is not a strut", tool_loops_[0].other->link), at(*tool_loops_[0].loop),
+             "the loops of a Delta without telescope bar join struts and plate");
+    }
+  }
+
+  void find_struts(const Joint& drive) {
+    const robot_file::Body& arm = body(drive.child);
+    if (arm.joints.size() != 2)
+      refuse(fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts", arm.joints.size()),
+             at(arm.name), "compare with a file of delta-model create");
+    std::vector<Strut> pair;
+    for (const int index : arm.joints) {
+      const Joint& about_y = joint(index);
+      require_passive(about_y, Vec::UnitY(), "a strut's first joint");
+      const Joint& about_z = only_joint(about_y.child, "a strut's first joint carries its second");
+      require_passive(about_z, Vec::UnitZ(), "a strut's second joint");
+      require_no_offset(about_z, "a strut's second joint");
+      Strut strut;
+      strut.body = about_z.child;
+      strut.name = body(about_z.child).name;
+      strut.elbow = about_y.X_PJ.translation();
+      pair.push_back(strut);
+    }
+    if (pair[0].elbow.y() < pair[1].elbow.y()) std::swap(pair[0], pair[1]);
+    const Vec across = pair[0].elbow - pair[1].elbow;
+    if (across.y() < kTolerance || std::hypot(across.x(), across.z()) > kTolerance)
+      refuse(fmt::format("the elbow joints of its two struts must lie apart along y of the limb, but they are {} apart", words(across)),
+             at(arm.name), "mend the origins of the struts' first joints");
+    struts_.push_back(pair[0]);
+    struts_.push_back(pair[1]);
+  }
+
+  /// The plate hangs on one strut by joints about z and y; the other struts reach it by loops.
+  void find_plate() {
+    std::size_t carrier = struts_.size();
+    for (std::size_t k = 0; k < struts_.size(); ++k) {
+      if (body(struts_[k].body).joints.empty()) continue;
+      if (carrier < struts_.size())
+        refuse(fmt::format("the plate hangs on this strut and on {}", struts_[carrier].name), at(struts_[k].name),
+               "a tree has one path to the plate; close the other by a <loop>");
+      carrier = k;
+    }
+    if (carrier == struts_.size()) refuse("no strut carries the plate", tree_.where, "hang it on strut1a by joints about z, then y");
+    Strut& strut = struts_[carrier];
+    const Joint& about_z = only_joint(strut.body, "the strut carries the plate only");
+    require_passive(about_z, Vec::UnitZ(), "the joint between strut and plate");
+    const Joint& about_y = only_joint(about_z.child, "the plate's first joint carries its second");
+    require_passive(about_y, Vec::UnitY(), "the plate's second joint");
+    require_no_offset(about_y, "the plate's second joint");
+    plate_ = about_y.child;
+    if (!body(plate_).joints.empty())
+      refuse("a Delta's plate carries no moving joint", at(joint(body(plate_).joints[0])), "the tool hangs on the telescope bar");
+
+    // The loops say which link of the plate has its frame at the plate's centre.
+    std::string frame;
+    for (const Loop& loop : tree_.loops)
+      for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor}) {
+        if (tree_.links.at(end->link).body != plate_) continue;
+        if (!frame.empty() && frame != end->link)
+          refuse(fmt::format("it ends on {}, but another loop on {}", end->link, frame), at(loop), "let all loops name the same link of the plate");
+        frame = end->link;
+      }
+    if (frame.empty())
+      refuse(fmt::format("missing loop: no loop ends on the plate ({})", body(plate_).name), tree_.where, "add a spherical <loop> for each other strut");
+    X_MB_ = tree_.links.at(frame).X_BL;
+    const double angle = robot_.limbs[carrier / 2].azimuth;
+    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), at(frame), "the plate's frame");
+    strut.closed = true;
+    strut.end = about_z.X_PJ.translation();
+    strut.p_BE = X_MB_.inverse().translation();
+  }
+
+  void close(const Loop& loop) {
+    const robot_file::LoopEnd* on_plate = &loop.predecessor;
+    const robot_file::LoopEnd* other = &loop.successor;
+    if (tree_.links.at(on_plate->link).body != plate_) std::swap(on_plate, other);
+    if (tree_.links.at(on_plate->link).body != plate_)
+      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop), "a Delta's loops end on the plate");
+    const robot_file::LinkPlace& place = tree_.links.at(other->link);
+    const auto strut = std::find_if(struts_.begin(), struts_.end(), [&](const Strut& s) { return s.body == place.body; });
+    if (strut == struts_.end()) {
+      tool_loops_.push_back({&loop, on_plate, other});
+      return;
+    }
+    if (loop.type != "spherical")
+      refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), at(loop), "write type=\"spherical\"");
+    if (strut->closed) refuse(fmt::format("the end of {} is closed already", strut->name), at(loop), "remove one of the two");
+    strut->closed = true;
+    strut->end = (place.X_BL * other->X_LO).translation();
+    strut->p_BE = on_plate->X_LO.translation();
+  }
+
+  void parallelogram(std::size_t index) {
+    LimbGeometry<double>& limb = robot_.limbs[index];
+    const Strut& a = struts_[2 * index];
+    const Strut& b = struts_[2 * index + 1];
+    for (const Strut* strut : {&a, &b}) {
+      if (!strut->closed)
+        refuse("missing loop: the end of this strut is not joined to the plate", at(strut->name),
+               fmt::format("add a spherical <loop> between {} and the plate", strut->name));
+      if (strut->end.x() < kTolerance || strut->end.tail<2>().norm() > kTolerance)
+        refuse(fmt::format("the strut's end is at {}, but must lie on +x of the strut", words(strut->end)), at(strut->name),
+               "the strut's frame is at the elbow with x along the strut");
+    }
+    if (std::abs(a.end.x() - b.end.x()) > kTolerance)
+      refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(), b.name, b.end.x()),
+             at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
+    const Vec at_elbow = a.elbow - b.elbow;
+    const Vec y_L(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
+    const Vec at_plate = a.p_BE - b.p_BE;
+    if ((at_plate - at_elbow.y() * y_L).norm() > kTolerance)
+      refuse(fmt::format("limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both in the base frame)",
+                         index + 1, words(at_elbow.y() * y_L), words(at_plate)),
+             at(b.name), "mend the origins in its loops");
+    limb.p_DE_0 = (a.elbow + b.elbow) / 2;
+    if (robot_.drive_kind == DriveKind::revolute) {
+      if (limb.p_DE_0.x() < kTolerance || limb.p_DE_0.tail<2>().norm() > kTolerance)
+        refuse(fmt::format("the elbow is at {}, but must lie on +x of the upper arm", words(limb.p_DE_0)), at(body(drives_[index]->child).name),
+               "turn the zero of the drive, so that 0 is horizontal outwards");
+      limb.p_DE_0.tail<2>().setZero();
+    }
+    limb.strut = (a.end.x() + b.end.x()) / 2;
+    limb.strut_spacing = at_elbow.y();
+    limb.p_BA = (a.p_BE + b.p_BE) / 2;
+  }
+
+  void find_telescope(const Joint& drive) {
+    require_axis(drive, Vec::UnitZ(), false, "the telescope's drive");
+    require_parallel(drive.X_PJ.linear(), at(drive), "the telescope drive's frame");
+    const Joint& x = only_joint(drive.child, "the drive carries the joint about x");
+    require_passive(x, Vec::UnitX(), "the upper universal joint's first axis");
+    require_no_offset(x, "the upper universal joint");
+    const Joint& y = only_joint(x.child, "the joint about x carries the one about y");
+    require_passive(y, Vec::UnitY(), "the upper universal joint's second axis");
+    require_no_offset(y, "the upper universal joint");
+    const Joint& slide = only_joint(y.child, "the upper part of the bar carries the lower part");
+    require_axis(slide, slide.axis.z() > 0 ? Vec(Vec::UnitZ()) : Vec(-Vec::UnitZ()), true, "the telescope joint");
+    require_parallel(slide.X_PJ.linear(), at(slide), "the lower part of the bar");
+    if (slide.X_PJ.translation().head<2>().norm() > kTolerance)
+      refuse("the lower part of the bar must lie on z of the upper part", at(slide), "set x and y of the origin to 0");
+    const Joint& y2 = only_joint(slide.child, "the lower part of the bar carries the lower universal joint");
+    require_passive(y2, Vec::UnitY(), "the lower universal joint's first axis");
+    require_no_offset(y2, "the lower universal joint");
+    const Joint& x2 = only_joint(y2.child, "the joint about y carries the one about x");
+    require_passive(x2, Vec::UnitX(), "the lower universal joint's second axis");
+    require_no_offset(x2, "the lower universal joint");
+    const robot_file::Body& tool = body(x2.child);
+    if (!tool.joints.empty()) refuse("the tool carries no moving joint", at(joint(tool.joints[0])), "");
+
+    const ToolLoop* closure = nullptr;
+    for (const ToolLoop& candidate : tool_loops_) {
+      if (tree_.links.at(candidate.other->link).body != x2.child)
+        refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), at(*candidate.loop), "");
+      if (closure != nullptr) refuse("the tool is joined to the plate twice", at(*candidate.loop), "remove one of the two");
+      closure = &candidate;
+    }
+    if (closure == nullptr)
+      refuse("missing loop: the tool is not joined to the plate", at(tool.name), "add a revolute <loop> about z between plate and tool");
+    const Loop& loop = *closure->loop;
+    if (loop.type != "revolute" && loop.type != "continuous")
+      refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), at(loop), "write type=\"revolute\"");
+    if (std::abs(std::abs(loop.axis.z()) - 1) > kTolerance)
+      refuse(fmt::format("wrong axis: the tool turns about {} of the plate, but must turn about z", words(loop.axis)), at(loop),
+             "write <axis xyz=\"0 0 1\"/>");
+    const Pose& X_MT = tree_.links.at(closure->other->link).X_BL;
+    require_parallel(X_MT.linear(), at(closure->other->link), "the tool's frame");
+    const Vec p_TV = X_MT.inverse().translation();
+    const Vec p_TO = closure->other->X_LO.translation();
+    if (p_TV.head<2>().norm() > kTolerance || p_TO.head<2>().norm() > kTolerance)
+      refuse("the tool's axis must pass through the lower universal joint of the bar", at(loop), "set x and y of the tool's origins to 0");
+    TelescopeGeometry<double> bar;
+    bar.p_WU = drive.X_PJ.translation();
+    bar.p_BV = closure->on_plate->X_LO.translation() + Vec(0, 0, p_TV.z() - p_TO.z());
+    robot_.telescope = bar;
+  }
+
+  // --- extension ------------------------------------------------------------------------------------
+  void extension() {
+    if (!tree_.declared_type.empty() && tree_.declared_type != robot_.type)
+      refuse(fmt::format("<deltadyn> says type {}, but the joints and loops make a {}", tree_.declared_type, robot_.type),
+             fmt::format("{}, line {}", tree_.where, tree_.extension_line), "mend the type or the tree");
+    for (const robot_file::DriveNote& note : tree_.drives) {
+      const std::string where = fmt::format("{}, line {}, <drive> of <deltadyn>", tree_.where, note.line);
+      const auto joint_name = note.attributes.find("joint");
+      std::size_t index = drives_.size();
+      for (std::size_t k = 0; k < drives_.size(); ++k)
+        if (joint_name != note.attributes.end() && joint_name->second == drives_[k]->name) index = k;
+      if (index == drives_.size()) refuse("it names no drive of this robot", where, "write joint=\"drive1\" or another drive");
+      const char* acceleration = drives_[index]->prismatic ? robot_file::kAccelerationPrismatic : robot_file::kAccelerationRevolute;
+      for (const auto& [key, value] : note.attributes) {
+        if (key == "joint") continue;
+        const double number = robot_file::parse_number(value, where, key);
+        if (key == acceleration) {
+          robot_.limits[index].acceleration = number;
+        } else if (key == "elbow" && index < robot_.limbs.size()) {
+          robot_.limbs[index].elbow = number;
+        } else {
+          refuse(fmt::format("attribute '{}' is not known for this drive", key), where, fmt::format("known are elbow and {}", acceleration));
+        }
+      }
+    }
+  }
+
+  struct ToolLoop {
+    const Loop* loop;
+    const robot_file::LoopEnd* on_plate;
+    const robot_file::LoopEnd* other;
+  };
+
+  const UrdfTree& tree_;
+  RobotDescription robot_;
+  std::vector<const Joint*> drives_;
+  std::vector<Strut> struts_;  ///< two a limb, the one at +y first
+  int plate_ = -1;
+  Pose X_MB_ = Pose::Identity();  ///< plate frame in the frame of the body that carries it
+  std::vector<ToolLoop> tool_loops_;
+};
+
+}  // namespace
+
+RobotDescription robot_from_urdf(const std::string& text, const std::string& where) {
+  const UrdfTree tree = robot_file::parse_urdf_tree(text, where);
+  return Reader(tree).run();
+}
+
+RobotDescription read_robot_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(fmt::format("cannot open the robot file ({})", std::strerror(errno)), path, "check the path");
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad()) throw Error("cannot read the robot file", path, "give a URDF file, not a folder");
+  return robot_from_urdf(text.str(), path);
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,342 @@
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/model/body.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "robot_file_format.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Vec = Vector3<double>;
+using tinyxml2::XMLElement;
+
+constexpr double kPi = std::numbers::pi;
+
+/// Shortest text that reads back to the same number; no "-0" in a file that people read.
+std::string text(double value) { return value == 0 ? "0" : fmt::format("{}", value); }
+std::string text(const Vec& v) { return fmt::format("{} {} {}", text(v.x()), text(v.y()), text(v.z())); }
+
+/// URDF has no word for "unlimited" and its readers do not take "inf".
+double finite(double limit) { return std::clamp(limit, -robot_file::kUnlimited, robot_file::kUnlimited); }
+
+class Writer {
+ public:
+  Writer(const RobotDescription& robot, const NamedValues& parameters) : robot_(robot), parameters_(parameters) {}
+
+  std::string run() {
+    document_.InsertEndChild(document_.NewDeclaration());
+    root_ = document_.NewElement("robot");
+    document_.InsertEndChild(root_);
+    root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
+    comment(fmt::format(" {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ",
+                        robot_.type));
+    base();
+    if (robot_.parts.empty()) {
+      axis();
+    } else {
+      for (std::size_t i = 0; i < robot_.limbs.size(); ++i) limb(i);
+      platform();
+      if (robot_.telescope) telescope();
+      loops();
+    }
+    extension();
+    tinyxml2::XMLPrinter printer;
+    document_.Print(&printer);
+    return printer.CStr();
+  }
+
+ private:
+  // --- elements -------------------------------------------------------------------------------
+  static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
+
+  void comment(const std::string& words) { root_->InsertNewComment(words.c_str()); }
+
+  static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
+    XMLElement* element = child(parent, "origin");
+    element->SetAttribute("xyz", text(xyz).c_str());
+    element->SetAttribute("rpy", text(rpy).c_str());
+  }
+
+  XMLElement* link(const std::string& name) {
+    XMLElement* element = child(root_, "link");
+    element->SetAttribute("name", name.c_str());
+    return element;
+  }
+
+  XMLElement* joint(const std::string& name, const char* type, const std::string& parent, const std::string& to, const Vec& xyz,
+                    const Vec& rpy = Vec::Zero()) {
+    XMLElement* element = child(root_, "joint");
+    element->SetAttribute("name", name.c_str());
+    element->SetAttribute("type", type);
+    child(element, "parent")->SetAttribute("link", parent.c_str());
+    child(element, "child")->SetAttribute("link", to.c_str());
+    origin(element, xyz, rpy);
+    return element;
+  }
+
+  static void axis_of(XMLElement* element, const Vec& axis) { child(element, "axis")->SetAttribute("xyz", text(axis).c_str()); }
+
+  static void limit_of(XMLElement* element, const DriveLimits& limits, bool with_range) {
+    XMLElement* limit = child(element, "limit");
+    if (with_range) {
+      limit->SetAttribute("lower", text(finite(limits.lower)).c_str());
+      limit->SetAttribute("upper", text(finite(limits.upper)).c_str());
+    }
+    limit->SetAttribute("effort", text(finite(limits.effort)).c_str());
+    limit->SetAttribute("velocity", text(finite(limits.velocity)).c_str());
+  }
+
+  /// A passive joint: no effort, half a turn to both sides.
+  XMLElement* passive(const std::string& name, const std::string& parent, const std::string& to, const Vec& axis, const Vec& xyz) {
+    XMLElement* element = joint(name, "revolute", parent, to, xyz);
+    element->SetAttribute("independent", false);
+    axis_of(element, axis);
+    DriveLimits limits;
+    limits.lower = -kPi;
+    limits.upper = kPi;
+    limits.effort = 0;
+    limit_of(element, limits, true);
+    return element;
+  }
+
+  void drive(std::size_t index, const std::string& to, DriveKind kind, const Vec& axis, const Vec& xyz, const Vec& rpy) {
+    const DriveLimits& limits = robot_.limits[index];
+    const bool unlimited = std::isinf(limits.lower) && std::isinf(limits.upper);
+    const bool continuous = kind == DriveKind::revolute && unlimited;
+    const char* type = kind == DriveKind::prismatic ? "prismatic" : (continuous ? "continuous" : "revolute");
+    XMLElement* element = joint(robot_file::drive_name(index), type, "base", to, xyz, rpy);
+    element->SetAttribute("independent", true);
+    axis_of(element, axis);
+    limit_of(element, limits, !continuous);
+  }
+
+  static void mimic(XMLElement* element, const std::string& other) {
+    XMLElement* tie = child(element, "mimic");
+    tie->SetAttribute("joint", other.c_str());
+    tie->SetAttribute("multiplier", "-1");
+  }
+
+  // --- bodies ---------------------------------------------------------------------------------
+  /// A cylinder from `from` to `to` in the link's frame, so that viewers show something.
+  void visual(XMLElement* body, const Vec& from, const Vec& to, double radius) {
+    const double length = (to - from).norm();
+    if (length <= 0) return;
+    XMLElement* element = child(body, "visual");
+    const Vec z = (to - from) / length;
+    // Rz(yaw) Ry(pitch) turns the cylinder's z into the direction wanted.
+    origin(element, (from + to) / 2, Vec(0, std::atan2(std::hypot(z.x(), z.y()), z.z()), std::atan2(z.y(), z.x())));
+    XMLElement* cylinder = child(child(element, "geometry"), "cylinder");
+    cylinder->SetAttribute("radius", text(radius).c_str());
+    cylinder->SetAttribute("length", text(length).c_str());
+  }
+
+  /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or empty)
+  void inertial(XMLElement* body, const std::string& shared, const std::string& own = {}) {
+    std::array<double, kInertialParameters> p{};
+    bool given = false;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      auto found = own.empty() ? parameters_.end() : parameters_.find(own + "." + kInertialNames[k]);
+      if (found == parameters_.end()) found = parameters_.find(shared + "." + kInertialNames[k]);
+      if (found == parameters_.end()) continue;
+      given = true;
+      p[k] = found->second;
+      if (!std::isfinite(p[k]))
+        throw Error(fmt::format("parameter {}.{} is not finite", shared, kInertialNames[k]), "", "mend the parameter file");
+    }
+    if (!given) return;
+    if (!(p[0] > 0))
+      throw Error(fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]), "",
+                  "give the body a positive mass, or leave its parameters out");
+    const Vec c(p[1] / p[0], p[2] / p[0], p[3] / p[0]);
+    Matrix3<double> I;
+    I << p[4], p[7], p[9], p[7], p[5], p[8], p[9], p[8], p[6];
+    // URDF wants the inertia about the centre of mass, the paper's parameters are about the frame's origin.
+    I -= p[0] * (c.squaredNorm() * Matrix3<double>::Identity() - c * c.transpose());
+    XMLElement* element = child(body, "inertial");
+    origin(element, c);
+    child(element, "mass")->SetAttribute("value", text(p[0]).c_str());
+    XMLElement* inertia = child(element, "inertia");
+    const char* names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
+    const double values[] = {I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)};
+    for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], text(values[k]).c_str());
+  }
+
+  [[nodiscard]] double attachment_radius() const {
+    double radius = 0;
+    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.head<2>().norm());
+    return radius;
+  }
+
+  // --- the mechanism --------------------------------------------------------------------------
+  void base() {
+    XMLElement* body = link("base");
+    double radius = 0;
+    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_WD.head<2>().norm());
+    if (radius > 0) visual(body, Vec(0, 0, 0.02), Vec(0, 0, 0.04), radius);
+  }
+
+  /// Drive joint and upper arm or carriage of one limb.
+  XMLElement* upper_arm(std::size_t index) {
+    const LimbGeometry<double>& limb = robot_.limbs[index];
+    const std::string name = fmt::format("upper_arm{}", index + 1);
+    drive(index, name, robot_.drive_kind, limb.axis_L, limb.p_WD, Vec(0, 0, limb.azimuth));
+    XMLElement* body = link(name);
+    if (robot_.drive_kind == DriveKind::prismatic) visual(body, -0.03 * limb.axis_L, 0.03 * limb.axis_L, 0.03);
+    visual(body, Vec::Zero(), limb.p_DE_0, 0.025);
+    inertial(body, "upper_arm", name);
+    return body;
+  }
+
+  void axis() {
+    upper_arm(0);
+    const Vec& tip = robot_.limbs[0].p_DE_0;
+    if (tip.norm() <= 0) return;
+    joint("upper_arm1_tip_mount", "fixed", "upper_arm1", "upper_arm1_tip", tip);
+    link("upper_arm1_tip");
+  }
+
+  void limb(std::size_t index) {
+    const LimbGeometry<double>& limb = robot_.limbs[index];
+    upper_arm(index);
+    for (const bool first : {true, false}) {
+      const std::string name = robot_file::strut_name(index, first);
+      const std::string arm = fmt::format("upper_arm{}", index + 1);
+      const Vec elbow = limb.p_DE_0 + Vec(0, (first ? 0.5 : -0.5) * limb.strut_spacing, 0);
+      passive(name + "_y", arm, name + "_knuckle", Vec::UnitY(), elbow);
+      link(name + "_knuckle");
+      passive(name + "_z", name + "_knuckle", name, Vec::UnitZ(), Vec::Zero());
+      XMLElement* body = link(name);
+      visual(body, Vec::Zero(), Vec(limb.strut, 0, 0), 0.01);
+      inertial(body, "strut", fmt::format("strut{}", index + 1));
+    }
+  }
+
+  /// Attachment of one strut on the plate, from the plate's centre.
+  [[nodiscard]] Vec strut_end(std::size_t index, bool first) const {
+    const LimbGeometry<double>& limb = robot_.limbs[index];
+    const double half = (first ? 0.5 : -0.5) * limb.strut_spacing;
+    return limb.p_BA + half * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
+  }
+
+  void platform() {
+    const LimbGeometry<double>& limb = robot_.limbs[0];
+    // z then y undo the strut's y then z, so the plate stays parallel to the base.
+    mimic(passive("platform_z", "strut1a", "platform_knuckle", Vec::UnitZ(), Vec(limb.strut, 0, 0)), "strut1a_z");
+    link("platform_knuckle");
+    passive("platform_y", "platform_knuckle", "platform_mount", Vec::UnitY(), Vec::Zero());
+    link("platform_mount");
+    const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
+    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)), Vec(0, 0, -limb.azimuth));
+    XMLElement* body = link("platform");
+    visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), std::max(0.02, attachment_radius()));
+    inertial(body, "platform");
+  }
+
+  void telescope() {
+    const TelescopeGeometry<double>& bar = *robot_.telescope;
+    double reach = 0;
+    for (const auto& limb : robot_.limbs)
+      reach = std::max(reach, limb.p_WD.norm() + limb.p_DE_0.norm() + limb.strut + limb.p_BA.norm());
+    reach += bar.p_WU.norm() + bar.p_BV.norm();  // the bar is never longer than that
+
+    drive(robot_.limbs.size(), "telescope_yoke", DriveKind::revolute, Vec::UnitZ(), bar.p_WU, Vec::Zero());
+    link("telescope_yoke");
+    passive("telescope_x", "telescope_yoke", "telescope_cross", Vec::UnitX(), Vec::Zero());
+    link("telescope_cross");
+    passive("telescope_y", "telescope_cross", "telescope_upper", Vec::UnitY(), Vec::Zero());
+    XMLElement* upper = link("telescope_upper");
+    visual(upper, Vec(0, 0, -0.4 * reach), Vec::Zero(), 0.008);
+    inertial(upper, "telescope_upper");
+    XMLElement* slide = joint("telescope", "prismatic", "telescope_upper", "telescope_lower", Vec::Zero());
+    slide->SetAttribute("independent", false);
+    axis_of(slide, -Vec::UnitZ());
+    DriveLimits range;
+    range.lower = 0;
+    range.upper = reach;
+    range.effort = 0;
+    limit_of(slide, range, true);
+    XMLElement* lower = link("telescope_lower");
+    visual(lower, Vec::Zero(), Vec(0, 0, 0.4 * reach), 0.014);
+    inertial(lower, "telescope_lower");
+    mimic(passive("tool_y", "telescope_lower", "tool_cross", Vec::UnitY(), Vec::Zero()), "telescope_y");
+    link("tool_cross");
+    mimic(passive("tool_x", "tool_cross", "tool_mount", Vec::UnitX(), Vec::Zero()), "telescope_x");
+    link("tool_mount");
+    joint("tool_fixed", "fixed", "tool_mount", "tool", Vec(0, 0, -bar.p_BV.z()));
+    XMLElement* tool = link("tool");
+    visual(tool, Vec(0, 0, -0.05), Vec::Zero(), 0.015);
+    inertial(tool, "tool");
+  }
+
+  XMLElement* loop(const std::string& name, const char* type, const std::string& predecessor, const Vec& from,
+                   const std::string& successor, const Vec& to) {
+    XMLElement* element = child(root_, "loop");
+    element->SetAttribute("name", name.c_str());
+    element->SetAttribute("type", type);
+    XMLElement* first = child(element, "predecessor");
+    first->SetAttribute("link", predecessor.c_str());
+    origin(first, from);
+    XMLElement* second = child(element, "successor");
+    second->SetAttribute("link", successor.c_str());
+    origin(second, to);
+    return element;
+  }
+
+  void loops() {
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i)
+      for (const bool first : {true, false}) {
+        if (i == 0 && first) continue;  // this strut carries the plate in the tree
+        const std::string name = robot_file::strut_name(i, first);
+        loop(name + "_end", "spherical", name, Vec(robot_.limbs[i].strut, 0, 0), "platform", strut_end(i, first));
+      }
+    if (robot_.telescope) {
+      // The bar's lower joint sits on the tool's axis; where that axis meets the plate is the loop's place on the plate.
+      const Vec place(robot_.telescope->p_BV.x(), robot_.telescope->p_BV.y(), 0);
+      axis_of(loop("tool_axis", "revolute", "platform", place, "tool", Vec::Zero()), Vec::UnitZ());
+    }
+  }
+
+  void extension() {
+    XMLElement* element = child(root_, "deltadyn");
+    element->SetAttribute("version", 1);
+    element->SetAttribute("type", robot_.type.c_str());
+    child(element, "gravity")->SetAttribute("xyz_m_s2", text(robot_.gravity).c_str());
+    for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
+      XMLElement* entry = child(element, "drive");
+      entry->SetAttribute("joint", robot_file::drive_name(i).c_str());
+      if (i < robot_.limbs.size() && !robot_.parts.empty())
+        entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
+      if (std::isfinite(robot_.limits[i].acceleration))
+        entry->SetAttribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic ? robot_file::kAccelerationPrismatic
+                                                                                            : robot_file::kAccelerationRevolute,
+                            text(robot_.limits[i].acceleration).c_str());
+    }
+  }
+
+  const RobotDescription& robot_;
+  const NamedValues& parameters_;
+  tinyxml2::XMLDocument document_;
+  XMLElement* root_ = nullptr;
+};
+
+}  // namespace
+
+std::string robot_to_urdf(const RobotDescription& robot, const NamedValues& parameters) {
+  robot.validate(robot.name.empty() ? robot.type : robot.name);
+  return Writer(robot, parameters).run();
+}
+
+void write_robot_file(const std::string& path, const RobotDescription& robot, const NamedValues& parameters) {
+  write_file(path, robot_to_urdf(robot, parameters));
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,303 @@
+#include "urdf_tree.hpp"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <tinyxml2.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <set>
+#include <sstream>
+
+#include "deltadyn/runtime/error.hpp"
+#include "robot_file_format.hpp"
+
+namespace deltadyn::robot_file {
+namespace {
+
+using tinyxml2::XMLElement;
+
+[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(what, where, mend);
+}
+
+std::string at(const std::string& where, const XMLElement* element) {
+  const char* name = element->Attribute("name");
+  return fmt::format("{}, line {}, {}{}{}", where, element->GetLineNum(), element->Name(), name != nullptr ? " " : "",
+                     name != nullptr ? name : "");
+}
+
+std::string attribute(const XMLElement* element, const char* name, const std::string& place) {
+  const char* value = element->Attribute(name);
+  if (value == nullptr || *value == '\0')
+    refuse(fmt::format("<{}> has no attribute '{}'", element->Name(), name), place, fmt::format("write {}=\"...\"", name));
+  return value;
+}
+
+const XMLElement* require_child(const XMLElement* element, const char* name, const std::string& place) {
+  const XMLElement* child = element->FirstChildElement(name);
+  if (child == nullptr) refuse(fmt::format("<{}> has no element <{}>", element->Name(), name), place, "");
+  return child;
+}
+
+Eigen::Vector3d parse_vector(const std::string& text, const std::string& where, const std::string& name) {
+  std::istringstream words(text);
+  std::string word;
+  Eigen::Vector3d v;
+  int count = 0;
+  for (; words >> word; ++count) {
+    if (count == 3) break;
+    v(count) = parse_number(word, where, name);
+  }
+  if (count != 3 || words >> word)
+    refuse(fmt::format("attribute {} is '{}', but must be three numbers", name, text), where, "separate them by blanks");
+  return v;
+}
+
+/// URDF: fixed axes, roll then pitch then yaw.
+Pose pose_of(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
+  using Eigen::AngleAxisd;
+  Pose X = Pose::Identity();
+  X.linear() = (AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                   .toRotationMatrix();
+  X.translation() = xyz;
+  return X;
+}
+
+LoopEnd loop_end(const XMLElement* loop, const char* side, const std::string& where) {
+  const std::string place = at(where, loop);
+  const XMLElement* element = require_child(loop, side, place);
+  LoopEnd end;
+  end.link = attribute(element, "link", place);
+  if (const XMLElement* origin = element->FirstChildElement("origin")) {
+    const char* xyz = origin->Attribute("xyz");
+    const char* rpy = origin->Attribute("rpy");
+    end.X_LO = pose_of(xyz != nullptr ? parse_vector(xyz, place, "xyz") : Eigen::Vector3d::Zero(),
+                       rpy != nullptr ? parse_vector(rpy, place, "rpy") : Eigen::Vector3d::Zero());
+  }
+  return end;
+}
+
+/// What plain XML can tell before urdfdom builds the tree: its own messages do not say the line.
+struct XmlFacts {
+  std::map<std::string, int> link_lines, joint_lines;
+};
+
+XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
+  XmlFacts facts;
+  for (auto* link = robot->FirstChildElement("link"); link != nullptr; link = link->NextSiblingElement("link")) {
+    const auto [other, is_new] = facts.link_lines.emplace(attribute(link, "name", at(where, link)), link->GetLineNum());
+    if (!is_new)
+      refuse(fmt::format("there is a link of this name on line {} already", other->second), at(where, link), "rename one of them");
+  }
+  if (facts.link_lines.empty()) refuse("the robot has no link", where, "give a URDF robot file, e.g. one of delta-model create");
+  std::map<std::string, std::string> parent_joint;
+  for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr; joint = joint->NextSiblingElement("joint")) {
+    const std::string place = at(where, joint);
+    const std::string name = attribute(joint, "name", place);
+    if (!facts.joint_lines.emplace(name, joint->GetLineNum()).second)
+      refuse("there are two joints of this name", place, "rename one of them");
+    for (const char* side : {"parent", "child"}) {
+      const std::string link = attribute(require_child(joint, side, place), "link", place);
+      if (facts.link_lines.count(link) == 0)
+        refuse(fmt::format("unknown {} link '{}'", side, link), place, fmt::format("add <link name=\"{}\"/> or mend the name", link));
+      if (std::string(side) == "child") {
+        const auto [other, is_new] = parent_joint.emplace(link, name);
+        if (!is_new)
+          refuse(fmt::format("link '{}' already hangs on joint '{}'", link, other->second), place,
+                 "a link has one parent in URDF; close the loop by a <loop> element");
+      }
+    }
+  }
+  return facts;
+}
+
+/// urdfdom reports through console_bridge; this keeps its words for our message and off the terminal.
+class CapturedMessages : public console_bridge::OutputHandler {
+ public:
+  CapturedMessages() : previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
+  CapturedMessages(const CapturedMessages&) = delete;
+  CapturedMessages& operator=(const CapturedMessages&) = delete;
+  ~CapturedMessages() override { console_bridge::useOutputHandler(previous_); }
+  void log(const std::string& words, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ += (text_.empty() ? "" : "; ") + words;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  console_bridge::OutputHandler* previous_;
+  std::string text_;
+};
+
+urdf::ModelInterfaceSharedPtr parse_model(const std::string& text, const std::string& where) {
+  static std::mutex one_at_a_time;  // console_bridge has one handler for the whole process
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  CapturedMessages messages;
+  urdf::ModelInterfaceSharedPtr model;
+  std::string thrown;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& e) {  // e.g. two root links
+    thrown = e.what();
+  }
+  if (!model || !model->getRoot())
+    refuse("not a valid URDF tree: " + (messages.text().empty() ? thrown : messages.text()), where, "mend the named element");
+  return model;
+}
+
+Pose pose_of(const urdf::Pose& pose) {
+  Pose X = Pose::Identity();
+  const auto& q = pose.rotation;
+  X.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  X.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
+  return X;
+}
+
+double unlimited_as_infinite(double limit) {
+  return std::abs(limit) >= kUnlimited ? std::copysign(std::numeric_limits<double>::infinity(), limit) : limit;
+}
+
+DriveLimits limits_of(const urdf::Joint& joint) {
+  DriveLimits limits;
+  if (!joint.limits) return limits;
+  if (joint.type != urdf::Joint::CONTINUOUS) {
+    limits.lower = unlimited_as_infinite(joint.limits->lower);
+    limits.upper = unlimited_as_infinite(joint.limits->upper);
+  }
+  limits.effort = unlimited_as_infinite(joint.limits->effort);
+  limits.velocity = unlimited_as_infinite(joint.limits->velocity);
+  return limits;
+}
+
+/// Walks down from a link whose place is known.
+void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree) {
+  const LinkPlace here = tree.links.at(link.name);
+  for (const auto& joint : link.child_joints) {
+    const auto child = [&] {
+      for (const auto& other : link.child_links)
+        if (other->name == joint->child_link_name) return other;
+      return urdf::LinkSharedPtr();
+    }();
+    if (!child) refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "");
+    const Pose X_BJ = here.X_BL * pose_of(joint->parent_to_joint_origin_transform);
+    if (joint->type == urdf::Joint::FIXED) {
+      tree.links[child->name] = {here.body, X_BJ};
+      tree.bodies[static_cast<std::size_t>(here.body)].links.push_back(child->name);
+    } else {
+      const int line = facts.joint_lines.at(joint->name);
+      const bool prismatic = joint->type == urdf::Joint::PRISMATIC;
+      if (!prismatic && joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS)
+        refuse("the joint is neither revolute, continuous, prismatic nor fixed",
+               fmt::format("{}, line {}, joint {}", tree.where, line, joint->name), "a Delta's tree has no other joints");
+      const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
+      if (!(axis.norm() > 1e-9))
+        refuse("the axis has no direction", fmt::format("{}, line {}, joint {}", tree.where, line, joint->name),
+               "write a unit vector");
+      const int body = static_cast<int>(tree.bodies.size());
+      tree.bodies[static_cast<std::size_t>(here.body)].joints.push_back(static_cast<int>(tree.joints.size()));
+      Joint moving;
+      moving.name = joint->name;
+      moving.line = line;
+      moving.prismatic = prismatic;
+      moving.parent = here.body;
+      moving.child = body;
+      moving.X_PJ = X_BJ;
+      // A unit vector stays as written, to the last digit.
+      moving.axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized());
+      moving.mimic = joint->mimic != nullptr;
+      moving.limits = limits_of(*joint);
+      tree.joints.push_back(moving);
+      tree.bodies.push_back({child->name, {}, {child->name}});
+      tree.links[child->name] = {body, Pose::Identity()};
+    }
+    add_children(*child, facts, tree);
+  }
+}
+
+void read_extension(const XMLElement* robot, UrdfTree& tree) {
+  const XMLElement* extension = robot->FirstChildElement("deltadyn");
+  if (extension == nullptr) return;
+  tree.extension_line = extension->GetLineNum();
+  const std::string place = at(tree.where, extension);
+  if (const char* version = extension->Attribute("version"); version != nullptr && std::string(version) != "1")
+    refuse(fmt::format("version {} of <deltadyn> is not known", version), place, "use a newer deltadyn");
+  if (const char* type = extension->Attribute("type")) tree.declared_type = type;
+  if (const XMLElement* gravity = extension->FirstChildElement("gravity")) {
+    const std::string there = at(tree.where, gravity);
+    tree.gravity = parse_vector(attribute(gravity, "xyz_m_s2", there), there, "xyz_m_s2");
+  }
+  for (auto* drive = extension->FirstChildElement("drive"); drive != nullptr; drive = drive->NextSiblingElement("drive")) {
+    DriveNote note;
+    note.line = drive->GetLineNum();
+    for (auto* entry = drive->FirstAttribute(); entry != nullptr; entry = entry->Next())
+      note.attributes[entry->Name()] = entry->Value();
+    tree.drives.push_back(std::move(note));
+  }
+}
+
+void read_loops(const XMLElement* robot, UrdfTree& tree) {
+  for (auto* element = robot->FirstChildElement("loop"); element != nullptr; element = element->NextSiblingElement("loop")) {
+    const std::string place = at(tree.where, element);
+    Loop loop;
+    loop.name = attribute(element, "name", place);
+    loop.type = attribute(element, "type", place);
+    loop.line = element->GetLineNum();
+    loop.predecessor = loop_end(element, "predecessor", tree.where);
+    loop.successor = loop_end(element, "successor", tree.where);
+    for (const LoopEnd* end : {&loop.predecessor, &loop.successor})
+      if (tree.links.count(end->link) == 0)
+        refuse(fmt::format("unknown link '{}'", end->link), place, "mend the name of the link");
+    if (const XMLElement* axis = element->FirstChildElement("axis"))
+      loop.axis = parse_vector(attribute(axis, "xyz", place), place, "xyz").normalized();
+    tree.loops.push_back(std::move(loop));
+  }
+  if (auto* coupling = robot->FirstChildElement("coupling"))
+    refuse("a <coupling> ties two joints, which no robot of a known type has", at(tree.where, coupling),
+           "remove the coupling, the loops hold the plate already");
+}
+
+}  // namespace
+
+double parse_number(const std::string& text, const std::string& where, const std::string& attribute_name) {
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;  // from_chars does not take a leading plus
+  double value = 0;
+  const auto [stop, code] = std::from_chars(begin, end, value);
+  if (code != std::errc() || stop != end || !std::isfinite(value))
+    refuse(fmt::format("attribute {} holds '{}', which is not a finite number", attribute_name, text), where, "write a decimal number");
+  return value;
+}
+
+UrdfTree parse_urdf_tree(const std::string& text, const std::string& where) {
+  tinyxml2::XMLDocument document;
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    refuse("the file is empty", where, "give a URDF robot file, e.g. one of delta-model create");
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    refuse(fmt::format("not well-formed XML ({})", document.ErrorName()), fmt::format("{}, line {}", where, document.ErrorLineNum()),
+           "give a URDF robot file, e.g. one of delta-model create");
+  const XMLElement* robot = document.RootElement();
+  if (robot == nullptr || std::string(robot->Name()) != "robot")
+    refuse(fmt::format("the root element is <{}>, but a URDF starts with <robot>", robot == nullptr ? "" : robot->Name()), where,
+           "give a URDF robot file, e.g. one of delta-model create");
+  const XmlFacts facts = check_xml(robot, where);
+  const urdf::ModelInterfaceSharedPtr model = parse_model(text, where);
+
+  UrdfTree tree;
+  tree.name = model->getName();
+  tree.where = where;
+  const auto root = model->getRoot();
+  tree.bodies.push_back({root->name, {}, {root->name}});
+  tree.links[root->name] = {0, Pose::Identity()};
+  add_children(*root, facts, tree);
+  read_loops(robot, tree);
+  read_extension(robot, tree);
+  return tree;
+}
+
+}  // namespace deltadyn::robot_file

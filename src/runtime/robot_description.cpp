@@ -1,0 +1,138 @@
+#include "deltadyn/runtime/robot_description.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnitTolerance = 1e-9;  // a unit vector read from text may be off in the last digits
+
+struct TypeRule {
+  const char* name;
+  std::size_t limbs;
+  bool plate, telescope;
+};
+
+constexpr TypeRule kRules[] = {{"delta3", 3, true, false},
+                               {"linear-delta3", 3, true, false},
+                               {"delta4", 3, true, true},
+                               {"axis", 1, false, false}};
+
+[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(what, where, mend);
+}
+
+const TypeRule& rule_of(const std::string& type, const std::string& where) {
+  for (const TypeRule& rule : kRules)
+    if (type == rule.name) return rule;
+  if (type == "h4" || type == "i4" || type == "par4")
+    refuse(fmt::format("robots of type '{}' are not supported yet", type), where,
+           "use one of delta3, linear-delta3, delta4, axis");
+  refuse(fmt::format("'{}' is not a robot type", type), where, "use one of delta3, linear-delta3, delta4, axis");
+}
+
+void require_finite(const Vector3<double>& v, const std::string& what, const std::string& where) {
+  if (!v.allFinite()) refuse(what + " holds a number that is not finite", where, "give three finite numbers");
+}
+
+void require_positive(double value, const std::string& what, const std::string& where) {
+  if (!(std::isfinite(value) && value > 0))
+    refuse(fmt::format("{} is {} m, but must be positive", what, value), where, "give a positive length in metres");
+}
+
+void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind,
+                   const std::string& where) {
+  const std::string name = fmt::format("limb {}", number);
+  if (!std::isfinite(limb.azimuth)) refuse(name + ": the azimuth is not finite", where, "give an angle in radians");
+  require_finite(limb.p_WD, name + ": the place of the drive", where);
+  require_finite(limb.p_DE_0, name + ": the place of the elbow", where);
+  require_finite(limb.axis_L, name + ": the axis of the drive", where);
+  require_finite(limb.p_BA, name + ": the attachment on the plate", where);
+  if (kind == DriveKind::revolute) {
+    if (!limb.axis_L.isApprox(Vector3<double>::UnitY(), kUnitTolerance))
+      refuse(fmt::format("{}: a revolute drive turns about +y of its limb frame, not about ({}, {}, {})", name,
+                         limb.axis_L.x(), limb.axis_L.y(), limb.axis_L.z()),
+             where, "turn the limb by its azimuth instead");
+    if (plate) require_positive(limb.p_DE_0.x(), name + ": the length of the upper arm", where);
+    if (limb.p_DE_0.tail<2>().norm() > kUnitTolerance || limb.p_DE_0.x() < 0)
+      refuse(name + ": the elbow of a revolute drive lies on +x of the upper arm at angle 0", where,
+             "an angle of 0 is horizontal outwards; put an offset into the drive's zero");
+  } else if (std::abs(limb.axis_L.norm() - 1) > kUnitTolerance) {
+    refuse(fmt::format("{}: the axis of the drive has length {}, but must be a unit vector", name, limb.axis_L.norm()), where,
+           "divide the axis by its length");
+  }
+  if (!plate) return;
+  require_positive(limb.strut, name + ": the strut length", where);
+  require_positive(limb.strut_spacing, name + ": the distance of the two struts", where);
+  if (limb.elbow != 1 && limb.elbow != -1)
+    refuse(fmt::format("{}: the elbow posture is {}, but must be +1 or -1", name, limb.elbow), where,
+           "+1 is the elbow outwards or the carriage behind the plate, -1 the other posture");
+  if (limb.part != 0) refuse(fmt::format("{}: there is no plate part {}", name, limb.part), where, "a Delta's plate has one part, 0");
+}
+
+void validate_limits(const DriveLimits& limits, std::size_t number, const std::string& where) {
+  const std::string name = fmt::format("drive {}", number);
+  if (!(limits.lower < limits.upper))
+    refuse(fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper),
+           where, "swap or mend the limits");
+  const auto positive = [&](double value, const char* what) {
+    if (!(value > 0)) refuse(fmt::format("{}: the {} limit is {}, but must be positive", name, what, value), where, "");
+  };
+  positive(limits.velocity, "velocity");
+  positive(limits.acceleration, "acceleration");
+  positive(limits.effort, "effort");
+}
+
+}  // namespace
+
+DriveLimits::DriveLimits()
+    : lower(-kInfinity), upper(kInfinity), velocity(kInfinity), acceleration(kInfinity), effort(kInfinity) {}
+
+void RobotDescription::validate(const std::string& where) const {
+  const TypeRule& rule = rule_of(type, where);
+  if (limbs.size() != rule.limbs)
+    refuse(fmt::format("a robot of type {} has {} limb{}, but this one has {}", type, rule.limbs, rule.limbs == 1 ? "" : "s",
+                       limbs.size()),
+           where, "check the drives that hang on the base");
+  if (type != "axis" && (drive_kind == DriveKind::prismatic) != (type == "linear-delta3"))
+    refuse(fmt::format("the drives of a {} are {}", type, type == "linear-delta3" ? "prismatic" : "revolute"), where,
+           "use type linear-delta3 for prismatic drives, delta3 or delta4 for revolute ones");
+  if (parts.size() != (rule.plate ? 1U : 0U))
+    refuse(fmt::format("the plate of a {} has {} part, but this one has {}", type, rule.plate ? "one" : "no", parts.size()),
+           where, "");
+  for (const PlatePart<double>& part : parts) {
+    // All coefficients at once: NaN fails the comparison, too.
+    if (!(part.c.norm() + part.a.norm() + part.b.norm() + std::abs(part.kappa) <= 0))
+      refuse(fmt::format("the plate of a {} neither turns nor has an offset of its own", type), where,
+             "put the offset into the attachments of the limbs");
+  }
+  if (telescope.has_value() != rule.telescope)
+    refuse(fmt::format("a {} has {} telescope bar", type, rule.telescope ? "a" : "no"), where,
+           "delta4 is the type with a telescope bar");
+  if (telescope) {
+    require_finite(telescope->p_WU, "telescope: the upper joint", where);
+    require_finite(telescope->p_BV, "telescope: the lower joint", where);
+  }
+  if (limits.size() != limbs.size() + (telescope ? 1U : 0U))
+    refuse(fmt::format("{} drives, but limits for {}", limbs.size() + (telescope ? 1U : 0U), limits.size()), where,
+           "give one set of limits for each drive");
+  require_finite(gravity, "gravity", where);
+  for (std::size_t i = 0; i < limbs.size(); ++i) validate_limb(limbs[i], i + 1, rule.plate, drive_kind, where);
+  for (std::size_t i = 0; i < limits.size(); ++i) validate_limits(limits[i], i + 1, where);
+  if (rule.plate) {
+    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones leave it loose.
+    double spread = 0;
+    for (const auto& limb : limbs) spread = std::max(spread, std::abs(std::sin(limb.azimuth - limbs[0].azimuth)));
+    if (spread < 1e-6)
+      refuse("all parallelograms lie in the same direction, so the plate could turn", where,
+             "give the limbs different azimuths, e.g. 0, 120 and 240 degrees");
+  }
+}
+
+}  // namespace deltadyn

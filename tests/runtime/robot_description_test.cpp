@@ -1,0 +1,140 @@
+#include "deltadyn/runtime/robot_description.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+RobotDescription delta(const std::string& type) {
+  RobotDescription robot;
+  robot.name = type;
+  robot.type = type;
+  robot.drive_kind = type == "linear-delta3" ? DriveKind::prismatic : DriveKind::revolute;
+  for (int i = 0; i < 3; ++i) {
+    LimbGeometry<double> limb;
+    limb.azimuth = 2.0 * i;
+    limb.strut = 1;
+    if (robot.drive_kind == DriveKind::prismatic) {
+      limb.axis_L = -Vector3<double>::UnitZ();
+    } else {
+      limb.p_DE_0.x() = 0.4;
+    }
+    robot.limbs.push_back(limb);
+    robot.limits.emplace_back();
+  }
+  robot.parts.emplace_back();
+  if (type == "delta4") {
+    robot.telescope.emplace();
+    robot.limits.emplace_back();
+  }
+  return robot;
+}
+
+RobotDescription axis(DriveKind kind) {
+  RobotDescription robot;
+  robot.type = "axis";
+  robot.drive_kind = kind;
+  robot.limbs.emplace_back();
+  if (kind == DriveKind::prismatic) robot.limbs[0].axis_L = Vector3<double>::UnitX();
+  robot.limits.emplace_back();
+  return robot;
+}
+
+TEST(DriveLimits, AreUnlimitedUnlessGiven) {
+  const DriveLimits limits;
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(limits.lower, -infinity);
+  EXPECT_EQ(limits.upper, infinity);
+  EXPECT_EQ(limits.velocity, infinity);
+  EXPECT_EQ(limits.acceleration, infinity);
+  EXPECT_EQ(limits.effort, infinity);
+}
+
+TEST(RobotDescription, GoodOnesPass) {
+  for (const char* type : {"delta3", "linear-delta3", "delta4"}) EXPECT_NO_THROW(delta(type).validate("r")) << type;
+  EXPECT_NO_THROW(axis(DriveKind::revolute).validate("r"));
+  EXPECT_NO_THROW(axis(DriveKind::prismatic).validate("r"));
+}
+
+TEST(RobotDescription, CountsAndKindsOfDrives) {
+  const RobotDescription robot = delta("delta4");
+  EXPECT_EQ(robot.drives(), 4);
+  EXPECT_EQ(robot.kind_of_drive(3), DriveKind::revolute);
+  EXPECT_EQ(delta("linear-delta3").kind_of_drive(0), DriveKind::prismatic);
+}
+
+struct Fault {
+  const char* name;
+  const char* type;
+  std::function<void(RobotDescription&)> spoil;
+  const char* says;
+  friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+};
+
+class FaultyDescription : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(FaultyDescription, IsRefusedInPlainWords) {
+  RobotDescription robot = delta(GetParam().type);
+  GetParam().spoil(robot);
+  try {
+    robot.validate("robot.urdf");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "robot.urdf");
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_THAT(error.problem(), HasSubstr(GetParam().says));
+  }
+}
+
+const Fault kFaults[] = {
+    {"UnknownType", "delta3", [](auto& r) { r.type = "scara"; }, "'scara' is not a robot type"},
+    {"LaterType", "delta3", [](auto& r) { r.type = "par4"; }, "not supported yet"},
+    {"TwoLimbs", "delta3", [](auto& r) { r.limbs.pop_back(); }, "has 3 limbs, but this one has 2"},
+    {"Kind", "delta3", [](auto& r) { r.drive_kind = DriveKind::prismatic; }, "drives of a delta3 are revolute"},
+    {"NoPlate", "delta3", [](auto& r) { r.parts.clear(); }, "plate"},
+    {"PlateTurns", "delta3", [](auto& r) { r.parts[0].kappa = 1; }, "neither turns"},
+    {"PlateNaN", "delta3", [](auto& r) { r.parts[0].c.x() = kNaN; }, "neither turns"},
+    {"NoTelescope", "delta4", [](auto& r) { r.telescope.reset(); }, "has a telescope bar"},
+    {"Telescope", "delta3", [](auto& r) { r.telescope.emplace(); }, "has no telescope bar"},
+    {"TelescopeNaN", "delta4", [](auto& r) { r.telescope->p_BV.z() = kNaN; }, "lower joint"},
+    {"LimitCount", "delta4", [](auto& r) { r.limits.pop_back(); }, "4 drives, but limits for 3"},
+    {"Gravity", "delta3", [](auto& r) { r.gravity.x() = kNaN; }, "gravity"},
+    {"Azimuth", "delta3", [](auto& r) { r.limbs[1].azimuth = kNaN; }, "limb 2: the azimuth"},
+    {"Axis", "delta3", [](auto& r) { r.limbs[0].axis_L = Vector3<double>::UnitZ(); }, "+y of its limb frame"},
+    {"AxisLength", "linear-delta3", [](auto& r) { r.limbs[2].axis_L *= 2; }, "limb 3: the axis of the drive has length 2"},
+    {"ArmNegative", "delta3", [](auto& r) { r.limbs[0].p_DE_0.x() = -0.1; }, "length of the upper arm"},
+    {"ArmZero", "delta3", [](auto& r) { r.limbs[0].p_DE_0.x() = 0; }, "length of the upper arm"},
+    {"ArmTilted", "delta3", [](auto& r) { r.limbs[0].p_DE_0.z() = 0.1; }, "+x of the upper arm"},
+    {"Strut", "delta3", [](auto& r) { r.limbs[2].strut = 0; }, "limb 3: the strut length is 0"},
+    {"StrutInfinite", "delta3", [](auto& r) { r.limbs[2].strut = std::numeric_limits<double>::infinity(); }, "strut length"},
+    {"Spacing", "delta3", [](auto& r) { r.limbs[1].strut_spacing = -1; }, "distance of the two struts"},
+    {"Elbow", "delta3", [](auto& r) { r.limbs[1].elbow = 0; }, "elbow posture"},
+    {"Part", "delta3", [](auto& r) { r.limbs[1].part = 1; }, "plate part 1"},
+    {"Attachment", "delta3", [](auto& r) { r.limbs[1].p_BA.y() = kNaN; }, "attachment"},
+    {"Limits", "delta3", [](auto& r) { r.limits[1].lower = 1, r.limits[1].upper = -1; }, "drive 2: the lower position limit"},
+    {"Velocity", "delta3", [](auto& r) { r.limits[2].velocity = 0; }, "drive 3: the velocity limit"},
+    {"Effort", "delta3", [](auto& r) { r.limits[2].effort = kNaN; }, "effort limit"},
+    {"Acceleration", "delta3", [](auto& r) { r.limits[2].acceleration = -1; }, "acceleration limit"},
+    {"ParallelLimbs", "delta3",
+     [](auto& r) {
+       for (auto& limb : r.limbs) limb.azimuth = 1;
+     },
+     "the plate could turn"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Table, FaultyDescription, ::testing::ValuesIn(kFaults),
+                         [](const auto& entry) { return std::string(entry.param.name); });
+
+}  // namespace
+}  // namespace deltadyn
