@@ -16,10 +16,15 @@ struct Log {
   Eigen::MatrixXd qd;       ///< N x drives or empty [rad/s | m/s]
   Eigen::MatrixXd qdd;      ///< N x drives or empty [rad/s^2 | m/s^2]
   Eigen::MatrixXd tau;      ///< N x drives [N m | N]; empty if the file holds a motion only
+  std::vector<long> line;   ///< line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
+  std::vector<char> filled;        ///< 1 where values were filled in: leave these samples out of a fit; empty: none
   std::vector<std::string> notes;  ///< what the reader repaired or wants to say, with line numbers
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
   [[nodiscard]] Eigen::Index drives() const { return q.cols(); }
+  [[nodiscard]] bool is_filled(Eigen::Index sample) const {
+    return !filled.empty() && filled[static_cast<std::size_t>(sample)] != 0;
+  }
   [[nodiscard]] double sample_time_s() const {
     return samples() < 2 ? 0.0 : (t_s(samples() - 1) - t_s(0)) / static_cast<double>(samples() - 1);
   }

@@ -1,0 +1,58 @@
+#pragma once
+
+/// \file
+/// Parameter files: `name,value,unit` and, where known, `std,prior,data_share`.
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace deltadyn {
+
+/// One row. std, prior and data_share are NaN where the file does not give them.
+struct ParameterEntry {
+  std::string name;  ///< e.g. "upper_arm.m", "strut3.Ixx", "drive1.viscous"
+  double value = 0.0;
+  std::string unit;  ///< of value, std and prior, e.g. "kg*m^2"
+  double std = std::numeric_limits<double>::quiet_NaN();
+  double prior = std::numeric_limits<double>::quiet_NaN();
+  double data_share = std::numeric_limits<double>::quiet_NaN();  ///< 0 from the prior, 1 from the data
+  long line = 0;                                                 ///< in the file; 0 if not read from one
+};
+
+struct ParameterTable {
+  std::string file;  ///< where it came from, for messages
+  std::vector<ParameterEntry> entries;
+
+  /// Null if there is no such name.
+  [[nodiscard]] const ParameterEntry* find(const std::string& name) const;
+};
+
+/// Throws Error(bad_input) with file, line and column: missing file, no rows, a name twice, an empty name, no number, a unit that
+/// does not fit the name, a negative std, a data_share outside [0, 1].
+[[nodiscard]] ParameterTable read_parameters(const std::string& path);
+
+/// Writes the table; the columns std, prior and data_share appear if any row has them. Numbers read back exactly.
+/// Throws Error(bad_input) if the disk is full; then nothing is left behind.
+void write_parameters(const std::string& path, const ParameterTable& table);
+
+/// The wanted parameters in order, with what is worth telling.
+struct ParameterMatch {
+  Eigen::VectorXd value, std, prior, data_share;  ///< std, prior, data_share: NaN where not known
+  std::vector<std::string> missing;               ///< wanted names that the table lacks; their value is 0
+  std::vector<std::string> warnings;              ///< rows of the table that nobody wanted, with their line
+};
+
+/// Finds each name in the table. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
+/// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only the units' plausibility was checked on reading
+/// Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs' own values where
+/// the shared one is wanted.
+[[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
+                                              const std::vector<std::string>& units = {});
+
+/// match_parameters(table, names, units).value
+[[nodiscard]] Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& units = {});
+
+}  // namespace deltadyn

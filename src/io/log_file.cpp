@@ -1,0 +1,228 @@
+#include "deltadyn/io/log_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cctype>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "deltadyn/io/csv.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+enum class Quantity { q, qd, qdd, tau };
+
+struct Spelling {
+  const char* suffix;
+  double factor;  ///< to SI
+};
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;
+
+const char* prefix_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::q: return "q";
+    case Quantity::qd: return "qd";
+    case Quantity::qdd: return "qdd";
+    case Quantity::tau: return "tau";
+  }
+  return "";
+}
+
+/// Accepted units, the SI one first.
+std::vector<Spelling> spellings(Quantity quantity, DriveKind kind) {
+  const bool turns = kind == DriveKind::revolute;
+  switch (quantity) {
+    case Quantity::q: return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kDegree}} : std::vector<Spelling>{{"_m", 1.0}};
+    case Quantity::qd:
+      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kDegree}, {"_rpm", kRpm}} : std::vector<Spelling>{{"_m_s", 1.0}};
+    case Quantity::qdd:
+      return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
+    case Quantity::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
+  }
+  return {};
+}
+
+std::string si_name(Quantity quantity, DriveKind kind, int drive) {
+  return fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spellings(quantity, kind).front().suffix);
+}
+
+struct Source {
+  std::size_t column;
+  double factor;
+};
+
+std::optional<Source> find_source(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
+  for (const Spelling& spelling : spellings(quantity, kind)) {
+    if (const auto column = reader.find(fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spelling.suffix))) {
+      return Source{*column, spelling.factor};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Lower case without separators, so that "Q1", "q_1" and "q1" are alike.
+std::string simplified(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return result;
+}
+
+/// Columns that the user may have meant: those that begin with "q1" but not with "q10".
+std::vector<std::string> similar_columns(const CsvReader& reader, const std::string& stem) {
+  std::vector<std::string> found;
+  for (const std::string& name : reader.columns()) {
+    const std::string plain = simplified(name);
+    const bool begins = plain.compare(0, stem.size(), stem) == 0;
+    const bool other_number = plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
+    if (begins && !other_number) found.push_back(name);
+  }
+  return found;
+}
+
+[[noreturn]] void refuse_missing(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
+  const std::string wanted = si_name(quantity, kind, drive);
+  const std::string stem = fmt::format("{}{}", prefix_of(quantity), drive + 1);
+  const auto similar = similar_columns(reader, stem);
+  if (similar.empty()) {
+    throw Error(fmt::format("the column {} is missing; the file has {}", wanted, fmt::join(reader.columns(), ", ")), reader.path(),
+                fmt::format("add the column {}, or give the robot file that fits the log", wanted));
+  }
+  const DriveKind other = kind == DriveKind::revolute ? DriveKind::prismatic : DriveKind::revolute;
+  std::string why;
+  for (const Spelling& spelling : spellings(quantity, other)) {
+    if (similar.front() == stem + spelling.suffix) {
+      why = fmt::format(", which is for a {} drive, but drive {} of the robot is {}",
+                        other == DriveKind::revolute ? "revolute" : "prismatic", drive + 1,
+                        kind == DriveKind::revolute ? "revolute" : "prismatic");
+    }
+  }
+  std::vector<std::string> accepted;
+  for (const Spelling& spelling : spellings(quantity, kind)) accepted.push_back(stem + spelling.suffix);
+  throw Error(fmt::format("the column {} is missing; the file has {}{}", wanted, fmt::join(similar, ", "), why), reader.path(),
+              why.empty() ? fmt::format("name the column {}", fmt::join(accepted, " or "))
+                          : std::string("give the robot file that fits the log, or correct the unit in the column's name"));
+}
+
+/// Sources of one quantity for all drives; empty if a drive lacks it and it is not needed.
+std::vector<Source> sources(const CsvReader& reader, const RobotDescription& robot, Quantity quantity, bool needed,
+                            std::vector<std::string>& notes) {
+  std::vector<Source> result;
+  std::string missing;
+  for (int drive = 0; drive < robot.drives(); ++drive) {
+    const DriveKind kind = robot.kind_of_drive(drive);
+    if (const auto source = find_source(reader, quantity, kind, drive)) {
+      result.push_back(*source);
+    } else if (needed) {
+      refuse_missing(reader, quantity, kind, drive);
+    } else if (missing.empty()) {
+      missing = si_name(quantity, kind, drive);
+    }
+  }
+  if (missing.empty()) return result;
+  if (!result.empty()) {
+    notes.push_back(fmt::format("{}: {} is missing, so the {} columns of the other drives are not used", reader.path(), missing,
+                                prefix_of(quantity)));
+  }
+  return {};
+}
+
+std::size_t time_column(const CsvReader& reader) {
+  if (const auto column = reader.find("t_s")) return *column;
+  const auto similar = similar_columns(reader, "t");
+  std::vector<std::string> times;
+  for (const auto& name : similar) {
+    if (simplified(name).compare(0, 3, "tau") != 0) times.push_back(name);
+  }
+  if (times.empty()) times = reader.columns();
+  throw Error(fmt::format("the column t_s is missing; the file has {}", fmt::join(times, ", ")), reader.path(),
+              "add the time in seconds as column t_s");
+}
+
+}  // namespace
+
+Log read_log(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  CsvReader reader(path);
+  Log log;
+  log.file = path;
+  const std::size_t time = time_column(reader);
+  struct Block {
+    std::vector<Source> from;
+    Eigen::MatrixXd* to;
+  };
+  const Block blocks[] = {
+      {sources(reader, robot, Quantity::q, true, log.notes), &log.q},
+      {sources(reader, robot, Quantity::qd, options.need_derivatives, log.notes), &log.qd},
+      {sources(reader, robot, Quantity::qdd, options.need_derivatives, log.notes), &log.qdd},
+      {sources(reader, robot, Quantity::tau, options.need_torque, log.notes), &log.tau},
+  };
+  if (const auto extra = find_source(reader, Quantity::q, DriveKind::revolute, robot.drives())) {
+    log.notes.push_back(fmt::format("{}: the robot {} has {} drives, the column {} is not used", path, robot.type, robot.drives(),
+                                    reader.columns()[extra->column]));
+  }
+
+  std::vector<double> values;  // row after row
+  std::size_t width = 1;
+  for (const Block& block : blocks) width += block.from.size();
+  while (reader.next_row()) {
+    log.line.push_back(reader.line());
+    values.push_back(reader.number_or_nan(time));
+    for (const Block& block : blocks) {
+      for (const Source& source : block.from) values.push_back(reader.number_or_nan(source.column) * source.factor);
+    }
+  }
+  if (log.line.empty()) throw Error("the file holds a header but no data rows", path, "check that the recording is complete");
+
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> table(values.data(), static_cast<Eigen::Index>(log.line.size()),
+                                         static_cast<Eigen::Index>(width));
+  log.t_s = table.col(0);
+  Eigen::Index column = 1;
+  for (const Block& block : blocks) {
+    const auto count = static_cast<Eigen::Index>(block.from.size());
+    if (count > 0) *block.to = table.middleCols(column, count);
+    column += count;
+  }
+  if (options.check) check_and_repair(log, robot, options.checks);
+  return log;
+}
+
+void write_log(const std::string& path, const Log& log, const RobotDescription& robot) {
+  const std::pair<Quantity, const Eigen::MatrixXd*> blocks[] = {
+      {Quantity::q, &log.q}, {Quantity::qd, &log.qd}, {Quantity::qdd, &log.qdd}, {Quantity::tau, &log.tau}};
+  std::string text = "t_s";
+  for (const auto& [quantity, block] : blocks) {
+    for (int drive = 0; drive < block->cols(); ++drive) text += "," + si_name(quantity, robot.kind_of_drive(drive), drive);
+  }
+  text += '\n';
+  OutputFile file(path);
+  constexpr std::size_t kChunk = 1 << 16;
+  for (Eigen::Index row = 0; row < log.samples(); ++row) {
+    fmt::format_to(std::back_inserter(text), "{}", log.t_s(row));
+    for (const auto& [quantity, block] : blocks) {
+      for (Eigen::Index drive = 0; drive < block->cols(); ++drive) {
+        fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, drive));
+      }
+    }
+    text += '\n';
+    if (text.size() >= kChunk) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,216 @@
+#include "deltadyn/io/parameter_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "deltadyn/io/csv.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+/// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
+std::string canonical_unit(const std::string& unit) {
+  std::string result;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit.compare(i, 2, "²") == 0) {
+      result += '2';
+      ++i;
+    } else if (unit.compare(i, 2, "·") == 0) {
+      ++i;
+    } else if (unit[i] != ' ' && unit[i] != '*' && unit[i] != '^' && unit[i] != '(' && unit[i] != ')') {
+      result += unit[i];
+    }
+  }
+  const auto angle = result.find("/rad");
+  if (angle != std::string::npos) result.erase(angle, 4);
+  return result;
+}
+
+/// Units that fit the part of the name behind the dot; empty if the name is not one we know.
+std::vector<std::string> plausible_units(const std::string& name) {
+  const auto dot = name.rfind('.');
+  const std::string quantity = dot == std::string::npos ? name : name.substr(dot + 1);
+  if (quantity == "m") return {"kg"};
+  if (quantity == "mcx" || quantity == "mcy" || quantity == "mcz") return {"kg*m"};
+  for (const char* inertia : {"Ixx", "Iyy", "Izz", "Ixy", "Iyz", "Ixz"}) {
+    if (quantity == inertia) return {"kg*m^2"};
+  }
+  if (quantity == "viscous") return {"N*m*s/rad", "N*s/m"};
+  if (quantity == "coulomb" || quantity == "offset") return {"N*m", "N"};
+  if (quantity == "rotor_inertia") return {"kg*m^2", "kg"};
+  return {};
+}
+
+bool same_unit(const std::string& a, const std::string& b) { return canonical_unit(a) == canonical_unit(b); }
+
+/// "upper_arm2.m" -> "upper_arm.m"; empty if the name is not one of a single limb.
+std::string shared_name(const std::string& name) {
+  for (const std::string body : {"upper_arm", "strut"}) {
+    if (name.compare(0, body.size(), body) != 0) continue;
+    const auto dot = name.find('.');
+    if (dot == std::string::npos || dot == body.size()) return {};
+    const bool number = std::all_of(name.begin() + static_cast<std::ptrdiff_t>(body.size()),
+                                    name.begin() + static_cast<std::ptrdiff_t>(dot),
+                                    [](unsigned char c) { return std::isdigit(c) != 0; });
+    return number ? body + name.substr(dot) : std::string();
+  }
+  return {};
+}
+
+}  // namespace
+
+const ParameterEntry* ParameterTable::find(const std::string& name) const {
+  const auto found = std::find_if(entries.begin(), entries.end(), [&](const ParameterEntry& entry) { return entry.name == name; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+ParameterTable read_parameters(const std::string& path) {
+  const CsvTable csv = read_csv(path);
+  const std::size_t name_column = csv.require("name");
+  const std::size_t value_column = csv.require("value");
+  const std::size_t unit_column = csv.require("unit");
+  const auto std_column = csv.find("std");
+  const auto prior_column = csv.find("prior");
+  const auto share_column = csv.find("data_share");
+  // What is not known is an empty field.
+  const auto optional_number = [&](std::size_t row, std::optional<std::size_t> column) {
+    if (!column || csv.text(row, *column).empty()) return std::numeric_limits<double>::quiet_NaN();
+    return csv.number(row, *column);
+  };
+
+  ParameterTable table;
+  table.file = path;
+  std::unordered_map<std::string, long> seen;
+  for (std::size_t row = 0; row < csv.rows(); ++row) {
+    ParameterEntry entry;
+    entry.line = csv.line(row);
+    entry.name = csv.text(row, name_column);
+    entry.unit = csv.text(row, unit_column);
+    if (entry.name.empty()) throw Error("the name is empty", place(path, entry.line, "name"), "name the parameter or remove the row");
+    const auto [first, fresh] = seen.emplace(entry.name, entry.line);
+    if (!fresh) {
+      throw Error(fmt::format("the parameter {} was already given in line {}", entry.name, first->second),
+                  place(path, entry.line, "name"), "keep one of the two rows");
+    }
+    entry.value = csv.number(row, value_column);
+    entry.std = optional_number(row, std_column);
+    entry.prior = optional_number(row, prior_column);
+    entry.data_share = optional_number(row, share_column);
+    const auto units = plausible_units(entry.name);
+    if (!units.empty() && std::none_of(units.begin(), units.end(), [&](const auto& unit) { return same_unit(unit, entry.unit); })) {
+      throw Error(fmt::format("the unit '{}' does not fit {}", entry.unit, entry.name), place(path, entry.line, "unit"),
+                  fmt::format("give the value in {}", fmt::join(units, " or ")));
+    }
+    if (entry.std < 0) {
+      throw Error(fmt::format("the standard deviation of {} is negative", entry.name), place(path, entry.line, "std"),
+                  "leave the field empty if it is not known");
+    }
+    if (entry.data_share < 0 || entry.data_share > 1) {
+      throw Error(fmt::format("the data_share of {} is outside 0 to 1", entry.name), place(path, entry.line, "data_share"),
+                  "leave the field empty if it is not known");
+    }
+    table.entries.push_back(std::move(entry));
+  }
+  return table;
+}
+
+void write_parameters(const std::string& path, const ParameterTable& table) {
+  struct Extra {
+    const char* column;
+    double ParameterEntry::*member;
+    bool used;
+  };
+  std::array<Extra, 3> extras = {
+      {{"std", &ParameterEntry::std, false}, {"prior", &ParameterEntry::prior, false}, {"data_share", &ParameterEntry::data_share, false}}};
+  for (Extra& extra : extras) {
+    extra.used = std::any_of(table.entries.begin(), table.entries.end(),
+                             [&](const ParameterEntry& entry) { return !std::isnan(entry.*extra.member); });
+  }
+  std::string text = "name,value,unit";
+  for (const Extra& extra : extras) {
+    if (extra.used) text += fmt::format(",{}", extra.column);
+  }
+  text += '\n';
+  for (const ParameterEntry& entry : table.entries) {
+    if (!std::isfinite(entry.value)) {
+      throw Error(fmt::format("the value of {} is not finite", entry.name), path, "", ExitCode::no_convergence);
+    }
+    fmt::format_to(std::back_inserter(text), "{},{},{}", entry.name, entry.value, entry.unit);
+    for (const Extra& extra : extras) {
+      if (!extra.used) continue;
+      text += ',';
+      if (std::isfinite(entry.*extra.member)) fmt::format_to(std::back_inserter(text), "{}", entry.*extra.member);
+    }
+    text += '\n';
+  }
+  write_file(path, text);
+}
+
+ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
+                                const std::vector<std::string>& units) {
+  if (!units.empty() && units.size() != names.size()) {
+    throw Error("as many units as names are needed", table.file, "", ExitCode::usage);
+  }
+  std::unordered_map<std::string, const ParameterEntry*> by_name;
+  for (const ParameterEntry& entry : table.entries) by_name.emplace(entry.name, &entry);
+
+  const auto count = static_cast<Eigen::Index>(names.size());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ParameterMatch match;
+  match.value = Eigen::VectorXd::Zero(count);
+  match.std = match.prior = match.data_share = Eigen::VectorXd::Constant(count, nan);
+  std::unordered_set<const ParameterEntry*> used;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    auto found = by_name.find(name);
+    if (found == by_name.end()) {
+      if (const std::string shared = shared_name(name); !shared.empty()) found = by_name.find(shared);
+    }
+    if (found == by_name.end()) {
+      match.missing.push_back(name);
+      continue;
+    }
+    const ParameterEntry& entry = *found->second;
+    if (!units.empty() && !same_unit(entry.unit, units[static_cast<std::size_t>(i)])) {
+      throw Error(fmt::format("the unit '{}' does not fit {} of this robot", entry.unit, name),
+                  place(table.file, entry.line, "unit"), fmt::format("give the value in {}", units[static_cast<std::size_t>(i)]));
+    }
+    used.insert(&entry);
+    match.value(i) = entry.value;
+    match.std(i) = entry.std;
+    match.prior(i) = entry.prior;
+    match.data_share(i) = entry.data_share;
+  }
+  if (used.empty() && !names.empty()) {
+    throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()), table.file,
+                "check that this is the parameter file of this robot");
+  }
+  const std::unordered_set<std::string> missing(match.missing.begin(), match.missing.end());
+  for (const ParameterEntry& entry : table.entries) {
+    if (used.count(&entry) != 0) continue;
+    // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
+    if (const std::string shared = shared_name(entry.name); !shared.empty() && missing.count(shared) != 0) {
+      throw Error(fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
+                  place(table.file, entry.line, "name"), "use --individual-limbs, or give the shared value");
+    }
+    match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
+                                         place(table.file, entry.line), entry.name));
+  }
+  return match;
+}
+
+Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names, const std::vector<std::string>& units) {
+  return match_parameters(table, names, units).value;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,122 @@
+#include "deltadyn/io/parameter_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "deltadyn/runtime/error.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace deltadyn {
+namespace {
+
+using ::deltadyn::testing::TemporaryFolder;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(ParameterFile, ReadsBackExactly) {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> exponent(-12, 3);
+  ParameterTable table;
+  for (int i = 0; i < 200; ++i) {
+    table.entries.push_back({"p" + std::to_string(i), std::pow(10.0, exponent(random)), "kg*m^2"});
+    if (i % 3 == 0) table.entries.back().std = std::pow(10.0, exponent(random));
+    if (i % 5 == 0) table.entries.back().data_share = 1.0 / 3.0;
+  }
+  write_parameters(folder.path("p.csv"), table);
+  EXPECT_EQ(folder.read("p.csv").substr(0, 31), "name,value,unit,std,data_share\n");
+  const ParameterTable back = read_parameters(folder.path("p.csv"));
+  ASSERT_EQ(back.entries.size(), table.entries.size());
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    EXPECT_EQ(back.entries[i].name, table.entries[i].name);
+    EXPECT_EQ(back.entries[i].value, table.entries[i].value);
+    EXPECT_EQ(back.entries[i].unit, table.entries[i].unit);
+    EXPECT_EQ(std::isnan(back.entries[i].std), std::isnan(table.entries[i].std));
+    if (!std::isnan(table.entries[i].std)) {
+      EXPECT_EQ(back.entries[i].std, table.entries[i].std);
+    }
+    if (i % 5 == 0) {
+      EXPECT_EQ(back.entries[i].data_share, 1.0 / 3.0);
+    }
+    EXPECT_TRUE(std::isnan(back.entries[i].prior));
+  }
+}
+
+TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
+  const TemporaryFolder folder;
+  const ParameterTable table = read_parameters(folder.write(
+      "p.csv", "unit,value,name\nkg,1.5,upper_arm.m\nkg,2.5,upper_arm2.m\nkg m2,0.1,strut.Ixx\nN m s,3,drive1.viscous\nkg,9,gripper.m\n"));
+  const ParameterMatch match =
+      match_parameters(table, {"upper_arm1.m", "upper_arm2.m", "strut3.Ixx", "drive1.viscous", "drive1.coulomb"},
+                       {"kg", "kg", "kg*m^2", "N*m*s/rad", "N*m"});
+  EXPECT_EQ(match.value, (Eigen::VectorXd(5) << 1.5, 2.5, 0.1, 3, 0).finished());
+  EXPECT_THAT(match.missing, ElementsAre("drive1.coulomb"));
+  EXPECT_THAT(match.warnings, ElementsAre(::testing::AllOf(HasSubstr("line 6"), HasSubstr("gripper.m"))));
+  EXPECT_EQ(values(table, {"strut.Ixx"})(0), 0.1);
+}
+
+TEST(ParameterFile, RefusesLimbValuesWhereTheSharedOneIsWanted) {
+  const TemporaryFolder folder;
+  const ParameterTable table = read_parameters(folder.write("p.csv", "name,value,unit\nupper_arm1.m,1,kg\nstrut.m,1,kg\n"));
+  try {
+    (void)values(table, {"upper_arm.m", "strut.m"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("line 2"));
+    EXPECT_THAT(error.mend(), HasSubstr("--individual-limbs"));
+  }
+  EXPECT_THROW((void)values(table, {"platform.m"}), Error);
+}
+
+TEST(ParameterFile, RefusesTheUnitOfAnotherRobot) {
+  const TemporaryFolder folder;
+  const ParameterTable table = read_parameters(folder.write("p.csv", "name,value,unit\ndrive1.viscous,1,N*s/m\n"));
+  EXPECT_NO_THROW((void)values(table, {"drive1.viscous"}, {"N*s/m"}));
+  EXPECT_THROW((void)values(table, {"drive1.viscous"}, {"N*m*s/rad"}), Error);
+}
+
+struct BadParameters {
+  const char* name;
+  const char* text;
+  std::vector<const char*> message;
+};
+
+class BadParametersTest : public ::testing::TestWithParam<BadParameters> {};
+
+TEST_P(BadParametersTest, IsRefusedWithItsPlace) {
+  const TemporaryFolder folder;
+  try {
+    (void)read_parameters(folder.write("p.csv", GetParam().text));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    for (const char* part : GetParam().message) EXPECT_THAT(error.what(), HasSubstr(part));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadParametersTest,
+    ::testing::Values(
+        BadParameters{"Twice", "name,value,unit\nstrut.m,1,kg\nstrut.m,2,kg\n", {"p.csv, line 3", "already given in line 2"}},
+        BadParameters{"WrongUnit", "name,value,unit\nstrut.m,100,g\n", {"p.csv, line 2, column unit", "'g'", "kg"}},
+        BadParameters{"NoUnitColumn", "name,value\nstrut.m,1\n", {"column unit is missing"}},
+        BadParameters{"Text", "name,value,unit\nstrut.m,heavy,kg\n", {"line 2, column value", "'heavy'"}},
+        BadParameters{"NoName", "name,value,unit\n,1,kg\n", {"line 2, column name"}},
+        BadParameters{"NegativeStd", "name,value,unit,std\nstrut.m,1,kg,-1\n", {"line 2, column std", "negative"}},
+        BadParameters{"Share", "name,value,unit,data_share\nstrut.m,1,kg,1.5\n", {"line 2, column data_share"}},
+        BadParameters{"NoRows", "name,value,unit\n", {"no data rows"}}),
+    [](const auto& information) { return std::string(information.param.name); });
+
+TEST(ParameterFile, WritesNothingWhenAValueIsNotFinite) {
+  const TemporaryFolder folder;
+  ParameterTable table;
+  table.entries.push_back({"strut.m", std::nan(""), "kg"});
+  EXPECT_THROW(write_parameters(folder.path("p.csv"), table), Error);
+  EXPECT_EQ(folder.files(), 0);
+}
+
+}  // namespace
+}  // namespace deltadyn
