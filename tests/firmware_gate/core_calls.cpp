@@ -9,6 +9,8 @@
 #include "deltadyn/kinematics/forward.hpp"
 #include "deltadyn/kinematics/inverse.hpp"
 #include "deltadyn/kinematics/motion.hpp"
+#include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/model/log_cholesky.hpp"
 
 namespace deltadyn::firmware_gate {
 namespace {
@@ -77,6 +79,18 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   keep_larger(largest<T>(tau_drives - tau) / scale, outcome.feed_forward_gap);
 }
 
+/// There and back through the log-Cholesky numbers (13) of a made-up body.
+template <class T>
+void run_inertia(T phase, Outcome& outcome) {
+  LogCholeskyVector<T> pi, pi_again;
+  for (int i = 0; i < pi.size(); ++i) pi(i) = T(0.05) * T(i) + T(0.01) * phase;
+  const InertialVector<T> p = from_log_cholesky(pi);
+  outcome.ok = outcome.ok && is_physically_consistent(p) && to_log_cholesky(p, pi_again) == Status::ok;
+  outcome.inertia_round_trip = largest<T>(pi_again - pi);
+  // The mass is exp(2 alpha), so the first derivative is twice the mass.
+  outcome.inertia_jacobian_gap = largest<T>(Vector<T, 1>(log_cholesky_jacobian(pi)(0, 0) / (T(2) * p(0)) - T(1)));
+}
+
 template <class T, class Robot>
 Outcome run(T phase) {
   constexpr int N = Robot::kDrives;
@@ -99,6 +113,7 @@ Outcome run(T phase) {
   if (!outcome.ok) return outcome;
   if constexpr (Robot::kTelescope) z_again(N - 1) = q(N - 1);
   outcome.round_trip = largest<T>(z_again - z);
+  run_inertia(phase, outcome);
   run_dynamics<T, Robot, Limbs::shared>(geometry, motion, phase, outcome);
   run_dynamics<T, Robot, Limbs::individual>(geometry, motion, phase, outcome);
   return outcome;

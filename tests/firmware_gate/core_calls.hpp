@@ -8,11 +8,13 @@ namespace deltadyn::firmware_gate {
 
 /// What one round of calls gave.
 struct Outcome {
-  bool ok = false;                ///< every call returned Status::ok
-  double round_trip = 0.0;        ///< largest |forward(inverse(z)) - z| [m, rad]
-  double regressor_gap = 0.0;     ///< largest |Y p - inverse dynamics| over the largest torque
-  double mass_asymmetry = 0.0;    ///< largest |M - M^T|
-  double feed_forward_gap = 0.0;  ///< largest |feed-forward - inverse dynamics| over the largest torque
+  bool ok = false;                    ///< every call returned Status::ok
+  double round_trip = 0.0;            ///< largest |forward(inverse(z)) - z| [m, rad]
+  double regressor_gap = 0.0;         ///< largest |Y p - inverse dynamics| over the largest torque
+  double mass_asymmetry = 0.0;        ///< largest |M - M^T|
+  double feed_forward_gap = 0.0;      ///< largest |feed-forward - inverse dynamics| over the largest torque
+  double inertia_round_trip = 0.0;    ///< largest change of log-Cholesky numbers through the parameters and back
+  double inertia_jacobian_gap = 0.0;  ///< relative error of the mass's derivative by the first of them
   double largest_torque = 0.0;
 };
 

@@ -1,0 +1,3 @@
+#pragma once
+
+inline double twice(float value) { return 2.0 * value; }
