@@ -47,7 +47,7 @@ caption b, figcaption b { color: var(--ink); font-weight: 600; }
 th { font-weight: 600; border-bottom: 1.5px solid var(--ink); vertical-align: bottom; }
 th, td { padding: 3px 14px 3px 8px; }
 td { border-bottom: 1px solid var(--line); white-space: nowrap; }
-td.left { white-space: normal; }
+td.left { white-space: normal; min-width: 6ch; }
 .left { text-align: left; }
 .center { text-align: center; }
 .right { text-align: right; }
@@ -69,11 +69,20 @@ details[open] summary { margin-bottom: 6px; }
 footer { border-top: 1px solid var(--line); margin-top: 32px; padding-top: 8px; overflow-wrap: anywhere; }
 @page { size: A4; margin: 14mm; }
 @media print {
-  body { font-size: 10.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
+  body { font-size: 9.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
   main { max-width: none; padding: 0; }
+  h1 { font-size: 17pt; }
+  h2 { font-size: 12.5pt; margin-top: 16pt; }
+  .verdict .headline { font-size: 11pt; }
+  .figures { grid-template-columns: repeat(auto-fit, minmax(104px, 1fr)); gap: 6px; }
+  .key { padding: 5px 8px; }
+  .key .value { font-size: 12.5pt; }
+  table, dl, .note, figcaption, caption, footer, .key .label, .key .small { font-size: 8.5pt; }
+  th, td { padding: 2px 8px 2px 5px; }
   nav { display: none; }
   h2, h3 { break-after: avoid; }
   figure, .verdict, .key, tr { break-inside: avoid; }
+  caption, thead { break-after: avoid; }
   thead { display: table-header-group; }
   details::details-content { content-visibility: visible; block-size: auto; }
 }
