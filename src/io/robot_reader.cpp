@@ -1,15 +1,16 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <numbers>
 #include <sstream>
 
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/error.hpp"
+
 #include "robot_file_format.hpp"
 #include "urdf_tree.hpp"
 
@@ -24,16 +25,18 @@ using Vec = Vector3<double>;
 
 constexpr double kTolerance = 1e-6;  // [m], [rad]: files by hand or from CAD have six digits
 
-std::string words(const Vec& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z()); }
+std::string words(const Vec& v) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z());
+}
 
 /// One strut as found in the tree.
 struct Strut {
   int body = -1;
   std::string name;
-  Vec elbow = Vec::Zero();       ///< in the arm's frame
-  bool closed = false;           ///< its other end is known
-  Vec end = Vec::Zero();         ///< in the strut's frame
-  Vec p_BE = Vec::Zero();        ///< the same point from the plate's centre
+  Vec elbow = Vec::Zero();  ///< in the arm's frame
+  bool closed = false;      ///< its other end is known
+  Vec end = Vec::Zero();    ///< in the strut's frame
+  Vec p_BE = Vec::Zero();   ///< the same point from the plate's centre
 };
 
 class Reader {
@@ -82,8 +85,7 @@ class Reader {
   }
 
   void require_axis(const Joint& j, const Vec& axis, bool prismatic, const std::string& what) const {
-    if (j.prismatic != prismatic)
-      refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j), "");
+    if (j.prismatic != prismatic) refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j), "");
     if ((j.axis - axis).norm() > kTolerance)
       refuse(fmt::format("wrong axis: {} has axis {}, but must have {}", what, words(j.axis), words(axis)), at(j),
              "turn the joint's origin, or swap the signs");
@@ -99,20 +101,22 @@ class Reader {
 
   void require_no_offset(const Joint& j, const std::string& what) const {
     if (j.X_PJ.translation().norm() > kTolerance)
-      refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what, j.X_PJ.translation().norm()), at(j),
-             "set the origin's xyz to 0 0 0");
+      refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what, j.X_PJ.translation().norm()),
+             at(j), "set the origin's xyz to 0 0 0");
   }
 
   void require_parallel(const Eigen::Matrix3d& R, const std::string& where, const std::string& what) const {
     if ((R - Eigen::Matrix3d::Identity()).norm() > kTolerance)
-      refuse(what + " must be parallel to the base frame when all joints are in their middle", where, "mend the rpy of the fixed joint");
+      refuse(what + " must be parallel to the base frame when all joints are in their middle", where,
+             "mend the rpy of the fixed joint");
   }
 
   // --- drives -----------------------------------------------------------------------------------
   void sort_drives() {
     const robot_file::Body& base = body(0);
     drives_.assign(base.joints.size(), nullptr);
-    if (drives_.empty()) refuse("no moving joint hangs on the base link", at(base.name), "the drives are the joints drive1, drive2, ...");
+    if (drives_.empty())
+      refuse("no moving joint hangs on the base link", at(base.name), "the drives are the joints drive1, drive2, ...");
     for (const int index : base.joints) {
       const Joint& j = joint(index);
       bool found = false;
@@ -175,7 +179,8 @@ class Reader {
       refuse("the telescope's drive must be the last one", at(*drives_[limbs]), "call the limbs' drives drive1 to drive3");
     if (limbs != 3)
       refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
-             limbs == 4 ? "robots with four limbs (h4, i4, par4) are not supported yet" : "a limb is a drive on the base with two struts");
+             limbs == 4 ? "robots with four limbs (h4, i4, par4) are not supported yet"
+                        : "a limb is a drive on the base with two struts");
     const bool telescope = limbs < drives_.size();
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
     robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
@@ -202,8 +207,9 @@ class Reader {
   void find_struts(const Joint& drive) {
     const robot_file::Body& arm = body(drive.child);
     if (arm.joints.size() != 2)
-      refuse(fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts", arm.joints.size()),
-             at(arm.name), "compare with a file of delta-model create");
+      refuse(
+          fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts", arm.joints.size()),
+          at(arm.name), "compare with a file of delta-model create");
     std::vector<Strut> pair;
     for (const int index : arm.joints) {
       const Joint& about_y = joint(index);
@@ -220,7 +226,8 @@ class Reader {
     if (pair[0].elbow.y() < pair[1].elbow.y()) std::swap(pair[0], pair[1]);
     const Vec across = pair[0].elbow - pair[1].elbow;
     if (across.y() < kTolerance || std::hypot(across.x(), across.z()) > kTolerance)
-      refuse(fmt::format("the elbow joints of its two struts must lie apart along y of the limb, but they are {} apart", words(across)),
+      refuse(fmt::format("the elbow joints of its two struts must lie apart along y of the limb, but they are {} apart",
+                         words(across)),
              at(arm.name), "mend the origins of the struts' first joints");
     struts_.push_back(pair[0]);
     struts_.push_back(pair[1]);
@@ -236,7 +243,8 @@ class Reader {
                "a tree has one path to the plate; close the other by a <loop>");
       carrier = k;
     }
-    if (carrier == struts_.size()) refuse("no strut carries the plate", tree_.where, "hang it on strut1a by joints about z, then y");
+    if (carrier == struts_.size())
+      refuse("no strut carries the plate", tree_.where, "hang it on strut1a by joints about z, then y");
     Strut& strut = struts_[carrier];
     const Joint& about_z = only_joint(strut.body, "the strut carries the plate only");
     require_passive(about_z, Vec::UnitZ(), "the joint between strut and plate");
@@ -253,11 +261,13 @@ class Reader {
       for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor}) {
         if (tree_.links.at(end->link).body != plate_) continue;
         if (!frame.empty() && frame != end->link)
-          refuse(fmt::format("it ends on {}, but another loop on {}", end->link, frame), at(loop), "let all loops name the same link of the plate");
+          refuse(fmt::format("it ends on {}, but another loop on {}", end->link, frame), at(loop),
+                 "let all loops name the same link of the plate");
         frame = end->link;
       }
     if (frame.empty())
-      refuse(fmt::format("missing loop: no loop ends on the plate ({})", body(plate_).name), tree_.where, "add a spherical <loop> for each other strut");
+      refuse(fmt::format("missing loop: no loop ends on the plate ({})", body(plate_).name), tree_.where,
+             "add a spherical <loop> for each other strut");
     X_MB_ = tree_.links.at(frame).X_BL;
     const double angle = robot_.limbs[carrier / 2].azimuth;
     require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), at(frame), "the plate's frame");
@@ -271,7 +281,8 @@ class Reader {
     const robot_file::LoopEnd* other = &loop.successor;
     if (tree_.links.at(on_plate->link).body != plate_) std::swap(on_plate, other);
     if (tree_.links.at(on_plate->link).body != plate_)
-      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop), "a Delta's loops end on the plate");
+      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop),
+             "a Delta's loops end on the plate");
     const robot_file::LinkPlace& place = tree_.links.at(other->link);
     const auto strut = std::find_if(struts_.begin(), struts_.end(), [&](const Strut& s) { return s.body == place.body; });
     if (strut == struts_.end()) {
@@ -279,7 +290,8 @@ class Reader {
       return;
     }
     if (loop.type != "spherical")
-      refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), at(loop), "write type=\"spherical\"");
+      refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), at(loop),
+             "write type=\"spherical\"");
     if (strut->closed) refuse(fmt::format("the end of {} is closed already", strut->name), at(loop), "remove one of the two");
     strut->closed = true;
     strut->end = (place.X_BL * other->X_LO).translation();
@@ -299,20 +311,23 @@ class Reader {
                "the strut's frame is at the elbow with x along the strut");
     }
     if (std::abs(a.end.x() - b.end.x()) > kTolerance)
-      refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(), b.name, b.end.x()),
+      refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(), b.name,
+                         b.end.x()),
              at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
     const Vec at_elbow = a.elbow - b.elbow;
     const Vec y_L(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
     const Vec at_plate = a.p_BE - b.p_BE;
     if ((at_plate - at_elbow.y() * y_L).norm() > kTolerance)
-      refuse(fmt::format("limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both in the base frame)",
-                         index + 1, words(at_elbow.y() * y_L), words(at_plate)),
-             at(b.name), "mend the origins in its loops");
+      refuse(
+          fmt::format(
+              "limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both in the base frame)",
+              index + 1, words(at_elbow.y() * y_L), words(at_plate)),
+          at(b.name), "mend the origins in its loops");
     limb.p_DE_0 = (a.elbow + b.elbow) / 2;
     if (robot_.drive_kind == DriveKind::revolute) {
       if (limb.p_DE_0.x() < kTolerance || limb.p_DE_0.tail<2>().norm() > kTolerance)
-        refuse(fmt::format("the elbow is at {}, but must lie on +x of the upper arm", words(limb.p_DE_0)), at(body(drives_[index]->child).name),
-               "turn the zero of the drive, so that 0 is horizontal outwards");
+        refuse(fmt::format("the elbow is at {}, but must lie on +x of the upper arm", words(limb.p_DE_0)),
+               at(body(drives_[index]->child).name), "turn the zero of the drive, so that 0 is horizontal outwards");
       limb.p_DE_0.tail<2>().setZero();
     }
     limb.strut = (a.end.x() + b.end.x()) / 2;
@@ -351,10 +366,12 @@ class Reader {
       closure = &candidate;
     }
     if (closure == nullptr)
-      refuse("missing loop: the tool is not joined to the plate", at(tool.name), "add a revolute <loop> about z between plate and tool");
+      refuse("missing loop: the tool is not joined to the plate", at(tool.name),
+             "add a revolute <loop> about z between plate and tool");
     const Loop& loop = *closure->loop;
     if (loop.type != "revolute" && loop.type != "continuous")
-      refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), at(loop), "write type=\"revolute\"");
+      refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), at(loop),
+             "write type=\"revolute\"");
     if (std::abs(std::abs(loop.axis.z()) - 1) > kTolerance)
       refuse(fmt::format("wrong axis: the tool turns about {} of the plate, but must turn about z", words(loop.axis)), at(loop),
              "write <axis xyz=\"0 0 1\"/>");
@@ -363,7 +380,8 @@ class Reader {
     const Vec p_TV = X_MT.inverse().translation();
     const Vec p_TO = closure->other->X_LO.translation();
     if (p_TV.head<2>().norm() > kTolerance || p_TO.head<2>().norm() > kTolerance)
-      refuse("the tool's axis must pass through the lower universal joint of the bar", at(loop), "set x and y of the tool's origins to 0");
+      refuse("the tool's axis must pass through the lower universal joint of the bar", at(loop),
+             "set x and y of the tool's origins to 0");
     TelescopeGeometry<double> bar;
     bar.p_WU = drive.X_PJ.translation();
     bar.p_BV = closure->on_plate->X_LO.translation() + Vec(0, 0, p_TV.z() - p_TO.z());
@@ -382,7 +400,8 @@ class Reader {
       for (std::size_t k = 0; k < drives_.size(); ++k)
         if (joint_name != note.attributes.end() && joint_name->second == drives_[k]->name) index = k;
       if (index == drives_.size()) refuse("it names no drive of this robot", where, "write joint=\"drive1\" or another drive");
-      const char* acceleration = drives_[index]->prismatic ? robot_file::kAccelerationPrismatic : robot_file::kAccelerationRevolute;
+      const char* acceleration =
+          drives_[index]->prismatic ? robot_file::kAccelerationPrismatic : robot_file::kAccelerationRevolute;
       for (const auto& [key, value] : note.attributes) {
         if (key == "joint") continue;
         const double number = robot_file::parse_number(value, where, key);
@@ -391,7 +410,8 @@ class Reader {
         } else if (key == "elbow" && index < robot_.limbs.size()) {
           robot_.limbs[index].elbow = number;
         } else {
-          refuse(fmt::format("attribute '{}' is not known for this drive", key), where, fmt::format("known are elbow and {}", acceleration));
+          refuse(fmt::format("attribute '{}' is not known for this drive", key), where,
+                 fmt::format("known are elbow and {}", acceleration));
         }
       }
     }
@@ -420,6 +440,7 @@ RobotDescription robot_from_urdf(const std::string& text, const std::string& whe
 }
 
 RobotDescription read_robot_file(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw Error("this is a folder", path, "give a URDF robot file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(fmt::format("cannot open the robot file ({})", std::strerror(errno)), path, "check the path");
   std::ostringstream text;

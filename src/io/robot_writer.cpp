@@ -1,16 +1,16 @@
-#include <fmt/format.h>
-#include <tinyxml2.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
+#include <tinyxml2.h>
 
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/model/body.hpp"
 #include "deltadyn/runtime/error.hpp"
+
 #include "robot_file_format.hpp"
 
 namespace deltadyn {
@@ -22,11 +22,17 @@ using tinyxml2::XMLElement;
 constexpr double kPi = std::numbers::pi;
 
 /// Shortest text that reads back to the same number; no "-0" in a file that people read.
-std::string text(double value) { return value == 0 ? "0" : fmt::format("{}", value); }
-std::string text(const Vec& v) { return fmt::format("{} {} {}", text(v.x()), text(v.y()), text(v.z())); }
+std::string text(double value) {
+  return value == 0 ? "0" : fmt::format("{}", value);
+}
+std::string text(const Vec& v) {
+  return fmt::format("{} {} {}", text(v.x()), text(v.y()), text(v.z()));
+}
 
 /// URDF has no word for "unlimited" and its readers do not take "inf".
-double finite(double limit) { return std::clamp(limit, -robot_file::kUnlimited, robot_file::kUnlimited); }
+double finite(double limit) {
+  return std::clamp(limit, -robot_file::kUnlimited, robot_file::kUnlimited);
+}
 
 class Writer {
  public:
@@ -37,8 +43,8 @@ class Writer {
     root_ = document_.NewElement("robot");
     document_.InsertEndChild(root_);
     root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
-    comment(fmt::format(" {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ",
-                        robot_.type));
+    comment(fmt::format(
+        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type));
     base();
     if (robot_.parts.empty()) {
       axis();
@@ -96,7 +102,8 @@ class Writer {
   }
 
   /// A passive joint: no effort, half a turn to both sides.
-  XMLElement* passive(const std::string& name, const std::string& parent, const std::string& to, const Vec& axis, const Vec& xyz) {
+  XMLElement* passive(const std::string& name, const std::string& parent, const std::string& to, const Vec& axis,
+                      const Vec& xyz) {
     XMLElement* element = joint(name, "revolute", parent, to, xyz);
     element->SetAttribute("independent", false);
     axis_of(element, axis);
@@ -154,8 +161,8 @@ class Writer {
     }
     if (!given) return;
     if (!(p[0] > 0))
-      throw Error(fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]), "",
-                  "give the body a positive mass, or leave its parameters out");
+      throw Error(fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]),
+                  "", "give the body a positive mass, or leave its parameters out");
     const Vec c(p[1] / p[0], p[2] / p[0], p[3] / p[0]);
     Matrix3<double> I;
     I << p[4], p[7], p[9], p[7], p[5], p[8], p[9], p[8], p[6];
@@ -313,11 +320,10 @@ class Writer {
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
       XMLElement* entry = child(element, "drive");
       entry->SetAttribute("joint", robot_file::drive_name(i).c_str());
-      if (i < robot_.limbs.size() && !robot_.parts.empty())
-        entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
+      if (i < robot_.limbs.size() && !robot_.parts.empty()) entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
       if (std::isfinite(robot_.limits[i].acceleration))
         entry->SetAttribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic ? robot_file::kAccelerationPrismatic
-                                                                                            : robot_file::kAccelerationRevolute,
+                                                                                              : robot_file::kAccelerationRevolute,
                             text(robot_.limits[i].acceleration).c_str());
     }
   }

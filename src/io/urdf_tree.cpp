@@ -1,19 +1,19 @@
 #include "urdf_tree.hpp"
 
-#include <console_bridge/console.h>
-#include <fmt/format.h>
-#include <tinyxml2.h>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <charconv>
 #include <cmath>
+#include <console_bridge/console.h>
+#include <fmt/format.h>
 #include <limits>
 #include <mutex>
 #include <set>
 #include <sstream>
+#include <tinyxml2.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "robot_file_format.hpp"
 
 namespace deltadyn::robot_file {
@@ -93,7 +93,8 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
   for (auto* link = robot->FirstChildElement("link"); link != nullptr; link = link->NextSiblingElement("link")) {
     const auto [other, is_new] = facts.link_lines.emplace(attribute(link, "name", at(where, link)), link->GetLineNum());
     if (!is_new)
-      refuse(fmt::format("there is a link of this name on line {} already", other->second), at(where, link), "rename one of them");
+      refuse(fmt::format("there is a link of this name on line {} already", other->second), at(where, link),
+             "rename one of them");
   }
   if (facts.link_lines.empty()) refuse("the robot has no link", where, "give a URDF robot file, e.g. one of delta-model create");
   std::map<std::string, std::string> parent_joint;
@@ -105,7 +106,8 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
     for (const char* side : {"parent", "child"}) {
       const std::string link = attribute(require_child(joint, side, place), "link", place);
       if (facts.link_lines.count(link) == 0)
-        refuse(fmt::format("unknown {} link '{}'", side, link), place, fmt::format("add <link name=\"{}\"/> or mend the name", link));
+        refuse(fmt::format("unknown {} link '{}'", side, link), place,
+               fmt::format("add <link name=\"{}\"/> or mend the name", link));
       if (std::string(side) == "child") {
         const auto [other, is_new] = parent_joint.emplace(link, name);
         if (!is_new)
@@ -270,7 +272,8 @@ double parse_number(const std::string& text, const std::string& where, const std
   double value = 0;
   const auto [stop, code] = std::from_chars(begin, end, value);
   if (code != std::errc() || stop != end || !std::isfinite(value))
-    refuse(fmt::format("attribute {} holds '{}', which is not a finite number", attribute_name, text), where, "write a decimal number");
+    refuse(fmt::format("attribute {} holds '{}', which is not a finite number", attribute_name, text), where,
+           "write a decimal number");
   return value;
 }
 
@@ -279,8 +282,8 @@ UrdfTree parse_urdf_tree(const std::string& text, const std::string& where) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     refuse("the file is empty", where, "give a URDF robot file, e.g. one of delta-model create");
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    refuse(fmt::format("not well-formed XML ({})", document.ErrorName()), fmt::format("{}, line {}", where, document.ErrorLineNum()),
-           "give a URDF robot file, e.g. one of delta-model create");
+    refuse(fmt::format("not well-formed XML ({})", document.ErrorName()),
+           fmt::format("{}, line {}", where, document.ErrorLineNum()), "give a URDF robot file, e.g. one of delta-model create");
   const XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::string(robot->Name()) != "robot")
     refuse(fmt::format("the root element is <{}>, but a URDF starts with <robot>", robot == nullptr ? "" : robot->Name()), where,

@@ -17,9 +17,9 @@ using Pose = Eigen::Isometry3d;
 struct Joint {
   std::string name;
   int line = 0;
-  bool prismatic = false;  ///< else revolute or continuous
-  int parent = -1;         ///< body
-  int child = -1;          ///< body
+  bool prismatic = false;        ///< else revolute or continuous
+  int parent = -1;               ///< body
+  int child = -1;                ///< body
   Pose X_PJ = Pose::Identity();  ///< joint frame in the parent body's frame, at joint position 0 also the child body's frame
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the joint frame
   bool mimic = false;
@@ -27,8 +27,8 @@ struct Joint {
 };
 
 struct Body {
-  std::string name;            ///< of its first link, whose frame is the body's frame
-  std::vector<int> joints;     ///< moving joints to its children
+  std::string name;         ///< of its first link, whose frame is the body's frame
+  std::vector<int> joints;  ///< moving joints to its children
   std::vector<std::string> links;
 };
 
@@ -57,7 +57,7 @@ struct DriveNote {
 
 struct UrdfTree {
   std::string name;
-  std::string where;  ///< of the file, for messages
+  std::string where;         ///< of the file, for messages
   std::vector<Body> bodies;  ///< body 0 is the base
   std::vector<Joint> joints;
   std::map<std::string, LinkPlace> links;

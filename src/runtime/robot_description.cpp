@@ -1,8 +1,7 @@
 #include "deltadyn/runtime/robot_description.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
@@ -19,10 +18,8 @@ struct TypeRule {
   bool plate, telescope;
 };
 
-constexpr TypeRule kRules[] = {{"delta3", 3, true, false},
-                               {"linear-delta3", 3, true, false},
-                               {"delta4", 3, true, true},
-                               {"axis", 1, false, false}};
+constexpr TypeRule kRules[] = {
+    {"delta3", 3, true, false}, {"linear-delta3", 3, true, false}, {"delta4", 3, true, true}, {"axis", 1, false, false}};
 
 [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
   throw Error(what, where, mend);
@@ -46,8 +43,7 @@ void require_positive(double value, const std::string& what, const std::string& 
     refuse(fmt::format("{} is {} m, but must be positive", what, value), where, "give a positive length in metres");
 }
 
-void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind,
-                   const std::string& where) {
+void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind, const std::string& where) {
   const std::string name = fmt::format("limb {}", number);
   if (!std::isfinite(limb.azimuth)) refuse(name + ": the azimuth is not finite", where, "give an angle in radians");
   require_finite(limb.p_WD, name + ": the place of the drive", where);
@@ -56,8 +52,8 @@ void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool pl
   require_finite(limb.p_BA, name + ": the attachment on the plate", where);
   if (kind == DriveKind::revolute) {
     if (!limb.axis_L.isApprox(Vector3<double>::UnitY(), kUnitTolerance))
-      refuse(fmt::format("{}: a revolute drive turns about +y of its limb frame, not about ({}, {}, {})", name,
-                         limb.axis_L.x(), limb.axis_L.y(), limb.axis_L.z()),
+      refuse(fmt::format("{}: a revolute drive turns about +y of its limb frame, not about ({}, {}, {})", name, limb.axis_L.x(),
+                         limb.axis_L.y(), limb.axis_L.z()),
              where, "turn the limb by its azimuth instead");
     if (plate) require_positive(limb.p_DE_0.x(), name + ": the length of the upper arm", where);
     if (limb.p_DE_0.tail<2>().norm() > kUnitTolerance || limb.p_DE_0.x() < 0)
@@ -73,14 +69,15 @@ void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool pl
   if (limb.elbow != 1 && limb.elbow != -1)
     refuse(fmt::format("{}: the elbow posture is {}, but must be +1 or -1", name, limb.elbow), where,
            "+1 is the elbow outwards or the carriage behind the plate, -1 the other posture");
-  if (limb.part != 0) refuse(fmt::format("{}: there is no plate part {}", name, limb.part), where, "a Delta's plate has one part, 0");
+  if (limb.part != 0)
+    refuse(fmt::format("{}: there is no plate part {}", name, limb.part), where, "a Delta's plate has one part, 0");
 }
 
 void validate_limits(const DriveLimits& limits, std::size_t number, const std::string& where) {
   const std::string name = fmt::format("drive {}", number);
   if (!(limits.lower < limits.upper))
-    refuse(fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper),
-           where, "swap or mend the limits");
+    refuse(fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper), where,
+           "swap or mend the limits");
   const auto positive = [&](double value, const char* what) {
     if (!(value > 0)) refuse(fmt::format("{}: the {} limit is {}, but must be positive", name, what, value), where, "");
   };
@@ -126,7 +123,8 @@ void RobotDescription::validate(const std::string& where) const {
   for (std::size_t i = 0; i < limbs.size(); ++i) validate_limb(limbs[i], i + 1, rule.plate, drive_kind, where);
   for (std::size_t i = 0; i < limits.size(); ++i) validate_limits(limits[i], i + 1, where);
   if (rule.plate) {
-    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones leave it loose.
+    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones leave it
+    // loose.
     double spread = 0;
     for (const auto& limb : limbs) spread = std::max(spread, std::abs(std::sin(limb.azimuth - limbs[0].azimuth)));
     if (spread < 1e-6)

@@ -1,11 +1,9 @@
 #include "deltadyn/io/robot_file.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
@@ -178,7 +176,8 @@ TEST(RobotFile, InertialIsAboutTheCentreOfMass) {
   const RobotDescription robot = random.delta("delta3");
   // A rod of 2 kg from 0 to 1 m along x: I about the origin 2/3, about the centre 2/12.
   const std::string text = robot_to_urdf(
-      robot, {{"strut.m", 2}, {"strut.mcx", 1}, {"strut.Iyy", 2.0 / 3}, {"strut.Izz", 2.0 / 3}, {"strut.Ixx", 0.25}, {"strut3.m", 4}});
+      robot,
+      {{"strut.m", 2}, {"strut.mcx", 1}, {"strut.Iyy", 2.0 / 3}, {"strut.Izz", 2.0 / 3}, {"strut.Ixx", 0.25}, {"strut3.m", 4}});
   EXPECT_THAT(text, HasSubstr("<mass value=\"2\"/>"));
   EXPECT_THAT(text, HasSubstr("<mass value=\"4\"/>"));
   EXPECT_THAT(text, HasSubstr("<origin xyz=\"0.5 0 0\""));
@@ -197,6 +196,7 @@ TEST(RobotFile, WritesWholeFilesAndReadsThemBack) {
   expect_same(robot, read_robot_file(path));
   std::filesystem::remove(path);
   EXPECT_THROW((void)read_robot_file(path), Error);
+  EXPECT_THROW((void)read_robot_file(std::filesystem::temp_directory_path().string()), Error);
 }
 
 /// One way to break a good file: replace the n-th occurrence of `from` by `to`; the message must hold every word of `says`.
@@ -253,25 +253,43 @@ TEST_P(RobotFileBroken, IsRefusedWithTheLinkAndTheRule) {
 }
 
 constexpr const char* kLoop2b =
-    "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 0 0\"";
+    "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 0 "
+    "0\"";
 
 const Break kBreaks[] = {
     {"DriveAxis", "delta3", "<axis xyz=\"0 1 0\"", "<axis xyz=\"1 0 0\"", {"joint drive1", "wrong axis", "must have (0, 1, 0)"}},
     {"DriveAxisSign", "delta3", "<axis xyz=\"0 1 0\"", "<axis xyz=\"0 -1 0\"", {"joint drive1", "wrong axis"}},
     {"StrutAxis", "delta3", "<axis xyz=\"0 0 1\"", "<axis xyz=\"1 0 0\"", {"joint strut1a_z", "wrong axis"}},
-    {"UnequalStruts", "delta3", kLoop2b,
-     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.26 0 0\"",
+    {"UnequalStruts",
+     "delta3",
+     kLoop2b,
+     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.26 0 "
+     "0\"",
      {"strut2b", "unequal struts of limb 2", "1.26"}},
-    {"StrutEndOffAxis", "delta3", kLoop2b,
-     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 0.01 0\"",
+    {"StrutEndOffAxis",
+     "delta3",
+     kLoop2b,
+     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 "
+     "0.01 0\"",
      {"strut2b", "+x of the strut"}},
     {"TagsDoNotMatch", "delta3", "<loop name=\"strut3a_end\"", "<note name=\"strut3a_end\"", {"line", "not well-formed"}},
-    {"LoopType", "delta3", "<loop name=\"strut3a_end\" type=\"spherical\"", "<loop name=\"strut3a_end\" type=\"revolute\"",
+    {"LoopType",
+     "delta3",
+     "<loop name=\"strut3a_end\" type=\"spherical\"",
+     "<loop name=\"strut3a_end\" type=\"revolute\"",
      {"strut3a_end", "ball joint"}},
-    {"LoopLinkUnknown", "delta3", "<predecessor link=\"strut2b\"", "<predecessor link=\"strut9\"", {"strut2b_end", "unknown link 'strut9'"}},
+    {"LoopLinkUnknown",
+     "delta3",
+     "<predecessor link=\"strut2b\"",
+     "<predecessor link=\"strut9\"",
+     {"strut2b_end", "unknown link 'strut9'"}},
     {"LoopTwice", "delta3", "<predecessor link=\"strut2b\"", "<predecessor link=\"strut2a\"", {"strut2a", "closed already"}},
     {"LoopNotOnPlate", "delta3", "<successor link=\"platform\"", "<successor link=\"base\"", {"strut1b_end", "is the plate"}},
-    {"UnknownParent", "delta3", "<parent link=\"strut2a_knuckle\"", "<parent link=\"elbow\"", {"joint strut2a_z", "unknown parent link 'elbow'"}},
+    {"UnknownParent",
+     "delta3",
+     "<parent link=\"strut2a_knuckle\"",
+     "<parent link=\"elbow\"",
+     {"joint strut2a_z", "unknown parent link 'elbow'"}},
     {"TwoParents", "delta3", "<child link=\"strut2a_knuckle\"", "<child link=\"strut1a_knuckle\"", {"already hangs on joint"}},
     {"DriveName", "delta3", "name=\"drive2\"", "name=\"motor2\"", {"motor2", "drive1 to drive3"}},
     {"TwoJointsOfOneName", "delta3", "name=\"drive2\"", "name=\"drive1\"", {"two joints of this name"}},
@@ -325,10 +343,14 @@ TEST(RobotFile, MissingPartsAreNamed) {
 
 TEST(RobotFile, ASerialArmIsNotADelta) {
   const std::string limit = "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/>";
-  expect_refused("<robot name=\"arm\"><link name=\"base\"/><link name=\"l1\"/><link name=\"l2\"/>"
-                 "<joint name=\"drive1\" type=\"revolute\"><parent link=\"base\"/><child link=\"l1\"/>" + limit + "</joint>"
-                 "<joint name=\"j2\" type=\"revolute\"><parent link=\"l1\"/><child link=\"l2\"/>" + limit + "</joint></robot>",
-                 {"three limbs expected"});
+  expect_refused(
+      "<robot name=\"arm\"><link name=\"base\"/><link name=\"l1\"/><link name=\"l2\"/>"
+      "<joint name=\"drive1\" type=\"revolute\"><parent link=\"base\"/><child link=\"l1\"/>" +
+          limit +
+          "</joint>"
+          "<joint name=\"j2\" type=\"revolute\"><parent link=\"l1\"/><child link=\"l2\"/>" +
+          limit + "</joint></robot>",
+      {"three limbs expected"});
 }
 
 }  // namespace

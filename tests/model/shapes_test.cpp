@@ -1,8 +1,7 @@
 #include "deltadyn/model/shapes.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <random>
 
 namespace deltadyn {
@@ -22,7 +21,9 @@ struct Cloud {
   }
 };
 
-double largest(const Ten& difference) { return difference.cwiseAbs().maxCoeff(); }
+double largest(const Ten& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
 
 TEST(Shapes, PointMass) {
   Cloud cloud;
@@ -80,7 +81,8 @@ TEST(Shapes, RodBetweenTwoPoints) {
   const Ten down = shapes::slender_rod<double>(2, Vec(0, 0, 0.9), Vec::Zero());
   EXPECT_LT(largest(up - down), 1e-15);
   EXPECT_NEAR(up(inertial::kMcz), 0.9, 1e-15);
-  EXPECT_LT(largest(shapes::slender_rod<double>(2, Vec(1, 2, 3), Vec(1, 2, 3)) - shapes::point_mass<double>(2, Vec(1, 2, 3))), 1e-14);
+  EXPECT_LT(largest(shapes::slender_rod<double>(2, Vec(1, 2, 3), Vec(1, 2, 3)) - shapes::point_mass<double>(2, Vec(1, 2, 3))),
+            1e-14);
 }
 
 TEST(Shapes, PartsAdd) {
@@ -94,12 +96,14 @@ TEST(Shapes, PartsAdd) {
   const double small = shapes::cylinder_mass(density, 0.04, 0.0, length);
   EXPECT_NEAR(big, 2700 * 3.14159265358979 * 0.0025 * 0.2, 1e-10);
   const Ten tube = shapes::hollow_cylinder<double>(shapes::cylinder_mass(density, 0.05, 0.04, length), 0.05, 0.04, length);
-  EXPECT_LT(largest(shapes::solid_cylinder<double>(big, 0.05, length) - shapes::solid_cylinder<double>(small, 0.04, length) - tube),
-            1e-13);
+  EXPECT_LT(
+      largest(shapes::solid_cylinder<double>(big, 0.05, length) - shapes::solid_cylinder<double>(small, 0.04, length) - tube),
+      1e-13);
 }
 
 TEST(Shapes, BodiesWithThicknessArePhysicallyConsistent) {
-  EXPECT_TRUE(is_physically_consistent<double>(shapes::hollow_cylinder<double>(1, 0.02, 0.01, Vec(0.1, 0, 0.2), Vec(0.3, 0.5, 0))));
+  EXPECT_TRUE(
+      is_physically_consistent<double>(shapes::hollow_cylinder<double>(1, 0.02, 0.01, Vec(0.1, 0, 0.2), Vec(0.3, 0.5, 0))));
   EXPECT_TRUE(is_physically_consistent<double>(shapes::plate_disc<double>(1, 0.1, 0.01)));
   EXPECT_FALSE(is_physically_consistent<double>(shapes::slender_rod<double>(1, Vec::Zero(), Vec::UnitX())));
 }
@@ -114,7 +118,7 @@ TEST(Shapes, WorkInSinglePrecision) {
 // Follow from the lengths, radii and formulas that VIII.A states (the masses are the table's own):
 //   telescope upper    m = 0.900, m c = -0.315, Ixx = Iyy = 0.147, Izz = 28.8e-6        both columns
 //   telescope lower    m = 0.600, m c =  0.234, Ixx = Iyy = 0.122, Izz = 78.0e-6        both columns
-//   strut              m c = 0.111, Iyy = Izz = 0.082                                   RG simple (m = 0.200, uniform over 1106 mm)
+//   strut              m c = 0.111, Iyy = Izz = 0.082                                 RG simple (m = 0.200, uniform over 1106 mm)
 // Follow once a radius or mass is chosen that the paper does not state; the tests say which:
 //   upper arm          m c = 0.250, Iyy = 0.084    RG simple: 1 kg, 500 mm, wall 3 mm, outer radius from 20 mm up
 //   strut              Ixx = 0.003e-3              RG simple: wall 1 mm, outer radius 4.4 mm

@@ -1,10 +1,9 @@
 #include "deltadyn/runtime/robot_description.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"

@@ -1,0 +1,207 @@
+#include "deltadyn/runtime/nominal_parameters.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/model/shapes.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Ten = InertialVector<double>;
+using Vec = Vector3<double>;
+
+// Lengths of the paper's robot, the reference of all scaling. The arm's 0.525 m (0.500 m of it carbon) and the plate's radius are
+// assumed, the strut's length is given.
+constexpr double kPaperArm = 0.525;
+constexpr double kPaperStrut = 1.106;
+constexpr double kPaperPlate = 0.05;
+
+[[noreturn]] void refuse(const std::string& what, const std::string& mend) {
+  throw Error(what, "", mend, ExitCode::usage);
+}
+
+void require_positive(double value, const char* what) {
+  if (!(std::isfinite(value) && value > 0)) refuse(fmt::format("{} is {}, but must be positive", what, value), "");
+}
+
+void require_not_negative(double value, const char* what) {
+  if (!(std::isfinite(value) && value >= 0)) refuse(fmt::format("{} is {}, but must not be negative", what, value), "");
+}
+
+double arm_length(const RobotDescription& robot) {
+  const double length = robot.limbs.front().p_DE_0.norm();
+  return length > 0 ? length : 0.1;  // an axis without an arm: a short stub
+}
+
+/// Tube from its density.
+Ten tube(double density, double diameter, double wall, const Vec& from, const Vec& to, const char* what) {
+  require_positive(density, fmt::format("the density of the {}", what).c_str());
+  require_positive(diameter, fmt::format("the diameter of the {}", what).c_str());
+  require_positive(wall, fmt::format("the wall of the {}", what).c_str());
+  const double outer = diameter / 2;
+  if (wall > outer)
+    refuse(fmt::format("the wall of the {}, {} m, is thicker than half its diameter {} m", what, wall, diameter),
+           "give it in metres");
+  return shapes::hollow_cylinder<double>(shapes::cylinder_mass(density, outer, outer - wall, (to - from).norm()), outer,
+                                         outer - wall, from, to);
+}
+
+Ten round(double mass, double outer_diameter, double inner_diameter, const Vec& from, const Vec& to, const char* what) {
+  require_positive(mass, fmt::format("the mass of the {}", what).c_str());
+  require_positive(outer_diameter, fmt::format("the diameter of the {}", what).c_str());
+  require_not_negative(inner_diameter, fmt::format("the inner diameter of the {}", what).c_str());
+  if (inner_diameter >= outer_diameter)
+    refuse(fmt::format("the inner diameter of the {} is not below the outer one", what), "swap them");
+  require_positive((to - from).norm(), fmt::format("the length of the {}", what).c_str());
+  return shapes::hollow_cylinder<double>(mass, outer_diameter / 2, inner_diameter / 2, from, to);
+}
+
+Ten upper_arm(const RobotDescription& robot, const PartShapes& s) {
+  const LimbGeometry<double>& limb = robot.limbs.front();
+  if (robot.drive_kind == DriveKind::prismatic) {
+    const Vec half = 0.5 * s.carriage_length * limb.axis_L;
+    return round(s.carriage_mass, s.carriage_diameter, 0, -half, half, "carriage");
+  }
+  Ten p = tube(s.upper_arm_density, s.upper_arm_outer_diameter, s.upper_arm_wall, Vec::Zero(), Vec(arm_length(robot), 0, 0),
+               "upper arm");
+  require_not_negative(s.upper_arm_hub_mass, "the mass of the upper arm's hub");
+  if (s.upper_arm_hub_mass > 0) {
+    const Vec half(0, s.upper_arm_hub_width / 2, 0);
+    p += round(s.upper_arm_hub_mass, s.upper_arm_hub_diameter, 0, -half, half, "upper arm's hub");
+  }
+  return p;
+}
+
+Ten strut(const RobotDescription& robot, const PartShapes& s) {
+  const double length = robot.limbs.front().strut;
+  Ten p = tube(s.strut_density, s.strut_outer_diameter, s.strut_wall, Vec::Zero(), Vec(length, 0, 0), "strut");
+  require_not_negative(s.strut_sockets_mass, "the mass of the strut's sockets");
+  if (s.strut_sockets_mass > 0) {
+    const Vec socket(s.strut_socket_length, 0, 0);
+    const Vec end(length, 0, 0);
+    const double inner = s.strut_outer_diameter;  // it sits around the tube
+    p += round(s.strut_sockets_mass / 2, s.strut_socket_diameter, inner, Vec::Zero(), socket, "strut's socket");
+    p += round(s.strut_sockets_mass / 2, s.strut_socket_diameter, inner, end - socket, end, "strut's socket");
+  }
+  return p;
+}
+
+Ten body_of(const std::string& name, const RobotDescription& robot, const PartShapes& s) {
+  const auto is = [&](Body body) { return name.rfind(deltadyn::name(body), 0) == 0; };  // a limb's own copy has its number behind
+  if (is(Body::upper_arm)) return upper_arm(robot, s);
+  if (is(Body::strut)) return strut(robot, s);
+  if (is(Body::platform)) {
+    const Vec half(0, 0, s.platform_thickness / 2);
+    return round(s.platform_mass, s.platform_diameter, 0, -half, half, "platform");
+  }
+  if (is(Body::tool)) return round(s.tool_mass, s.tool_diameter, 0, Vec(0, 0, -s.tool_length), Vec::Zero(), "tool");
+  if (!(s.telescope_upper_share > 0 && s.telescope_upper_share < 1))
+    refuse("the upper part's share of the telescope's mass must lie between 0 and 1", "the paper's is 0.6");
+  if (is(Body::telescope_upper))
+    return round(s.telescope_mass * s.telescope_upper_share, s.telescope_upper_diameter, 0, Vec::Zero(),
+                 Vec(0, 0, -s.telescope_upper_length), "telescope's upper part");
+  return round(s.telescope_mass * (1 - s.telescope_upper_share), s.telescope_lower_outer_diameter,
+               s.telescope_lower_inner_diameter, Vec::Zero(), Vec(0, 0, s.telescope_lower_length), "telescope's lower part");
+}
+
+/// Standard deviations of the ten parameters for the same relative error of every moment of the mass distribution.
+Ten std_of(const Ten& p, double share) {
+  const PseudoInertia<double> M = to_pseudo_inertia(p);
+  PseudoInertia<double> scale;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) scale(i, j) = share * std::sqrt(M(i, i) * M(j, j));
+  return from_pseudo_inertia<double>(scale).cwiseAbs();
+}
+
+double friction_of(const std::string& joint, bool viscous, const RobotDescription& robot, const PartShapes& s) {
+  if (joint == "telescope") return viscous ? s.telescope_viscous : s.telescope_coulomb;
+  if (robot.telescope && joint == fmt::format("drive{}", robot.drives()))
+    return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
+  return viscous ? s.drive_viscous : s.drive_coulomb;
+}
+
+}  // namespace
+
+PartShapes::PartShapes(const RobotDescription& robot) {
+  const LimbGeometry<double>& limb = robot.limbs.front();
+  const bool prismatic = robot.drive_kind == DriveKind::prismatic;
+  const double arm = arm_length(robot) / kPaperArm;
+  const double rod = limb.strut / kPaperStrut;
+  const double plate = std::max(limb.p_BA.head<2>().norm(), 0.2 * kPaperPlate) / kPaperPlate;
+  const double bar = (arm_length(robot) + limb.strut) / (kPaperArm + kPaperStrut);
+
+  upper_arm_outer_diameter = 0.056 * arm;
+  upper_arm_wall = 0.003 * arm;
+  upper_arm_density = 1600;  // carbon fibre
+  upper_arm_hub_mass = 0.5 * arm;
+  upper_arm_hub_diameter = 0.08 * arm;
+  upper_arm_hub_width = 0.06 * arm;
+  carriage_mass = 2;
+  carriage_diameter = 0.1;
+  carriage_length = 0.1;
+  strut_outer_diameter = 0.0236 * rod;
+  strut_wall = 0.001 * rod;
+  strut_density = 1585;
+  strut_sockets_mass =  // as heavy as the tube (paper VIII.A)
+      shapes::cylinder_mass(strut_density, strut_outer_diameter / 2, strut_outer_diameter / 2 - strut_wall, limb.strut);
+  strut_socket_diameter = 1.5 * strut_outer_diameter;
+  strut_socket_length = 0.08 * rod;
+  platform_mass = plate;  // 1 kg in the paper; a larger plate is wider and lighter built
+  platform_diameter = 0.16 * plate;
+  platform_thickness = 0.02;
+  tool_mass = 0.3;
+  tool_diameter = 0.06;
+  tool_length = 0.1;
+  telescope_mass = 1.5 * bar;
+  telescope_upper_share = 0.6;
+  telescope_upper_length = 0.70 * bar;
+  telescope_upper_diameter = 0.016;
+  telescope_lower_length = 0.78 * bar;
+  telescope_lower_outer_diameter = 0.028;
+  telescope_lower_inner_diameter = 0.016;
+  drive_viscous = prismatic ? 20 : 1.5;
+  drive_coulomb = prismatic ? 10 : 4;
+  telescope_drive_viscous = 0.02;
+  telescope_drive_coulomb = 0.5;
+  telescope_viscous = 4;
+  telescope_coulomb = 4;
+}
+
+NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shapes) {
+  require_positive(shapes.body_std, "the relative standard deviation of the bodies");
+  require_positive(shapes.friction_std, "the relative standard deviation of the friction");
+  for (const double friction : {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous,
+                                shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb})
+    require_positive(friction, "a friction coefficient");
+  const std::vector<std::string>& names = robot.parameter_names();
+  NominalParameters nominal;
+  nominal.value = Eigen::VectorXd::Zero(robot.parameters());
+  nominal.std = Eigen::VectorXd::Zero(robot.parameters());
+  for (std::size_t k = 0; k < names.size();) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const std::string body = names[k].substr(0, names[k].find('.'));
+    const std::string entry = names[k].substr(body.size() + 1);
+    if (entry == kInertialNames[0]) {  // a body's ten parameters stand together, the mass first
+      const Ten p = body_of(body, robot.description(), shapes);
+      if (!is_physically_consistent<double>(p))
+        refuse(fmt::format("the shapes of {} make no physically consistent body", body), "give every part a thickness");
+      nominal.value.segment<kInertialParameters>(column) = p.array() + 0.0;  // no -0 in a file that people read
+      nominal.std.segment<kInertialParameters>(column) = std_of(p, shapes.body_std);
+      k += kInertialParameters;
+      continue;
+    }
+    if (entry == "viscous" || entry == "coulomb") {
+      nominal.value(column) = friction_of(body, entry == "viscous", robot.description(), shapes);
+      nominal.std(column) = shapes.friction_std * nominal.value(column);
+    } else {
+      // Rotor inertia and offset: unknown beforehand, of the size of the drive's own friction.
+      nominal.std(column) = shapes.friction_std * friction_of(body, false, robot.description(), shapes);
+    }
+    ++k;
+  }
+  return nominal;
+}
+
+}  // namespace deltadyn

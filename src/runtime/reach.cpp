@@ -1,0 +1,127 @@
+#include "deltadyn/runtime/reach.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <vector>
+
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/workspace.hpp"
+
+namespace deltadyn {
+namespace {
+
+/// Condition number of dr/dq where the pose is allowed, infinity elsewhere.
+class PoseCheck {
+ public:
+  explicit PoseCheck(const Robot& robot)
+      : robot_(robot), z_(robot.drives()), q_(robot.drives()), J_(robot.drives(), robot.drives()) {}
+
+  double condition(const Eigen::Vector3d& r) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    z_.setZero();
+    z_.head<3>() = r;
+    if (robot_.inverse_kinematics(z_, q_) != Status::ok) return kNever;
+    const RobotDescription& description = robot_.description();
+    for (std::size_t i = 0; i < description.limbs.size(); ++i) {
+      const double q = q_(static_cast<Eigen::Index>(i));
+      if (q < description.limits[i].lower || q > description.limits[i].upper) return kNever;
+    }
+    if (robot_.jacobian(q_, J_) != Status::ok) return kNever;
+    const Eigen::Matrix3d block = J_.topLeftCorner<3, 3>();
+    const Eigen::Vector3d s = Eigen::JacobiSVD<Eigen::Matrix3d>(block).singularValues();
+    return s(2) > 0 ? s(0) / s(2) : kNever;
+  }
+
+ private:
+  const Robot& robot_;
+  Eigen::VectorXd z_, q_;
+  Eigen::MatrixXd J_;
+};
+
+/// No pose of the plate is farther from the origin than this in any coordinate.
+Eigen::Vector3d bound(const RobotDescription& robot, const Eigen::Vector3d& home) {
+  double reach = 0;
+  for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
+    const auto& limb = robot.limbs[i];
+    double length = limb.p_WD.norm() + limb.p_DE_0.norm() + limb.strut + limb.p_BA.norm();
+    if (robot.drive_kind == DriveKind::prismatic) {
+      // Rails without ends would reach anywhere: look at the neighbourhood of the home pose then.
+      const DriveLimits& limits = robot.limits[i];
+      const double stroke = std::max(std::abs(limits.lower), std::abs(limits.upper));
+      length += std::isfinite(stroke) ? stroke : home.norm();
+    }
+    reach = std::max(reach, length);
+  }
+  return Eigen::Vector3d::Constant(reach);
+}
+
+double quantile(std::vector<double> values, double share) {
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+}  // namespace
+
+Reach find_reach(const Robot& robot, const ReachOptions& options) {
+  const RobotDescription& description = robot.description();
+  if (description.parts.empty()) throw Error("an axis has no plate and so no workspace", description.name, "give a Delta");
+  if (options.cells < 5 || options.cells > 400)
+    throw Error(fmt::format("{} cells for the workspace grid", options.cells), "", "give 5 to 400", ExitCode::usage);
+  if (!(options.largest_condition > 1))
+    throw Error("the largest condition number of the workspace must be above 1", "", "50 is usual", ExitCode::usage);
+
+  Reach reach;
+  reach.home = WorkspaceSampler(robot).ball().centre;
+  const Eigen::Vector3d size = bound(description, reach.home);
+  const int n = options.cells;
+  reach.cell = 2 * size(0) / n;
+  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(-size(0));
+  const auto index = [n](const Eigen::Vector3i& c) { return static_cast<std::size_t>((c.x() * n + c.y()) * n + c.z()); };
+  const auto centre = [&](const Eigen::Vector3i& c) -> Eigen::Vector3d {
+    return corner + reach.cell * (c.cast<double>().array() + 0.5).matrix();
+  };
+
+  // Grow from the home pose through regular cells, so that the mirrored workspace beyond a singular pose is left out.
+  PoseCheck check(robot);
+  std::vector<char> seen(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
+  std::vector<Eigen::Vector3i> open, found;
+  std::vector<double> conditions;
+  const auto visit = [&](const Eigen::Vector3i& c) {
+    if ((c.array() < 0).any() || (c.array() >= n).any() || seen[index(c)] != 0) return;
+    seen[index(c)] = 1;
+    const double condition = check.condition(centre(c));
+    if (!(condition <= options.largest_condition)) return;
+    open.push_back(c);
+    found.push_back(c);
+    conditions.push_back(condition);
+  };
+  const Eigen::Vector3i home = ((reach.home - corner) / reach.cell).array().floor().cast<int>();
+  for (int k = 0; k < 27; ++k) visit(home + Eigen::Vector3i(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1));
+  while (!open.empty()) {
+    const Eigen::Vector3i c = open.back();
+    open.pop_back();
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-1, 1}) visit(c + step * Eigen::Vector3i::Unit(axis));
+  }
+  if (found.empty())
+    throw Error("no pose of the plate is regular and inside the limits of the drives", description.name,
+                "check the lengths and the position limits in the robot file");
+
+  const auto count = static_cast<Eigen::Index>(found.size());
+  reach.points.resize(count, 3);
+  reach.condition = Eigen::Map<Eigen::VectorXd>(conditions.data(), count);
+  for (Eigen::Index k = 0; k < count; ++k) reach.points.row(k) = centre(found[static_cast<std::size_t>(k)]).transpose();
+  reach.lower = reach.points.colwise().minCoeff().transpose();
+  reach.upper = reach.points.colwise().maxCoeff().transpose();
+  reach.radius = reach.points.leftCols<2>().rowwise().norm().maxCoeff();
+  reach.volume = static_cast<double>(count) * std::pow(reach.cell, 3);
+  reach.condition_best = reach.condition.minCoeff();
+  reach.condition_median = quantile(conditions, 0.5);
+  reach.condition_worst_of_95 = quantile(conditions, 0.95);
+  return reach;
+}
+
+}  // namespace deltadyn
