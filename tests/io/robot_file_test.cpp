@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <map>
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
@@ -339,6 +340,24 @@ TEST(RobotFile, MissingPartsAreNamed) {
   expect_refused("t_s,q1_rad\n0,1\n", {"robot.urdf", "XML"});
   expect_refused("<robot name=\"r\"/>", {"no link"});
   expect_refused("<sdf/>", {"<sdf>"});
+}
+
+TEST(RobotFile, TheShippedRobotsAreRead) {
+  const std::filesystem::path folder = std::filesystem::path(DELTADYN_SOURCE_DIR) / "data" / "robots";
+  const std::map<std::string, std::string> types = {
+      {"irb360_6_1600", "delta4"},        {"mujoco_delta4", "delta4"}, {"delta_rl5", "delta3"}, {"emps", "axis"},
+      {"linear_delta3", "linear-delta3"}, {"delta3", "delta3"}};
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".urdf") continue;
+    ++files;
+    const RobotDescription robot = read_robot_file(entry.path().string());
+    ASSERT_EQ(types.count(robot.name), 1U) << robot.name;
+    EXPECT_EQ(robot.name, entry.path().stem().string());
+    EXPECT_EQ(robot.type, types.at(robot.name));
+    expect_same(robot, robot_from_urdf(robot_to_urdf(robot), "memory"));
+  }
+  EXPECT_EQ(files, types.size());
 }
 
 TEST(RobotFile, ASerialArmIsNotADelta) {
