@@ -1,0 +1,77 @@
+#pragma once
+
+/// \file
+/// The main job: logs in, physically consistent parameters with their uncertainty out.
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/identification/consistent_fit.hpp"
+#include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/identification/log_processing.hpp"
+
+namespace deltadyn {
+
+/// What happens to rows near velocity reversals, where the Coulomb model of friction does not hold.
+enum class Reversals {
+  automatic,  ///< leave them out if the model fits them three times worse than the other rows, drive by drive
+  mask,       ///< always leave them out
+  keep        ///< never
+};
+
+struct IdentificationOptions {
+  ProcessingOptions processing;        ///< cutoff_hz counts only if choose_cutoff is false
+  bool choose_cutoff = true;           ///< find the cut-off that leaves the smallest residual
+  Reversals reversals = Reversals::automatic;
+  bool robust = false;                 ///< Huber weights: single rows that stand out count less
+  BaseParameterOptions base;
+  ConsistentFitOptions fit;
+  int threads = 0;                     ///< 0: all
+};
+
+/// Residual of the base-parameter fit over the cut-off of the motion.
+struct CutoffPoint {
+  double cutoff_hz;
+  double score;               ///< geometric mean over the drives of the residual [N m | N]
+  Eigen::VectorXd rms;        ///< of each drive
+};
+
+struct DriveReport {
+  Eigen::Index rows = 0;            ///< used
+  Eigen::Index masked_rows = 0;     ///< left out near reversals
+  double reversal_ratio = 1;        ///< rms near reversals over rms elsewhere, of the fit without them
+  double rms_base = 0;              ///< residual of the base parameters [N m | N]
+  double rms = 0;                   ///< residual of the consistent parameters
+  double rms_torque = 0;
+  DriveNoise noise;
+};
+
+struct Identification {
+  BaseParameters base;
+  BaseEstimate base_estimate;
+  Eigen::VectorXd base_from_fit;       ///< B p of the consistent parameters, to compare with base_estimate
+  ConsistentFitSummary fit;
+  std::vector<DriveReport> drives;
+  std::vector<CutoffPoint> cutoffs;    ///< empty if the cut-off was given
+  ProcessingOptions processing;        ///< as used
+  Eigen::Index samples = 0;
+  double fold_time_s = 0, total_time_s = 0;
+  std::vector<std::string> notes;
+};
+
+/// Cut-off of the motion, from the logs themselves: too low a cut-off bends the accelerations, too high a one lets encoder noise
+/// through, so that the residual of the base-parameter fit has a minimum between.
+[[nodiscard]] std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+                                                    const IdentificationOptions& options);
+
+/// Identifies the parameters of `robot` from one or more logs.
+/// \param prior      one value a parameter of the robot, physically consistent
+/// \param prior_std  the same, or empty: then 30 % of the prior
+/// Throws deltadyn::Error as the steps do.
+[[nodiscard]] Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
+                                      const Eigen::VectorXd& prior_std, const IdentificationOptions& options);
+
+}  // namespace deltadyn

@@ -1,0 +1,86 @@
+#pragma once
+
+/// \file
+/// From a recorded log to rows of the regression tau = Y p: filtering, derivatives, masks, decimation.
+///
+/// Positions are filtered without phase lag at `cutoff_hz` and differentiated. Regressor and torque then pass one and the same
+/// linear-phase low pass and are decimated together, so that the filter does not bias the parameters.
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/signal/fir_decimator.hpp"
+#include "deltadyn/signal/log.hpp"
+
+namespace deltadyn {
+
+/// How a log that repeats itself is used.
+enum class Periods {
+  detect,  ///< a log of at least two equal periods counts as periodic
+  given,   ///< ProcessingOptions::period_s
+  ignore   ///< every log is filtered like any other
+};
+
+struct ProcessingOptions {
+  bool filter = true;                ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
+  double cutoff_hz = 50;             ///< of the motion; the -3 dB point of the two passes together
+  double torque_cutoff_ratio = 1.25; ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
+  Periods periods = Periods::detect; ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
+  double period_s = 0;               ///< used if periods is `given`
+  double reversal_sigmas = 4;        ///< a rate below this many standard deviations of its noise has no certain sign
+  double reversal_floor = 0.003;     ///< ... nor one below this share of the joint's largest rate
+  bool low_pass_torque = true;       ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
+  int stride = 0;                    ///< use every stride-th sample; 0: what the pass band asks for
+
+  /// Throws deltadyn::Error naming the field.
+  void validate() const;
+};
+
+/// A log made ready. Rows are numbered from 0; row k belongs to sample first + k stride of the log.
+struct PreparedLog {
+  std::string file;
+  double rate_hz = 0;
+  Eigen::VectorXd t_s;
+  Eigen::MatrixXd q, qd, qdd, tau;            ///< N x drives, motion filtered, torque as recorded
+  std::shared_ptr<const FirDecimator> low_pass;  ///< null without filter
+  Eigen::Index first = 0, rows = 0, stride = 1;
+  std::optional<double> period_s;                ///< of a periodic log, whose samples then are means over the periods
+  std::vector<long> line;                     ///< of each sample in the file; empty if unknown
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
+  std::vector<char> filled;                   ///< samples that the log reader repaired; empty: none
+  std::vector<std::string> notes;
+};
+
+/// Filters, differentiates and masks one log.
+/// Throws deltadyn::Error with file and line for poses out of reach, singular poses, logs too short for the cut-off, and missing
+/// derivatives when filter is off.
+[[nodiscard]] PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options);
+
+/// What a row may be used for.
+enum class RowUse : char {
+  regular,   ///< for every fit
+  reversal,  ///< a velocity reversal is in reach of the filter: only where static friction is no matter
+  unusable   ///< repaired samples in reach of the filter
+};
+
+/// Consecutive rows of a prepared log.
+struct RowBlock {
+  Eigen::Index first_row = 0;
+  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x parameters
+  Eigen::MatrixXd tau;             ///< rows x drives, filtered as Y
+  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
+
+  [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
+};
+
+/// Computes rows [first_row, first_row + count). Blocks are independent of each other: call from several threads at will.
+void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);
+
+/// Sample of a row in the log.
+[[nodiscard]] inline Eigen::Index sample_of_row(const PreparedLog& log, Eigen::Index row) { return log.first + row * log.stride; }
+
+}  // namespace deltadyn

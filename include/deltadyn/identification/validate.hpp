@@ -1,0 +1,41 @@
+#pragma once
+
+/// \file
+/// Torque prediction on logs that took no part in a fit.
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/prediction.hpp"
+
+namespace deltadyn {
+
+struct ValidatedLog {
+  std::string file;
+  Eigen::Index samples = 0;
+  double rate_hz = 0;             ///< of the log
+  double row_rate_hz = 0;         ///< of the rows
+  Prediction prediction;
+  std::vector<std::string> notes;
+};
+
+/// Figures of one drive over all logs, rows near velocity reversals left out.
+struct ValidatedDrive {
+  double rms_residual = 0;        ///< [N m | N]
+  double relative_residual = 0;   ///< rms residual over rms torque
+  double max_residual = 0;        ///< largest |residual|
+  double rms_with_reversals = 0;  ///< rows near reversals included
+  Eigen::Index rows = 0, reversal_rows = 0;
+};
+
+struct Validation {
+  std::vector<ValidatedLog> logs;
+  std::vector<ValidatedDrive> drives;
+  ProcessingOptions processing;   ///< as used
+};
+
+/// Predicts every log with parameters p. Throws deltadyn::Error as prepare_log does.
+[[nodiscard]] Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
+                                  const ProcessingOptions& processing, int threads = 0);
+
+}  // namespace deltadyn

@@ -1,0 +1,124 @@
+#include "deltadyn/identification/data_fold.hpp"
+
+#include <omp.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+namespace deltadyn {
+
+namespace {
+
+constexpr Eigen::Index kRowsPerBlock = 256;  // large enough for the QR to be efficient, small enough to stay in the cache
+
+/// Rows of `block` with the given use, drive by drive.
+void add_rows(const RowBlock& block, int drive, RowUse use, const Eigen::VectorXd* p, const RowWeight& weight, DriveFold& fold) {
+  const auto& Y = block.Y[static_cast<std::size_t>(drive)];
+  Eigen::MatrixXd rows(block.rows(), Y.cols());
+  Eigen::VectorXd tau(block.rows());
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k < block.rows(); ++k) {
+    if (block.use(k, drive) != use) continue;
+    double scale = 1.0;
+    if (p != nullptr && weight) scale = std::sqrt(weight(drive, block.tau(k, drive) - Y.row(k).dot(*p)));
+    rows.row(count) = scale * Y.row(k);
+    tau(count++) = scale * block.tau(k, drive);
+  }
+  if (count > 0) fold.add(rows.topRows(count), tau.head(count));
+}
+
+/// QR of [R d; Y tau] in place of the factor.
+void triangularize(DriveFold& fold, const Eigen::Ref<const Eigen::MatrixXd>& Y, const Eigen::Ref<const Eigen::VectorXd>& tau) {
+  const Eigen::Index P = fold.R.cols();
+  Eigen::MatrixXd stacked(P + Y.rows(), P + 1);
+  stacked.topLeftCorner(P, P) = fold.R;
+  stacked.topRightCorner(P, 1) = fold.d;
+  stacked.bottomLeftCorner(Y.rows(), P) = Y;
+  stacked.bottomRightCorner(Y.rows(), 1) = tau;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  fold.R = qr.matrixQR().topLeftCorner(P, P).triangularView<Eigen::Upper>();
+  fold.d = qr.matrixQR().topRightCorner(P, 1);
+  if (stacked.rows() > P) {
+    const double rest = qr.matrixQR()(P, P);
+    fold.remainder += rest * rest;
+  }
+}
+
+}  // namespace
+
+DriveFold::DriveFold(Eigen::Index parameters)
+    : R(Eigen::MatrixXd::Zero(parameters, parameters)), d(Eigen::VectorXd::Zero(parameters)) {}
+
+void DriveFold::add(const Eigen::Ref<const Eigen::MatrixXd>& Y, const Eigen::Ref<const Eigen::VectorXd>& tau) {
+  if (Y.rows() == 0) return;
+  triangularize(*this, Y, tau);
+  tau_square += tau.squaredNorm();
+  tau_max = std::max(tau_max, tau.cwiseAbs().maxCoeff());
+  rows += Y.rows();
+}
+
+void DriveFold::add(const DriveFold& other) {
+  if (other.rows == 0) return;
+  triangularize(*this, other.R, other.d);
+  remainder += other.remainder;
+  tau_square += other.tau_square;
+  tau_max = std::max(tau_max, other.tau_max);
+  rows += other.rows;
+}
+
+double DriveFold::square_error(const Eigen::Ref<const Eigen::VectorXd>& p) const { return (R * p - d).squaredNorm() + remainder; }
+
+double DriveFold::rms(const Eigen::Ref<const Eigen::VectorXd>& p) const {
+  return rows > 0 ? std::sqrt(square_error(p) / static_cast<double>(rows)) : 0.0;
+}
+
+void DataFold::add(const DataFold& other) {
+  if (regular.empty()) {
+    *this = other;
+    return;
+  }
+  for (std::size_t j = 0; j < regular.size(); ++j) {
+    regular[j].add(other.regular[j]);
+    reversal[j].add(other.reversal[j]);
+  }
+  samples += other.samples;
+  unusable_rows += other.unusable_rows;
+}
+
+DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const Eigen::VectorXd* p, const RowWeight& weight) {
+  const int n = robot.drives();
+  const auto drives = static_cast<std::size_t>(n);
+  DataFold fold;
+  fold.regular.assign(drives, DriveFold(robot.parameters()));
+  fold.reversal.assign(drives, DriveFold(robot.parameters()));
+  const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
+  std::exception_ptr failure;  // an exception must not leave an OpenMP region
+#pragma omp parallel for ordered schedule(static, 1) num_threads(threads > 0 ? threads : omp_get_max_threads())
+  for (Eigen::Index k = 0; k < blocks; ++k) {
+    DataFold part;
+    try {
+      RowBlock block;
+      read_rows(robot, log, k * kRowsPerBlock, std::min(kRowsPerBlock, log.rows - k * kRowsPerBlock), block);
+      part.regular.assign(drives, DriveFold(robot.parameters()));
+      part.reversal.assign(drives, DriveFold(robot.parameters()));
+      for (int j = 0; j < n; ++j) {
+        add_rows(block, j, RowUse::regular, p, weight, part.regular[static_cast<std::size_t>(j)]);
+        add_rows(block, j, RowUse::reversal, p, weight, part.reversal[static_cast<std::size_t>(j)]);
+      }
+      part.unusable_rows = (block.use == RowUse::unusable).count();
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+    // Always the same order of additions, hence the same result with any number of threads.
+#pragma omp ordered
+    if (!failure && !part.regular.empty()) fold.add(part);
+  }
+  if (failure) std::rethrow_exception(failure);
+  fold.samples = log.t_s.size();
+  return fold;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,188 @@
+#include "deltadyn/identification/identify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "deltadyn/identification/prediction.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+using Eigen::Index;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kReversalRatio = 3.0;   // above it, rows near reversals follow another law than Coulomb's
+constexpr Index kFewestRows = 10;        // to judge them by
+constexpr double kHuber = 1.345;         // 95 % efficient for normal noise (Huber 1981)
+constexpr double kNoiseMemory_s = 0.2;   // time over which residual correlation is looked for
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads, const Eigen::VectorXd* p = nullptr,
+                  const RowWeight& weight = {}) {
+  DataFold fold;
+  for (const PreparedLog& log : logs) fold.add(fold_log(robot, log, threads, p, weight));
+  return fold;
+}
+
+/// Which drives keep their rows near reversals.
+std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice, std::vector<DriveReport>& drives) {
+  std::vector<bool> keep(drives.size(), choice == Reversals::keep);
+  if (choice == Reversals::keep) return keep;
+  const BaseEstimate estimate = estimate_base_parameters(base, fold.regular);
+  const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    const double elsewhere = std::max(fold.regular[j].rms(p), 1e-12);
+    if (fold.reversal[j].rows < kFewestRows) continue;
+    drives[j].reversal_ratio = fold.reversal[j].rms(p) / elsewhere;
+    keep[j] = choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio;
+  }
+  return keep;
+}
+
+std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& keep) {
+  std::vector<DriveFold> folds = fold.regular;
+  for (std::size_t j = 0; j < folds.size(); ++j) {
+    if (keep[j]) folds[j].add(fold.reversal[j]);
+  }
+  return folds;
+}
+
+/// DriveNoise::correlation of each drive: mean over the logs, weighted by their rows.
+std::vector<double> correlations(const Robot& robot, const std::vector<PreparedLog>& logs, const Eigen::VectorXd& p,
+                                 const std::vector<bool>& keep, int threads) {
+  std::vector<double> sum(keep.size(), 0.0), rows(keep.size(), 0.0);
+  for (const PreparedLog& log : logs) {
+    const Prediction prediction = predict(robot, log, p, threads);
+    const auto lags = static_cast<Index>(std::ceil(kNoiseMemory_s * log.rate_hz / static_cast<double>(log.stride)));
+    for (std::size_t j = 0; j < keep.size(); ++j) {
+      const auto drive = static_cast<int>(j);
+      const auto usable = prediction.usable(drive, keep[j]);
+      const auto count = static_cast<double>(usable.count());
+      const Eigen::VectorXd residual = prediction.tau.col(drive) - prediction.model.col(drive);
+      sum[j] += count * noise_correlation(residual, usable, std::min<Index>(lags, 50));
+      rows[j] += count;
+    }
+  }
+  for (std::size_t j = 0; j < sum.size(); ++j) sum[j] = rows[j] > 0 ? sum[j] / rows[j] : 1.0;
+  return sum;
+}
+
+std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& options) {
+  std::vector<PreparedLog> prepared;
+  prepared.reserve(logs.size());
+  for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
+  return prepared;
+}
+
+}  // namespace
+
+std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+                                      const IdentificationOptions& options) {
+  constexpr double kRatio = 1.26;    // a third of an octave
+  constexpr Index kRows = 1000;      // of each log: enough to tell cut-offs apart
+  std::vector<CutoffPoint> points;
+  double rate_hz = 1e300;
+  double shortest_s = 1e300;
+  for (const Log& log : logs) {
+    rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
+    shortest_s = std::min(shortest_s, static_cast<double>(log.samples()) * log.sample_time_s());
+  }
+  for (double cutoff = std::max(5.0, 20.0 / shortest_s); cutoff < 0.25 * rate_hz; cutoff *= kRatio) {
+    ProcessingOptions processing = options.processing;
+    processing.cutoff_hz = cutoff;
+    processing.periods = Periods::ignore;
+    processing.low_pass_torque = false;  // one and the same torque for all cut-offs
+    DataFold fold;
+    for (const Log& log : logs) {
+      processing.stride = static_cast<int>(std::max<Index>(1, log.samples() / kRows));
+      fold.add(fold_log(robot, prepare_log(robot, log, processing), options.threads));
+    }
+    std::vector<DriveReport> drives(fold.regular.size());
+    const std::vector<DriveFold> folds = select(fold, keep_reversals(base, fold, Reversals::mask, drives));
+    const BaseEstimate estimate = estimate_base_parameters(base, folds);
+    const Eigen::VectorXd p = any_parameters(base, estimate.value, robot.parameters());
+    CutoffPoint point{cutoff, 0.0, Eigen::VectorXd(robot.drives())};
+    for (int j = 0; j < robot.drives(); ++j) point.rms(j) = folds[static_cast<std::size_t>(j)].rms(p);
+    point.score = std::exp(point.rms.cwiseMax(1e-15).array().log().mean());
+    points.push_back(point);
+    // Well past the minimum, the noise only grows.
+    const auto best = std::min_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.score < b.score; });
+    if (point.score > 1.5 * best->score && points.end() - best > 3) break;
+  }
+  if (points.empty()) throw Error("the sampling rate is too low to filter the motion", logs.front().file, "record at 100 Hz or more");
+  return points;
+}
+
+Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
+                        const IdentificationOptions& options) {
+  if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
+  const auto start = Clock::now();
+  Identification out;
+  out.drives.resize(static_cast<std::size_t>(robot.drives()));
+  out.processing = options.processing;
+  out.base = find_base_parameters(robot, options.base);
+  if (options.processing.filter && options.choose_cutoff) {
+    out.cutoffs = scan_cutoffs(robot, out.base, logs, options);
+    out.processing.cutoff_hz =
+        std::min_element(out.cutoffs.begin(), out.cutoffs.end(), [](auto& a, auto& b) { return a.score < b.score; })->cutoff_hz;
+  }
+
+  const auto fold_start = Clock::now();
+  const std::vector<PreparedLog> prepared = prepare_all(robot, logs, out.processing);
+  for (const PreparedLog& log : prepared) out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+  DataFold fold = fold_all(robot, prepared, options.threads);
+  out.fold_time_s = seconds_since(fold_start);
+  out.samples = fold.samples;
+
+  const std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);
+  std::vector<DriveFold> folds = select(fold, keep);
+  out.base_estimate = estimate_base_parameters(out.base, folds);
+  Eigen::VectorXd p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
+  if (options.robust) {
+    const std::vector<DriveFold> all_rows = folds;
+    for (int pass = 0; pass < 5; ++pass) {
+      const RowWeight weight = [&](int drive, double residual) {
+        const double limit = kHuber * out.base_estimate.noise[static_cast<std::size_t>(drive)].std;
+        return std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);
+      };
+      folds = select(fold_all(robot, prepared, options.threads, &p, weight), keep);
+      out.base_estimate = estimate_base_parameters(out.base, folds);
+      p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
+    }
+    fold.regular = all_rows;  // the residual is reported over all rows with their full weight
+  } else {
+    fold.regular = folds;
+  }
+  const std::vector<double> correlation = correlations(robot, prepared, p, keep, options.threads);
+  out.base_estimate = estimate_base_parameters(out.base, folds, correlation);
+
+  ConsistentFitProblem problem;
+  problem.names = robot.parameter_names();
+  problem.A = out.base_estimate.A;
+  problem.b = out.base_estimate.b;
+  problem.prior = prior;
+  problem.prior_std = prior_std;
+  out.fit = fit_consistent_parameters(problem, options.fit);
+  out.base_from_fit = out.base.B * out.fit.p;
+
+  p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
+  for (std::size_t j = 0; j < out.drives.size(); ++j) {
+    DriveReport& drive = out.drives[j];
+    drive.rows = fold.regular[j].rows;
+    drive.masked_rows = keep[j] ? 0 : fold.reversal[j].rows;
+    drive.rms_base = fold.regular[j].rms(p);
+    drive.rms = fold.regular[j].rms(out.fit.p);
+    drive.rms_torque = std::sqrt(fold.regular[j].tau_square / std::max<double>(1.0, static_cast<double>(drive.rows)));
+    drive.noise = out.base_estimate.noise[j];
+  }
+  out.total_time_s = seconds_since(start);
+  return out;
+}
+
+}  // namespace deltadyn

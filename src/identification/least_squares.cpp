@@ -1,0 +1,127 @@
+#include "deltadyn/identification/least_squares.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+using Eigen::Index;
+
+/// Weighted factors of all drives, triangular again: A^T A = sum over the drives of w^2 R^T R.
+void stack(const std::vector<DriveFold>& folds, const Eigen::VectorXd& weight, Eigen::MatrixXd& A, Eigen::VectorXd& b) {
+  const Index P = folds.front().R.cols();
+  Eigen::MatrixXd stacked(P * static_cast<Index>(folds.size()), P + 1);
+  for (std::size_t j = 0; j < folds.size(); ++j) {
+    const auto row = static_cast<Index>(j);
+    stacked.middleRows(row * P, P) << weight(row) * folds[j].R, weight(row) * folds[j].d;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  A = qr.matrixQR().topLeftCorner(P, P).triangularView<Eigen::Upper>();
+  b = qr.matrixQR().topRightCorner(P, 1);
+}
+
+Eigen::MatrixXd columns(const Eigen::MatrixXd& A, const std::vector<int>& which) {
+  Eigen::MatrixXd out(A.rows(), static_cast<Index>(which.size()));
+  for (std::size_t k = 0; k < which.size(); ++k) out.col(static_cast<Index>(k)) = A.col(which[k]);
+  return out;
+}
+
+/// Names what a direction of beta-space is made of, for messages.
+std::string weakest(const BaseParameters& base, const Eigen::VectorXd& direction) {
+  std::string text;
+  for (Index k = 0; k < direction.size(); ++k) {
+    if (std::abs(direction(k)) < 0.3) continue;
+    text += (text.empty() ? "" : ", ") + base.expressions[static_cast<std::size_t>(k)];
+  }
+  return text;
+}
+
+}  // namespace
+
+Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta, Eigen::Index parameters) {
+  Eigen::VectorXd p = Eigen::VectorXd::Zero(parameters);
+  for (Index k = 0; k < beta.size(); ++k) p(base.independent[static_cast<std::size_t>(k)]) = beta(k);
+  return p;
+}
+
+BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vector<DriveFold>& folds,
+                                      const std::vector<double>& correlation) {
+  const auto drives = static_cast<Index>(folds.size());
+  const Index P = folds.front().R.cols();
+  double rows = 0;
+  for (const DriveFold& fold : folds) rows += static_cast<double>(fold.rows);
+  if (rows < 2.0 * base.count()) {
+    throw Error(fmt::format("{} usable rows are too few for {} base parameters", rows, base.count()), "",
+                "record a longer log, or one with fewer velocity reversals");
+  }
+  Eigen::VectorXd weight(drives);
+  for (Index j = 0; j < drives; ++j) weight(j) = 1.0 / std::max(folds[static_cast<std::size_t>(j)].tau_max, 1e-12);
+
+  BaseEstimate out;
+  out.noise.resize(folds.size());
+  for (int pass = 0; pass < 4; ++pass) {
+    stack(folds, weight, out.A, out.b);
+    Eigen::MatrixXd A_B = columns(out.A, base.independent);
+    Eigen::VectorXd norm = A_B.colwise().norm().cwiseMax(1e-300);
+    const double largest = norm.maxCoeff();
+    A_B *= norm.cwiseInverse().asDiagonal();
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(A_B, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::VectorXd& s = svd.singularValues();
+    out.condition_number = s(0) / std::max(s(s.size() - 1), 1e-300);
+    Index silent;
+    if (norm.minCoeff(&silent) < 1e-9 * largest || out.condition_number > 1e9) {
+      const Eigen::VectorXd direction =
+          norm(silent) < 1e-9 * largest ? Eigen::VectorXd::Unit(norm.size(), silent) : Eigen::VectorXd(svd.matrixV().rightCols<1>());
+      throw Error("the motion does not excite every base parameter; it says nothing about " + weakest(base, direction), "",
+                  "record a motion that moves all drives, fast and slow, over the workspace", ExitCode::not_trusted);
+    }
+    out.value = norm.cwiseInverse().asDiagonal() * svd.solve(out.b);
+    const Eigen::MatrixXd root = norm.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
+    out.covariance = root * root.transpose();
+    out.log_det = 2 * (s.array().log().sum() + norm.array().log().sum());
+
+    // Sigma from the residual; each drive bears its share of the fitted parameters.
+    const Eigen::VectorXd p = any_parameters(base, out.value, P);
+    for (Index j = 0; j < drives; ++j) {
+      const DriveFold& fold = folds[static_cast<std::size_t>(j)];
+      const double share = std::min(0.9, weight(j) * weight(j) *
+                                             (columns(fold.R, base.independent) * root).squaredNorm() /
+                                             std::max<double>(1.0, static_cast<double>(fold.rows)));
+      DriveNoise& noise = out.noise[static_cast<std::size_t>(j)];
+      const double floor = 1e-9 * std::max(fold.tau_max, 1e-12);  // noise-free logs
+      noise.std = std::max(floor, fold.rms(p) / std::sqrt(1 - share));
+      noise.correlation = correlation.empty() ? 1.0 : correlation[static_cast<std::size_t>(j)];
+      weight(j) = 1.0 / (noise.std * std::sqrt(noise.correlation));
+    }
+  }
+  return out;
+}
+
+double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                         const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags) {
+  const Eigen::VectorXd e = usable.select(residual.array(), 0.0).matrix();
+  const auto count = static_cast<double>(usable.count());
+  const double variance = e.squaredNorm() / std::max(count, 1.0);
+  if (!(variance > 0)) return 1.0;
+  double sum = 1.0;
+  double uncertainty = 0.0;
+  for (Index lag = 1; lag <= std::min<Index>(lags, e.size() - 1); ++lag) {
+    const Index length = e.size() - lag;
+    const double rho = e.head(length).dot(e.tail(length)) / (count * variance);
+    const double window = 1.0 - static_cast<double>(lag) / static_cast<double>(lags + 1);
+    sum += 2 * window * rho;
+    uncertainty += 4 * window * window / count;
+  }
+  // White noise gives 1 give or take the square root of `uncertainty`: then it is taken as white.
+  return std::abs(sum - 1) < 3 * std::sqrt(uncertainty) ? 1.0 : std::max(sum, 0.05);
+}
+
+}  // namespace deltadyn

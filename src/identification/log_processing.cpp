@@ -1,0 +1,264 @@
+#include "deltadyn/identification/log_processing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/differentiate_log.hpp"
+#include "deltadyn/signal/fourier.hpp"
+#include "deltadyn/signal/reversal_mask.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr Index kFewestRows = 20;
+constexpr int kFewestPeriods = 3;       // below, averaging gains less than the part of a period it leaves out
+constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
+constexpr double kBreakaway_s = 0.02;  // a joint needs about so long to slide again after a reversal
+
+std::string place(const PreparedLog& log, Index sample) {
+  if (!log.line.empty() && log.line[static_cast<std::size_t>(sample)] > 0) {
+    return fmt::format("{}, line {}", log.file, log.line[static_cast<std::size_t>(sample)]);
+  }
+  return fmt::format("{}, t_s = {:.6g}", log.file, log.t_s(sample));
+}
+
+[[noreturn]] void refuse_pose(const PreparedLog& log, Index sample, Status status) {
+  const auto q = log.q.row(sample);
+  std::string angles;
+  for (Index j = 0; j < q.size(); ++j) angles += fmt::format("{}{:.4g}", j > 0 ? ", " : "", q(j));
+  throw Error(fmt::format("{} at drive positions ({})", message(status), angles), place(log, sample),
+              "check that the robot file belongs to this machine, and zero, sign and unit of the drive positions");
+}
+
+/// Rates of the joints with friction at every sample: N x friction joints. Refuses poses that the robot cannot have.
+Eigen::MatrixXd joint_rates(const Robot& robot, const PreparedLog& log) {
+  Eigen::MatrixXd rates(log.t_s.size(), robot.friction_joints());
+  Eigen::VectorXd v(robot.friction_joints());
+  for (Index k = 0; k < log.t_s.size(); ++k) {
+    const Status status = robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v);
+    if (status != Status::ok) refuse_pose(log, k, status);
+    rates.row(k) = v.transpose();
+  }
+  return rates;
+}
+
+/// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
+/// the drives of the limbs (the bar's length does not depend on psi).
+/// \param grow  samples on either side that count, too
+void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, Index grow, PreparedLog& log) {
+  const Eigen::MatrixXd rates = joint_rates(robot, log);
+  const auto limbs = static_cast<Index>(robot.description().limbs.size());
+  std::vector<std::vector<char>> mask;
+  for (Index j = 0; j < rates.cols(); ++j) {
+    // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
+    const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
+    mask.push_back(reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
+  }
+  log.reversal.resize(log.t_s.size(), robot.drives());
+  for (int j = 0; j < robot.drives(); ++j) {
+    const bool with_bar = robot.description().telescope && j < limbs;
+    for (Index k = 0; k < log.t_s.size(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      log.reversal(k, j) = mask[static_cast<std::size_t>(j)][at] != 0 || (with_bar && mask.back()[at] != 0);
+    }
+  }
+}
+
+/// Standard deviation of the drives' filtered rates, from the noise of the positions.
+Eigen::VectorXd velocity_noise(const Log& log, double cutoff_hz) {
+  Eigen::VectorXd sigma(log.drives());
+  for (Index j = 0; j < log.drives(); ++j) {
+    sigma(j) = derivative_noise(position_noise(log.q.col(j)), 1.0 / log.sample_time_s(), cutoff_hz, 4, 1);
+  }
+  return sigma;
+}
+
+/// Copies what a log holds. The torque columns are needed from here on.
+PreparedLog copy_log(const Robot& robot, const Log& log) {
+  if (log.q.cols() != robot.drives() || log.tau.cols() != robot.drives()) {
+    throw Error(fmt::format("the log has {} positions and {} torques, the robot {} drives", log.q.cols(), log.tau.cols(), robot.drives()),
+                log.file, "use the robot file of the machine that the log was recorded on");
+  }
+  PreparedLog out;
+  out.file = log.file;
+  out.rate_hz = 1.0 / log.sample_time_s();
+  out.t_s = log.t_s;
+  out.tau = log.tau;
+  out.line = log.line;
+  out.filled = log.filled;
+  return out;
+}
+
+}  // namespace
+
+void ProcessingOptions::validate() const {
+  const auto refuse = [](const char* field, const char* range) {
+    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
+  };
+  if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
+  if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10)) refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
+  if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
+  if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
+  if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
+  if (stride < 0) refuse("stride", "it must be at least 0");
+}
+
+namespace {
+
+/// Low pass of regressor and torque for a motion filtered at cutoff_hz.
+std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
+  const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
+  const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
+  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz, factor);
+}
+
+/// The period to average over, if the log has one and the series stays small.
+std::optional<double> period_of(const Log& log, const ProcessingOptions& options, std::vector<std::string>& notes) {
+  if (options.periods == Periods::ignore) return std::nullopt;
+  double period_s = options.period_s;
+  if (options.periods == Periods::detect) {
+    PeriodOptions wanted;
+    wanted.min_periods = kFewestPeriods;
+    const std::optional<Period> found = find_period(log, wanted);
+    if (!found) return std::nullopt;
+    period_s = found->period_s;
+  }
+  const double per_period = period_s / log.sample_time_s();
+  if (period_s * options.cutoff_hz > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {
+    notes.push_back(fmt::format("{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
+                                "{:.3g} s at this cut-off)",
+                                log.file, period_s, kMostHarmonics / options.cutoff_hz));
+    return std::nullopt;
+  }
+  return period_s;
+}
+
+/// One period: Fourier series of the motion up to the cut-off, mean of the torque. Continued on either side by what the low pass
+/// needs, so that no edge is lost.
+PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s, const ProcessingOptions& options) {
+  const PeriodMean mean = average_periods(log, period_s, std::max(1, static_cast<int>(period_s * options.cutoff_hz)));
+  const Index samples = mean.log.samples();
+  PreparedLog out = copy_log(robot, mean.log);
+  out.line.clear();
+  out.low_pass = low_pass_of(out.rate_hz, options);
+  out.stride = out.low_pass->factor();
+  out.first = out.low_pass->half_width();
+  out.rows = samples / out.stride;
+  const Index length = samples + 2 * out.first;
+  out.t_s = Eigen::VectorXd::LinSpaced(length, -static_cast<double>(out.first), static_cast<double>(length - 1 - out.first)) / out.rate_hz;
+  out.q = mean.series.evaluate(out.t_s);
+  out.qd = mean.series.evaluate(out.t_s, 1);
+  out.qdd = mean.series.evaluate(out.t_s, 2);
+  out.tau.resize(length, log.drives());
+  out.filled.assign(static_cast<std::size_t>(length), 0);
+  for (Index k = 0; k < length; ++k) {
+    const Index phase = ((k - out.first) % samples + samples) % samples;
+    out.tau.row(k) = mean.log.tau.row(phase);
+    out.filled[static_cast<std::size_t>(k)] = mean.log.is_filled(phase) ? 1 : 0;
+  }
+  out.period_s = period_s;
+  mark_reversals(robot, options, velocity_noise(log, options.cutoff_hz) / std::sqrt(static_cast<double>(mean.periods)), 0, out);
+  out.notes.push_back(fmt::format("{}: periodic, {} periods of {:.6g} s averaged, {} harmonics", log.file, mean.periods, period_s,
+                                  mean.series.harmonics));
+  return out;
+}
+
+}  // namespace
+
+PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options) {
+  options.validate();
+  PreparedLog out = copy_log(robot, log);
+  const Index samples = log.samples();
+  if (!options.filter) {
+    if (log.qd.size() == 0 || log.qdd.size() == 0) {
+      throw Error("without filtering, the log must hold velocities and accelerations", log.file,
+                  "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
+    }
+    out.q = log.q;
+    out.qd = log.qd;
+    out.qdd = log.qdd;
+    out.stride = std::max(1, options.stride);
+    out.rows = (samples + out.stride - 1) / out.stride;
+    out.reversal.setConstant(samples, robot.drives(), false);
+    (void)joint_rates(robot, out);  // refuses poses out of reach
+    return out;
+  }
+  if (const std::optional<double> period_s = period_of(log, options, out.notes)) return prepare_periodic(robot, log, *period_s, options);
+
+  DriveMotion motion = differentiate_log(log, options.cutoff_hz);
+  out.q = std::move(motion.q);
+  out.qd = std::move(motion.qd);
+  out.qdd = std::move(motion.qdd);
+  out.stride = std::max(1, options.stride);
+  Index reach = 0;
+  if (options.low_pass_torque) {
+    out.low_pass = low_pass_of(out.rate_hz, options);
+    out.stride = out.low_pass->factor();
+    reach = out.low_pass->half_width();
+  }
+  out.first = std::max(reach, motion.first);
+  const Index last = std::min(samples - reach, motion.last);
+  out.rows = last > out.first ? (last - out.first + out.stride - 1) / out.stride : 0;
+  if (out.rows < kFewestRows) {
+    throw Error(fmt::format("the log lasts {:.3g} s, too short for a cut-off of {:.3g} Hz", static_cast<double>(samples) / out.rate_hz,
+                            options.cutoff_hz),
+                log.file,
+                fmt::format("record at least {:.3g} s, or raise the cut-off",
+                            static_cast<double>(2 * out.first + kFewestRows * out.stride) / out.rate_hz));
+  }
+  // Without the low pass, what follows a reversal (the joint breaking away) is kept out by a margin of its own.
+  const Index grow = options.low_pass_torque ? 0 : static_cast<Index>(std::lround(kBreakaway_s * out.rate_hz));
+  mark_reversals(robot, options, velocity_noise(log, options.cutoff_hz), grow, out);
+  return out;
+}
+
+void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
+  const int n = robot.drives();
+  const Index P = robot.parameters();
+  const Index reach = log.low_pass ? log.low_pass->half_width() : 0;
+  const Index step = log.low_pass ? 1 : log.stride;  // the filter needs every sample, without it only those of the rows
+  const Index first_sample = sample_of_row(log, first_row) - reach;
+  const Index last_sample = sample_of_row(log, first_row + count - 1) + reach;
+  const Index samples = (last_sample - first_sample) / step + 1;
+
+  Eigen::MatrixXd raw(samples, n * (P + 1));  // Y of drive 1, of drive 2, ..., then the torques
+  Eigen::MatrixXd Y(n, P);
+  for (Index k = 0; k < samples; ++k) {
+    const Index at = first_sample + k * step;
+    const Status status = robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y);
+    if (status != Status::ok) refuse_pose(log, at, status);
+    for (int j = 0; j < n; ++j) raw.row(k).segment(j * P, P) = Y.row(j);
+    raw.row(k).tail(n) = log.tau.row(at);
+  }
+  Eigen::MatrixXd rows;
+  if (log.low_pass) {
+    rows.resize(count, raw.cols());
+    log.low_pass->apply(raw, 0, count, rows);
+  } else {
+    rows.swap(raw);
+  }
+  block.first_row = first_row;
+  block.Y.resize(static_cast<std::size_t>(n));
+  for (int j = 0; j < n; ++j) block.Y[static_cast<std::size_t>(j)] = rows.middleCols(j * P, P);
+  block.tau = rows.rightCols(n);
+  block.use.setConstant(count, n, RowUse::regular);
+  for (Index k = 0; k < count; ++k) {
+    const Index centre = sample_of_row(log, first_row + k);
+    for (int j = 0; j < n; ++j) {
+      if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
+    }
+    if (!log.filled.empty() && std::any_of(log.filled.begin() + centre - reach, log.filled.begin() + centre + reach + 1,
+                                           [](char filled) { return filled != 0; })) {
+      block.use.row(k).setConstant(RowUse::unusable);
+    }
+  }
+}
+
+}  // namespace deltadyn

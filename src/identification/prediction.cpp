@@ -1,0 +1,63 @@
+#include "deltadyn/identification/prediction.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+namespace deltadyn {
+
+Eigen::Array<bool, Eigen::Dynamic, 1> Prediction::usable(int drive, bool with_reversals) const {
+  if (with_reversals) return use.col(drive) != RowUse::unusable;
+  return use.col(drive) == RowUse::regular;
+}
+
+double Prediction::rms_residual(int drive, bool with_reversals) const {
+  const auto rows = usable(drive, with_reversals);
+  const auto count = static_cast<double>(rows.count());
+  return count > 0 ? std::sqrt(rows.select((tau.col(drive) - model.col(drive)).array(), 0.0).square().sum() / count) : 0.0;
+}
+
+double Prediction::rms_torque(int drive, bool with_reversals) const {
+  const auto rows = usable(drive, with_reversals);
+  const auto count = static_cast<double>(rows.count());
+  return count > 0 ? std::sqrt(rows.select(tau.col(drive).array(), 0.0).square().sum() / count) : 0.0;
+}
+
+Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::VectorXd& p, int threads) {
+  constexpr Eigen::Index kRowsPerBlock = 256;
+  const int n = robot.drives();
+  Prediction out;
+  out.t_s.resize(log.rows);
+  for (Eigen::MatrixXd* m : {&out.tau, &out.model, &out.q, &out.qd, &out.qdd}) m->resize(log.rows, n);
+  out.use.resize(log.rows, n);
+  const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic) num_threads(threads > 0 ? threads : omp_get_max_threads())
+  for (Eigen::Index k = 0; k < blocks; ++k) {
+    try {
+      RowBlock block;
+      const Eigen::Index first = k * kRowsPerBlock;
+      const Eigen::Index count = std::min(kRowsPerBlock, log.rows - first);
+      read_rows(robot, log, first, count, block);
+      out.tau.middleRows(first, count) = block.tau;
+      out.use.middleRows(first, count) = block.use;
+      for (int j = 0; j < n; ++j) out.model.col(j).segment(first, count) = block.Y[static_cast<std::size_t>(j)] * p;
+      for (Eigen::Index row = first; row < first + count; ++row) {
+        const Eigen::Index sample = sample_of_row(log, row);
+        out.t_s(row) = log.t_s(sample);
+        out.q.row(row) = log.q.row(sample);
+        out.qd.row(row) = log.qd.row(sample);
+        out.qdd.row(row) = log.qdd.row(sample);
+      }
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  return out;
+}
+
+}  // namespace deltadyn
