@@ -151,7 +151,8 @@ struct CsvReader::Impl {
 
   void refuse_damage() const {
     if (findings.read_error != 0) {
-      throw Error(fmt::format("cannot read the file: {}", std::strerror(findings.read_error)), path, "check the path and the disk");
+      throw Error(fmt::format("cannot read the file: {}", std::strerror(findings.read_error)), path,
+                  "check the path and the disk");
     }
     if (findings.has_zero_byte) {
       throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
@@ -180,10 +181,12 @@ CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) 
   for (std::size_t i = 0; i < impl_->fields.size(); ++i) {
     const std::string_view name = impl_->fields[i];
     if (name.empty()) {
-      throw Error(fmt::format("column {} has no name", i + 1), place(path, impl_->line()), "name every column in the header line");
+      throw Error(fmt::format("column {} has no name", i + 1), place(path, impl_->line()),
+                  "name every column in the header line");
     }
     if (index_of(impl_->columns, name)) {
-      throw Error(fmt::format("the column name {} occurs twice", name), place(path, impl_->line()), "rename or remove one of them");
+      throw Error(fmt::format("the column name {} occurs twice", name), place(path, impl_->line()),
+                  "rename or remove one of them");
     }
     impl_->columns.emplace_back(name);
   }
@@ -191,11 +194,21 @@ CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) 
 
 CsvReader::~CsvReader() = default;
 
-const std::string& CsvReader::path() const { return impl_->path; }
-const std::vector<std::string>& CsvReader::columns() const { return impl_->columns; }
-std::optional<std::size_t> CsvReader::find(std::string_view column) const { return index_of(impl_->columns, column); }
-long CsvReader::line() const { return impl_->line(); }
-std::string_view CsvReader::text(std::size_t column) const { return impl_->fields[column]; }
+const std::string& CsvReader::path() const {
+  return impl_->path;
+}
+const std::vector<std::string>& CsvReader::columns() const {
+  return impl_->columns;
+}
+std::optional<std::size_t> CsvReader::find(std::string_view column) const {
+  return index_of(impl_->columns, column);
+}
+long CsvReader::line() const {
+  return impl_->line();
+}
+std::string_view CsvReader::text(std::size_t column) const {
+  return impl_->fields[column];
+}
 
 bool CsvReader::next_row() {
   std::string_view row;
@@ -226,7 +239,9 @@ double CsvReader::number_or_nan(std::size_t column) const {
   return parsed == Parsed::number ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::optional<std::size_t> CsvTable::find(std::string_view column) const { return index_of(columns_, column); }
+std::optional<std::size_t> CsvTable::find(std::string_view column) const {
+  return index_of(columns_, column);
+}
 
 std::size_t CsvTable::require(std::string_view column) const {
   if (const auto index = find(column)) return *index;

@@ -1,9 +1,8 @@
 #include "deltadyn/io/log_file.hpp"
 
+#include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <cctype>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -42,7 +41,8 @@ std::vector<Spelling> spellings(Quantity quantity, DriveKind kind) {
   switch (quantity) {
     case Quantity::q: return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kDegree}} : std::vector<Spelling>{{"_m", 1.0}};
     case Quantity::qd:
-      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kDegree}, {"_rpm", kRpm}} : std::vector<Spelling>{{"_m_s", 1.0}};
+      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kDegree}, {"_rpm", kRpm}}
+                   : std::vector<Spelling>{{"_m_s", 1.0}};
     case Quantity::qdd:
       return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
     case Quantity::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
@@ -96,8 +96,8 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   const std::string stem = fmt::format("{}{}", prefix_of(quantity), drive + 1);
   const auto similar = similar_columns(reader, stem);
   if (similar.empty()) {
-    throw Error(fmt::format("the column {} is missing; the file has {}", wanted, fmt::join(reader.columns(), ", ")), reader.path(),
-                fmt::format("add the column {}, or give the robot file that fits the log", wanted));
+    throw Error(fmt::format("the column {} is missing; the file has {}", wanted, fmt::join(reader.columns(), ", ")),
+                reader.path(), fmt::format("add the column {}, or give the robot file that fits the log", wanted));
   }
   const DriveKind other = kind == DriveKind::revolute ? DriveKind::prismatic : DriveKind::revolute;
   std::string why;

@@ -1,12 +1,11 @@
 #include "deltadyn/io/output_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
+#include <unistd.h>
 #include <utility>
 
 #include "deltadyn/runtime/error.hpp"
@@ -74,7 +73,9 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), ignored);
 }
 
-OutputFile::~OutputFile() { discard(); }
+OutputFile::~OutputFile() {
+  discard();
+}
 
 void OutputFile::discard() noexcept {
   if (file_ != nullptr) std::fclose(file_);

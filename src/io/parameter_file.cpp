@@ -1,12 +1,11 @@
 #include "deltadyn/io/parameter_file.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <iterator>
 #include <unordered_map>
 #include <unordered_set>
@@ -51,7 +50,9 @@ std::vector<std::string> plausible_units(const std::string& name) {
   return {};
 }
 
-bool same_unit(const std::string& a, const std::string& b) { return canonical_unit(a) == canonical_unit(b); }
+bool same_unit(const std::string& a, const std::string& b) {
+  return canonical_unit(a) == canonical_unit(b);
+}
 
 /// "upper_arm2.m" -> "upper_arm.m"; empty if the name is not one of a single limb.
 std::string shared_name(const std::string& name) {
@@ -59,9 +60,9 @@ std::string shared_name(const std::string& name) {
     if (name.compare(0, body.size(), body) != 0) continue;
     const auto dot = name.find('.');
     if (dot == std::string::npos || dot == body.size()) return {};
-    const bool number = std::all_of(name.begin() + static_cast<std::ptrdiff_t>(body.size()),
-                                    name.begin() + static_cast<std::ptrdiff_t>(dot),
-                                    [](unsigned char c) { return std::isdigit(c) != 0; });
+    const bool number =
+        std::all_of(name.begin() + static_cast<std::ptrdiff_t>(body.size()), name.begin() + static_cast<std::ptrdiff_t>(dot),
+                    [](unsigned char c) { return std::isdigit(c) != 0; });
     return number ? body + name.substr(dot) : std::string();
   }
   return {};
@@ -70,7 +71,8 @@ std::string shared_name(const std::string& name) {
 }  // namespace
 
 const ParameterEntry* ParameterTable::find(const std::string& name) const {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const ParameterEntry& entry) { return entry.name == name; });
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const ParameterEntry& entry) { return entry.name == name; });
   return found == entries.end() ? nullptr : &*found;
 }
 
@@ -96,7 +98,8 @@ ParameterTable read_parameters(const std::string& path) {
     entry.line = csv.line(row);
     entry.name = csv.text(row, name_column);
     entry.unit = csv.text(row, unit_column);
-    if (entry.name.empty()) throw Error("the name is empty", place(path, entry.line, "name"), "name the parameter or remove the row");
+    if (entry.name.empty())
+      throw Error("the name is empty", place(path, entry.line, "name"), "name the parameter or remove the row");
     const auto [first, fresh] = seen.emplace(entry.name, entry.line);
     if (!fresh) {
       throw Error(fmt::format("the parameter {} was already given in line {}", entry.name, first->second),
@@ -107,7 +110,8 @@ ParameterTable read_parameters(const std::string& path) {
     entry.prior = optional_number(row, prior_column);
     entry.data_share = optional_number(row, share_column);
     const auto units = plausible_units(entry.name);
-    if (!units.empty() && std::none_of(units.begin(), units.end(), [&](const auto& unit) { return same_unit(unit, entry.unit); })) {
+    if (!units.empty() &&
+        std::none_of(units.begin(), units.end(), [&](const auto& unit) { return same_unit(unit, entry.unit); })) {
       throw Error(fmt::format("the unit '{}' does not fit {}", entry.unit, entry.name), place(path, entry.line, "unit"),
                   fmt::format("give the value in {}", fmt::join(units, " or ")));
     }
@@ -130,8 +134,9 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
     double ParameterEntry::*member;
     bool used;
   };
-  std::array<Extra, 3> extras = {
-      {{"std", &ParameterEntry::std, false}, {"prior", &ParameterEntry::prior, false}, {"data_share", &ParameterEntry::data_share, false}}};
+  std::array<Extra, 3> extras = {{{"std", &ParameterEntry::std, false},
+                                  {"prior", &ParameterEntry::prior, false},
+                                  {"data_share", &ParameterEntry::data_share, false}}};
   for (Extra& extra : extras) {
     extra.used = std::any_of(table.entries.begin(), table.entries.end(),
                              [&](const ParameterEntry& entry) { return !std::isnan(entry.*extra.member); });
@@ -203,13 +208,14 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
       throw Error(fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
                   place(table.file, entry.line, "name"), "use --individual-limbs, or give the shared value");
     }
-    match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
-                                         place(table.file, entry.line), entry.name));
+    match.warnings.push_back(
+        fmt::format("{}: {} is not a parameter of this robot and is not used", place(table.file, entry.line), entry.name));
   }
   return match;
 }
 
-Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names, const std::vector<std::string>& units) {
+Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,
+                       const std::vector<std::string>& units) {
   return match_parameters(table, names, units).value;
 }
 

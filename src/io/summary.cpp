@@ -1,20 +1,22 @@
 #include "deltadyn/io/summary.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 #include "deltadyn/io/output_file.hpp"
 
 namespace deltadyn {
 
-void Summary::add(const std::string& key, double value, const std::string& unit) { put(key, fmt::format("{}", value), unit); }
+void Summary::add(const std::string& key, double value, const std::string& unit) {
+  put(key, fmt::format("{}", value), unit);
+}
 
 void Summary::add(const std::string& key, const std::string& value, const std::string& unit) {
   std::string plain = value;
   std::replace(plain.begin(), plain.end(), ',', ';');
-  std::replace_if(plain.begin(), plain.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   put(key, std::move(plain), unit);
 }
 

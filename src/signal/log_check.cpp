@@ -1,9 +1,8 @@
 #include "deltadyn/signal/log_check.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
@@ -46,7 +45,8 @@ struct Channel {
 
 class Checker {
  public:
-  Checker(Log& log, const RobotDescription& robot, const LogCheckOptions& options) : log_(log), robot_(robot), options_(options) {}
+  Checker(Log& log, const RobotDescription& robot, const LogCheckOptions& options)
+      : log_(log), robot_(robot), options_(options) {}
 
   LogFindings run() {
     check_counts();
@@ -150,7 +150,8 @@ class Checker {
     const Index n = log_.samples();
     const double duration = n < 2 ? 0.0 : log_.t_s(n - 1) - log_.t_s(0);
     if (n < options_.min_samples || (std::isfinite(duration) && duration >= 0 && duration < options_.min_duration_s)) {
-      throw Error(fmt::format("the log is too short: {} samples, {:.4g} s", n, std::isfinite(duration) ? duration : 0.0), log_.file,
+      throw Error(fmt::format("the log is too short: {} samples, {:.4g} s", n, std::isfinite(duration) ? duration : 0.0),
+                  log_.file,
                   fmt::format("record at least {} samples and {:.4g} s; to identify a robot, some seconds of varied motion",
                               options_.min_samples, options_.min_duration_s));
     }
@@ -165,12 +166,12 @@ class Checker {
       if (!rows.empty()) {
         const Index previous = rows.back();
         if (log_.t_s(i) < log_.t_s(previous)) {
-          throw Error(fmt::format("the time stamps decrease, from {} s to {} s", log_.t_s(previous), log_.t_s(i)), where(i, "t_s"),
-                      "give every recording its own file, in the order of time");
+          throw Error(fmt::format("the time stamps decrease, from {:.9g} s to {:.9g} s", log_.t_s(previous), log_.t_s(i)),
+                      where(i, "t_s"), "give every recording its own file, in the order of time");
         }
         if (log_.t_s(i) == log_.t_s(previous)) {
           if (!same_row(i, previous)) {
-            throw Error(fmt::format("the time stamp {} s is repeated, with other values", log_.t_s(i)), where(i, "t_s"),
+            throw Error(fmt::format("the time stamp {:.9g} s is repeated, with other values", log_.t_s(i)), where(i, "t_s"),
                         "write the time with more digits, or remove one of the rows");
           }
           ++findings_.dropped_duplicates;
@@ -261,8 +262,8 @@ class Checker {
         Index end = i;
         while (end < n && !std::isfinite(values(end))) ++end;
         if (i == 0 || end == n) {
-          throw Error("a number is missing or not finite at the very " + std::string(i == 0 ? "start" : "end"), where(i, channel.name),
-                      "remove the rows without numbers");
+          throw Error("a number is missing or not finite at the very " + std::string(i == 0 ? "start" : "end"),
+                      where(i, channel.name), "remove the rows without numbers");
         }
         if (end - i > options_.max_filled_gap) {
           throw Error(fmt::format("{} samples in a row without a number", end - i), where(i, channel.name),
@@ -316,8 +317,9 @@ class Checker {
         if (block->size() > 0) *block = resample(log_.t_s, *block, even);
       }
       findings_.resampled = true;
-      note(fmt::format("{}: the time stamps jitter by up to {:.2g} % of the sample time; the log was moved to even steps of {:.6g} s",
-                       where(grid_.worst, "t_s"), 100.0 * grid_.jitter, grid_.step_s));
+      note(fmt::format(
+          "{}: the time stamps jitter by up to {:.2g} % of the sample time; the log was moved to even steps of {:.6g} s",
+          where(grid_.worst, "t_s"), 100.0 * grid_.jitter, grid_.step_s));
     }
     log_.t_s = std::move(even);
   }
@@ -332,14 +334,14 @@ class Checker {
       const double largest = log_.q.col(d).cwiseAbs().maxCoeff(&at);
       const double value = log_.q(at, d);
       if (limb && delta && robot_.kind_of_drive(drive) == DriveKind::revolute && largest > kLargestLimbAngle) {
-        throw Error(fmt::format("an arm angle of {} rad is beyond half a turn; it looks like degrees", value), where(at, column),
-                    fmt::format("name the column q{}_deg, or convert it to rad", d + 1));
+        throw Error(fmt::format("an arm angle of {:.9g} rad is beyond half a turn; it looks like degrees", value),
+                    where(at, column), fmt::format("name the column q{}_deg, or convert it to rad", d + 1));
       }
       if (limb && delta && robot_.kind_of_drive(drive) == DriveKind::prismatic) {
         const auto& geometry = robot_.limbs[static_cast<std::size_t>(d)];
         const double reach = 10.0 * (geometry.strut + geometry.p_WD.norm() + geometry.p_DE_0.norm());
         if (largest > reach) {
-          throw Error(fmt::format("a carriage position of {} m is far beyond the robot; it looks like millimetres", value),
+          throw Error(fmt::format("a carriage position of {:.9g} m is far beyond the robot; it looks like millimetres", value),
                       where(at, column), "convert the column to m");
         }
       }
@@ -347,12 +349,15 @@ class Checker {
       const double allowed = robot_.limits[static_cast<std::size_t>(d)].velocity;
       if (!std::isfinite(allowed) || allowed <= 0) continue;
       std::vector<double> speeds;
-      for (Index i = 0; i + 1 < log_.samples(); ++i) speeds.push_back(std::abs(log_.q(i + 1, d) - log_.q(i, d)) / log_.sample_time_s());
+      for (Index i = 0; i + 1 < log_.samples(); ++i)
+        speeds.push_back(std::abs(log_.q(i + 1, d) - log_.q(i, d)) / log_.sample_time_s());
       const double usual_largest = quantile(speeds, 0.95);
       if (usual_largest > 10.0 * allowed) {
-        throw Error(fmt::format("a velocity of {:.4g} is far beyond the drive's limit of {:.4g} (SI); positions or time have another unit",
-                                usual_largest, allowed),
-                    where(0, column), "give positions in rad or m, or name the column _deg; give the time in seconds");
+        throw Error(
+            fmt::format(
+                "a velocity of {:.4g} is far beyond the drive's limit of {:.4g} (SI); positions or time have another unit",
+                usual_largest, allowed),
+            where(0, column), "give positions in rad or m, or name the column _deg; give the time in seconds");
       }
     }
   }
@@ -383,16 +388,19 @@ class Checker {
         bool peak = true;
         for (Index k = i - 2; k <= i + 2; ++k) peak = peak && size[static_cast<std::size_t>(k)] <= here;
         if (!peak) continue;
-        if (is_single_spike(values, i, here)) {
-          note(fmt::format("{}: the value {} is a spike of one sample, replaced and left out of fits", where(i, channel.name), values(i)));
+        if (is_single_spike(values, i, here, nearby)) {
+          note(fmt::format("{}: the value {:.9g} is a spike of one sample, replaced and left out of fits", where(i, channel.name),
+                           values(i)));
           fill(channel, i, i + 1);
           values = channel.values();
           for (Index k = std::max<Index>(2, i - 2); k <= std::min(n - 3, i + 2); ++k) {
             size[static_cast<std::size_t>(k)] = std::abs(surprise(values, k));
           }
           mark_filled(i);
-        } else if (channel.position) {
-          throw Error(fmt::format("the position jumps, from {} to {}", values(i - 1), values(i + 1)), where(i, channel.name),
+        } else if (channel.position && is_jump(values, i)) {
+          check_stuck();  // an encoder that reads again jumps too, and then the cause is worth more than the jump
+          throw Error(fmt::format("the position jumps, from {:.9g} to {:.9g}", values(i - 1), values(i + 1)),
+                      where(i, channel.name),
                       "unwrap the angle if it was wrapped; else look for lost encoder counts and cut the log here");
         }
       }
@@ -410,16 +418,29 @@ class Checker {
     return largest;
   }
 
-  /// A step also surprises, but stays when the sample is replaced.
-  [[nodiscard]] static bool is_single_spike(const Eigen::Ref<const Eigen::VectorXd>& values, Index i, double size) {
-    Eigen::VectorXd mended = values.segment(std::max<Index>(0, i - 4), std::min<Index>(9, values.size() - std::max<Index>(0, i - 4)));
-    const Index centre = std::min<Index>(i, 4);
+  /// A step or a kink also surprises, but stays when the sample is replaced.
+  [[nodiscard]] static bool is_single_spike(const Eigen::Ref<const Eigen::VectorXd>& values, Index i, double size,
+                                            double nearby) {
+    const Index first = std::max<Index>(0, i - 4);
+    Eigen::VectorXd mended = values.segment(first, std::min<Index>(9, values.size() - first));
+    const Index centre = i - first;
     mended(centre) -= surprise(mended, centre);
     double left = 0;
     for (Index k = std::max<Index>(2, centre - 2); k <= std::min(mended.size() - 3, centre + 2); ++k) {
       left = std::max(left, std::abs(surprise(mended, k)));
     }
-    return left < 0.3 * size;
+    return left < 0.1 * size + nearby;
+  }
+
+  /// A kink (a hard stop) surprises too, but its steps are no larger than those around it.
+  [[nodiscard]] static bool is_jump(const Eigen::Ref<const Eigen::VectorXd>& values, Index i) {
+    constexpr Index kWindow = 25;
+    const auto step = [&](Index k) { return std::abs(values(k + 1) - values(k)); };
+    double around = 0;
+    for (Index k = std::max<Index>(0, i - kWindow); k < std::min(values.size() - 1, i + kWindow); ++k) {
+      if (std::abs(k - i) > 3) around = std::max(around, step(k));
+    }
+    return std::max(step(i - 1), step(i)) > 4.0 * around;
   }
 
   void refuse_too_many_filled() const {
@@ -471,16 +492,17 @@ class Checker {
         Index end = begin + 1;
         while (end < n && q(end) == q(begin)) ++end;
         if (end - begin >= shortest) {
-          // A drive that stops by itself slows down; an encoder that stops reading freezes in motion, or jumps when it reads again.
+          // A drive that stops by itself slows down; an encoder that fails freezes in motion, or jumps when it reads again.
           const double before = begin >= 4 ? std::abs(q(begin) - q(begin - 3)) / 3.0 : 0.0;
           const double after = end + 3 < n ? std::abs(q(end + 3) - q(end)) / 3.0 : 0.0;
           const double jump = end < n ? std::abs(q(end) - q(end - 1)) : 0.0;
           const bool frozen_in_motion = before > 8.0 * largest_bend || after > 8.0 * largest_bend;
           const bool jumps = jump > 2.0 * largest_step && jump > 8.0 * largest_bend;
           if (frozen_in_motion || jumps || others_move(d, begin, end)) {
-            throw Error(fmt::format("the position stays at exactly {} for {:.4g} s while the robot moves: a stuck encoder", q(begin),
-                                    static_cast<double>(end - begin) * log_.sample_time_s()),
-                        where(begin, column), "check the encoder and its cable, and record again; or cut this part out of the log");
+            throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
+                                    q(begin), static_cast<double>(end - begin) * log_.sample_time_s()),
+                        where(begin, column),
+                        "check the encoder and its cable, and record again; or cut this part out of the log");
           }
         }
         begin = end;
@@ -508,7 +530,7 @@ class Checker {
       const double lowest = tau.minCoeff();
       if (highest == lowest) {
         if (!moves(d)) continue;
-        throw Error(fmt::format("the torque is always {} while the drive moves", highest), where(0, column),
+        throw Error(fmt::format("the torque is always {:.9g} while the drive moves", highest), where(0, column),
                     "check that the torque was recorded");
       }
       // Rows in a run of at least three equal values at the extreme. Where the other values repeat too, equality means nothing.
@@ -533,13 +555,15 @@ class Checker {
       if (clipped < 6 || repeated_elsewhere > (n - clipped) / 5) continue;
       const double share = static_cast<double>(clipped) / static_cast<double>(n);
       if (share > options_.max_saturated_share) {
-        throw Error(fmt::format("the torque is at its extreme ({} or {}) in {:.2g} % of the samples, the first one here: it is cut off",
-                                lowest, highest, 100.0 * share),
-                    where(first, column), "record a gentler motion, or widen the range of the recorder");
+        throw Error(
+            fmt::format(
+                "the torque is at its extreme ({:.9g} or {:.9g}) in {:.2g} % of the samples, the first one here: it is cut off",
+                lowest, highest, 100.0 * share),
+            where(first, column), "record a gentler motion, or widen the range of the recorder");
       }
       for (const Index i : rows) mark_filled(i);
-      note(fmt::format("{}: the torque is cut off at {} or {} from here on in {} samples, left out of fits", where(first, column), lowest,
-                       highest, clipped));
+      note(fmt::format("{}: the torque is cut off at {:.9g} or {:.9g} from here on in {} samples, left out of fits",
+                       where(first, column), lowest, highest, clipped));
     }
   }
 

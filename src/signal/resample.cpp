@@ -35,14 +35,16 @@ Stencil stencil(const Eigen::Ref<const Eigen::VectorXd>& t_s, double t) {
 
 }  // namespace
 
-double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values, double t) {
+double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values,
+                         double t) {
   const Stencil s = stencil(t_s, t);
   double sum = 0;
   for (int i = 0; i < s.count; ++i) sum += s.weight[i] * values(s.first + i);
   return sum;
 }
 
-double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values, double t) {
+double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values,
+                          double t) {
   const Eigen::Index last = t_s.size() - 1;
   if (t <= t_s(0)) return values(0);
   if (t >= t_s(last)) return values(last);

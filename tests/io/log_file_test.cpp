@@ -1,12 +1,12 @@
 #include "deltadyn/io/log_file.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "io/temporary_folder.hpp"
 
 namespace deltadyn {
@@ -94,7 +94,8 @@ LogReadOptions with_derivatives() {
 INSTANTIATE_TEST_SUITE_P(
     Table, BadLogHeaderTest,
     ::testing::Values(
-        BadLog{"PrismaticForRevolute", DriveKind::revolute, "t_s,q1_m,tau1_N", {}, {"q1_rad is missing", "q1_m", "prismatic drive"}},
+        BadLog{
+            "PrismaticForRevolute", DriveKind::revolute, "t_s,q1_m,tau1_N", {}, {"q1_rad is missing", "q1_m", "prismatic drive"}},
         BadLog{"RevoluteForPrismatic", DriveKind::prismatic, "t_s,q1_deg,tau1_N", {}, {"q1_m is missing", "q1_deg", "revolute"}},
         BadLog{"OtherSpelling", DriveKind::revolute, "t_s,Q_1,tau1_Nm", {}, {"q1_rad is missing", "has Q_1", "q1_rad or q1_deg"}},
         BadLog{"OtherNumber", DriveKind::revolute, "t_s,q10_rad,tau1_Nm", {}, {"q1_rad is missing", "t_s, q10_rad, tau1_Nm"}},

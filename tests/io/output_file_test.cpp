@@ -1,12 +1,12 @@
 #include "deltadyn/io/output_file.hpp"
 
+#include <csignal>
 #include <gmock/gmock.h>
+#include <stdexcept>
 #include <sys/resource.h>
 
-#include <csignal>
-#include <stdexcept>
-
 #include "deltadyn/runtime/error.hpp"
+
 #include "io/temporary_folder.hpp"
 
 namespace deltadyn {

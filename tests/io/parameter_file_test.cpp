@@ -1,11 +1,11 @@
 #include "deltadyn/io/parameter_file.hpp"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
+#include <gmock/gmock.h>
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "io/temporary_folder.hpp"
 
 namespace deltadyn {
@@ -48,7 +48,8 @@ TEST(ParameterFile, ReadsBackExactly) {
 TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
   const TemporaryFolder folder;
   const ParameterTable table = read_parameters(folder.write(
-      "p.csv", "unit,value,name\nkg,1.5,upper_arm.m\nkg,2.5,upper_arm2.m\nkg m2,0.1,strut.Ixx\nN m s,3,drive1.viscous\nkg,9,gripper.m\n"));
+      "p.csv",
+      "unit,value,name\nkg,1.5,upper_arm.m\nkg,2.5,upper_arm2.m\nkg m2,0.1,strut.Ixx\nN m s,3,drive1.viscous\nkg,9,gripper.m\n"));
   const ParameterMatch match =
       match_parameters(table, {"upper_arm1.m", "upper_arm2.m", "strut3.Ixx", "drive1.viscous", "drive1.coulomb"},
                        {"kg", "kg", "kg*m^2", "N*m*s/rad", "N*m"});

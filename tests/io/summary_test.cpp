@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/io/csv.hpp"
+
 #include "io/temporary_folder.hpp"
 
 namespace deltadyn {

@@ -4,13 +4,12 @@
 /// Headed CSV: comma separated, one header line, lines that start with '#' are comments, columns in any order.
 /// Accepts a byte-order mark, CR LF line ends, blanks around fields and empty lines. There is no quoting.
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace deltadyn {
 

@@ -23,8 +23,8 @@ struct LogReadOptions {
 ///
 /// Columns in any order, unknown ones ignored. Positions q1_rad or q1_deg, rates qd1_rad_s, qd1_deg_s or qd1_rpm, accelerations
 /// qdd1_rad_s2 or qdd1_deg_s2 (prismatic: q1_m, qd1_m_s, qdd1_m_s2), torques tau1_Nm (prismatic: tau1_N). Result in SI units.
-/// qd and qdd are read only if they are there for every drive. An empty field, "nan" or "inf" is a missing number, which the check
-/// repairs or refuses.
+/// qd and qdd are read only if they are there for every drive. An empty field, "nan" or "inf" is a missing number; the check
+/// repairs or refuses it.
 /// Throws Error(bad_input) with file, line and column.
 [[nodiscard]] Log read_log(const std::string& path, const RobotDescription& robot, const LogReadOptions& options = {});
 

@@ -3,9 +3,8 @@
 /// \file
 /// Result files that are written whole or not at all.
 
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 #include <string>
 #include <string_view>
 #include <vector>

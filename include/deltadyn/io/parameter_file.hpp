@@ -29,7 +29,7 @@ struct ParameterTable {
   [[nodiscard]] const ParameterEntry* find(const std::string& name) const;
 };
 
-/// Throws Error(bad_input) with file, line and column: missing file, no rows, a name twice, an empty name, no number, a unit that
+/// Throws Error(bad_input) with file, line and column: missing file, no rows, a name twice or empty, no number, a unit that
 /// does not fit the name, a negative std, a data_share outside [0, 1].
 [[nodiscard]] ParameterTable read_parameters(const std::string& path);
 
@@ -44,8 +44,8 @@ struct ParameterMatch {
   std::vector<std::string> warnings;              ///< rows of the table that nobody wanted, with their line
 };
 
-/// Finds each name in the table. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
-/// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only the units' plausibility was checked on reading
+/// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
+/// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only plausibility was checked on reading
 /// Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs' own values where
 /// the shared one is wanted.
 [[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,

@@ -10,14 +10,14 @@
 namespace deltadyn {
 
 struct Log {
-  std::string file;         ///< where it came from, for messages
-  Eigen::VectorXd t_s;      ///< N time stamps, strictly increasing, even to rounding
-  Eigen::MatrixXd q;        ///< N x drives [rad | m]
-  Eigen::MatrixXd qd;       ///< N x drives or empty [rad/s | m/s]
-  Eigen::MatrixXd qdd;      ///< N x drives or empty [rad/s^2 | m/s^2]
-  Eigen::MatrixXd tau;      ///< N x drives [N m | N]; empty if the file holds a motion only
-  std::vector<long> line;   ///< line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
-  std::vector<char> filled;        ///< 1 where values were filled in: leave these samples out of a fit; empty: none
+  std::string file;          ///< where it came from, for messages
+  Eigen::VectorXd t_s;       ///< N time stamps, strictly increasing, even to rounding
+  Eigen::MatrixXd q;         ///< N x drives [rad | m]
+  Eigen::MatrixXd qd;        ///< N x drives or empty [rad/s | m/s]
+  Eigen::MatrixXd qdd;       ///< N x drives or empty [rad/s^2 | m/s^2]
+  Eigen::MatrixXd tau;       ///< N x drives [N m | N]; empty if the file holds a motion only
+  std::vector<long> line;    ///< line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
+  std::vector<char> filled;  ///< 1 where values were filled in: leave these samples out of a fit; empty: none
   std::vector<std::string> notes;  ///< what the reader repaired or wants to say, with line numbers
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }

@@ -42,7 +42,7 @@ struct LogFindings {
 /// stuck encoders, saturated torque, excitation.
 ///
 /// Repaired, with a note: exact duplicates of a row, stamps with rounding or jitter, short gaps and missing numbers and
-/// single-sample spikes (positions by cubic interpolation, torque linearly, sample marked in Log::filled); samples where the torque
+/// single-sample spikes (positions by a cubic, torque by a line, sample marked in Log::filled); samples where the torque
 /// is cut off are marked too.
 /// Afterwards Log::t_s is even and every number is finite. Throws Error(bad_input) for everything else.
 LogFindings check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options = {});

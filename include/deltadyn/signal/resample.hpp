@@ -12,19 +12,20 @@ namespace deltadyn {
 /// \param t_s     strictly increasing times of the samples [s]
 /// \param values  one value a sample
 /// \param t       where the value is wanted [s]
-[[nodiscard]] double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values,
-                                       double t);
+[[nodiscard]] double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s,
+                                       const Eigen::Ref<const Eigen::VectorXd>& values, double t);
 
 /// The straight line through the two samples around `t`; the first or last value outside.
-[[nodiscard]] double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values,
-                                        double t);
+[[nodiscard]] double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s,
+                                        const Eigen::Ref<const Eigen::VectorXd>& values, double t);
 
 /// interpolate_cubic() of every column at every new time.
 /// \param t_s      N strictly increasing times [s]
 /// \param columns  N x channels
 /// \param new_t_s  M times [s]
 /// \return         M x channels
-[[nodiscard]] Eigen::MatrixXd resample(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+[[nodiscard]] Eigen::MatrixXd resample(const Eigen::Ref<const Eigen::VectorXd>& t_s,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& columns,
                                        const Eigen::Ref<const Eigen::VectorXd>& new_t_s);
 
 }  // namespace deltadyn

@@ -1,0 +1,51 @@
+#pragma once
+
+/// \file
+/// Parallel decimation of torque and regressor: a linear-phase low pass with finite support, and every factor-th sample of it.
+
+#include <Eigen/Core>
+
+namespace deltadyn {
+
+/// Windowed-sinc low pass (Kaiser window) with symmetric taps and unit gain at zero frequency: flat to 0.1 % up to 0.75 cut-off,
+/// below 0.1 % from 1.25 cut-off on, half way (-6 dB) at the cut-off.
+/// No lag. Output k belongs to input sample first_sample() + k * factor() and needs half_width() samples on either side: a log of
+/// any length can be processed block by block and in parallel, with the same result.
+class FirDecimator {
+ public:
+  /// \param sample_rate_hz  of the input
+  /// \param cutoff_hz       -6 dB point; 0.4 sample_rate_hz/factor keeps aliases out, half of it is the most that is accepted
+  /// \param factor          every factor-th filtered sample is kept, at least 1
+  /// Throws Error(usage) if an argument is out of range or the cut-off is above half the output rate.
+  FirDecimator(double sample_rate_hz, double cutoff_hz, int factor);
+
+  [[nodiscard]] int half_width() const { return static_cast<int>(taps_.size() / 2); }
+  [[nodiscard]] int factor() const { return factor_; }
+  [[nodiscard]] const Eigen::VectorXd& taps() const { return taps_; }
+  /// Input sample at the centre of output 0.
+  [[nodiscard]] Eigen::Index first_sample() const { return half_width(); }
+  /// Input sample at the centre of an output.
+  [[nodiscard]] Eigen::Index centre(Eigen::Index output) const { return half_width() + output * factor_; }
+  /// Number of outputs of an input with this many samples (0 if it is shorter than the filter).
+  [[nodiscard]] Eigen::Index outputs(Eigen::Index samples) const;
+  /// First input sample needed for an output, and the number needed for a run of outputs.
+  [[nodiscard]] Eigen::Index first_input(Eigen::Index output) const { return output * factor_; }
+  [[nodiscard]] Eigen::Index inputs(Eigen::Index n_outputs) const;
+
+  /// Gain at a frequency [Hz].
+  [[nodiscard]] double gain(double frequency_hz) const;
+
+  /// Outputs first_output .. first_output + n_outputs - 1 of a block of channels.
+  /// \param in            samples x channels
+  /// \param input_offset  sample of the whole log that is row 0 of `in`; first_input(first_output) for a minimal block
+  /// \param out           n_outputs x channels
+  void apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Eigen::Index first_output, Eigen::Index n_outputs,
+             Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index input_offset = 0) const;
+
+ private:
+  double sample_rate_hz_;
+  int factor_;
+  Eigen::VectorXd taps_;
+};
+
+}  // namespace deltadyn

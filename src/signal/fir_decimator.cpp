@@ -1,0 +1,92 @@
+#include "deltadyn/signal/fir_decimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+using std::numbers::pi;
+
+constexpr double kKaiserBeta = 7.857;       // 80 dB stop band
+constexpr double kTransitionWidth = 5.017;  // (80 - 7.95) / 14.36: transition band times length
+constexpr double kTransitionShare = 0.5;    // transition band as a share of the cut-off
+
+/// Modified Bessel function of the first kind, order 0, by its series.
+double bessel_i0(double x) {
+  double sum = 1.0;
+  double term = 1.0;
+  for (int k = 1; k < 60 && term > 1e-17 * sum; ++k) {
+    term *= (x / (2.0 * k)) * (x / (2.0 * k));
+    sum += term;
+  }
+  return sum;
+}
+
+double sinc(double x) {
+  return std::abs(x) < 1e-12 ? 1.0 : std::sin(pi * x) / (pi * x);
+}
+
+}  // namespace
+
+FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor)
+    : sample_rate_hz_(sample_rate_hz), factor_(factor) {
+  if (!(sample_rate_hz > 0) || factor < 1 || !(cutoff_hz > 0) || !(cutoff_hz <= 0.5 * sample_rate_hz / factor)) {
+    throw Error("the cut-off must be positive and not above half the rate after decimation", "decimation",
+                "lower the cut-off or the decimation factor", ExitCode::usage);
+  }
+  // A cut-off at half the rate without decimation is no filter at all.
+  if (factor == 1 && cutoff_hz >= 0.5 * sample_rate_hz) {
+    taps_ = Eigen::VectorXd::Ones(1);
+    return;
+  }
+  const double cutoff = cutoff_hz / sample_rate_hz;
+  const auto half = static_cast<Index>(std::ceil(0.5 * kTransitionWidth / (kTransitionShare * cutoff)));
+  taps_.resize(2 * half + 1);
+  for (Index k = 0; k <= half; ++k) {
+    const double x = static_cast<double>(k) / static_cast<double>(half + 1);
+    const double tap =
+        2.0 * cutoff * sinc(2.0 * cutoff * static_cast<double>(k)) * bessel_i0(kKaiserBeta * std::sqrt(1.0 - x * x));
+    taps_(half + k) = tap;
+    taps_(half - k) = tap;
+  }
+  taps_ /= taps_.sum();
+}
+
+Index FirDecimator::outputs(Index samples) const {
+  const Index room = samples - taps_.size();
+  return room < 0 ? 0 : room / factor_ + 1;
+}
+
+Index FirDecimator::inputs(Index n_outputs) const {
+  return n_outputs <= 0 ? 0 : (n_outputs - 1) * factor_ + taps_.size();
+}
+
+double FirDecimator::gain(double frequency_hz) const {
+  const Index half = half_width();
+  double sum = taps_(half);
+  for (Index k = 1; k <= half; ++k) {
+    sum += 2.0 * taps_(half + k) * std::cos(2.0 * pi * frequency_hz / sample_rate_hz_ * static_cast<double>(k));
+  }
+  return sum;
+}
+
+void FirDecimator::apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Index first_output, Index n_outputs,
+                         Eigen::Ref<Eigen::MatrixXd> out, Index input_offset) const {
+  const Index begin = first_input(first_output) - input_offset;
+  if (begin < 0 || begin + inputs(n_outputs) > in.rows() || out.rows() != n_outputs || out.cols() != in.cols()) {
+    throw Error("the block does not hold the samples that the outputs need", "decimation",
+                "pass inputs(n_outputs) samples from first_input(first_output) on", ExitCode::usage);
+  }
+  for (Index channel = 0; channel < in.cols(); ++channel) {
+    for (Index k = 0; k < n_outputs; ++k) {
+      out(k, channel) = taps_.dot(in.col(channel).segment(begin + k * factor_, taps_.size()));
+    }
+  }
+}
+
+}  // namespace deltadyn

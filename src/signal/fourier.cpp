@@ -1,0 +1,279 @@
+#include "deltadyn/signal/fourier.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/resample.hpp"
+#include "deltadyn/signal/reversal_mask.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+using std::numbers::pi;
+
+/// Basis functions at the given times, times x (1 + 2 harmonics).
+Eigen::MatrixXd basis(const Eigen::Ref<const Eigen::VectorXd>& t_s, double base_frequency_hz, int harmonics, int derivative) {
+  Eigen::MatrixXd result(t_s.size(), 1 + 2 * harmonics);
+  result.col(0).setConstant(derivative == 0 ? 1.0 : 0.0);
+  for (int k = 1; k <= harmonics; ++k) {
+    const double omega = 2.0 * pi * base_frequency_hz * k;
+    // Each derivative advances the phase by a quarter turn.
+    const double scale = std::pow(omega, derivative);
+    const double advance = 0.5 * pi * derivative;
+    result.col(2 * k - 1) = scale * (omega * t_s.array() + advance).cos();
+    result.col(2 * k) = scale * (omega * t_s.array() + advance).sin();
+  }
+  return result;
+}
+
+/// Whole periods in the log; the last one ends a sample time after the last sample.
+int whole_periods(const Log& log, double period_s) {
+  const double duration = static_cast<double>(log.samples()) * log.sample_time_s();
+  return static_cast<int>(std::floor(duration / period_s + 1e-6));
+}
+
+struct Mismatch {
+  double rms_over_allowed = 0.0;  ///< largest over the drives
+  double rms = 0.0;
+  double shift_s = 0.0;  ///< to be added to the lag, for the best match
+};
+
+/// Positions `lag` samples apart, after the best shift in time below a sample.
+Mismatch mismatch(const Log& log, Index lag, const Eigen::VectorXd& allowed) {
+  const Index n = log.samples();
+  const double h = log.sample_time_s();
+  const Index count = n - lag - 2;
+  double along = 0;
+  double square = 0;
+  Mismatch result;
+  const auto difference = [&](Index d) { return log.q.col(d).segment(1 + lag, count) - log.q.col(d).segment(1, count); };
+  const auto rate = [&](Index d) {
+    return (log.q.col(d).segment(2 + lag, count) - log.q.col(d).segment(lag, count)) / (2.0 * h);
+  };
+  for (Index d = 0; d < log.drives(); ++d) {
+    const double weight = 1.0 / (allowed(d) * allowed(d));
+    along += weight * rate(d).dot(difference(d));
+    square += weight * rate(d).squaredNorm();
+  }
+  result.shift_s = square > 0 ? std::clamp(-along / square, -h, h) : 0.0;
+  for (Index d = 0; d < log.drives(); ++d) {
+    const double rms = (difference(d) + result.shift_s * rate(d)).norm() / std::sqrt(static_cast<double>(count));
+    result.rms = std::max(result.rms, rms);
+    result.rms_over_allowed = std::max(result.rms_over_allowed, rms / allowed(d));
+  }
+  return result;
+}
+
+}  // namespace
+
+Eigen::MatrixXd FourierFit::evaluate(const Eigen::Ref<const Eigen::VectorXd>& t_s, int derivative) const {
+  return basis(t_s, base_frequency_hz, harmonics, derivative) * coefficients;
+}
+
+FourierFit fit_fourier(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                       double base_frequency_hz, int harmonics) {
+  const Index unknowns = 1 + 2 * harmonics;
+  if (!(base_frequency_hz > 0) || harmonics < 0 || t_s.size() <= unknowns || columns.rows() != t_s.size()) {
+    throw Error("a Fourier fit needs a positive frequency and more samples than coefficients", "Fourier fit",
+                "lower the number of harmonics", ExitCode::usage);
+  }
+  FourierFit fit;
+  fit.base_frequency_hz = base_frequency_hz;
+  fit.harmonics = harmonics;
+  // Over whole periods the basis is orthogonal, so the normal equations lose nothing. Blocks keep the memory small.
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns, columns.cols());
+  constexpr Index kBlock = 2048;
+  for (Index from = 0; from < t_s.size(); from += kBlock) {
+    const Index rows = std::min(kBlock, t_s.size() - from);
+    const Eigen::MatrixXd a = basis(t_s.segment(from, rows), base_frequency_hz, harmonics, 0);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
+    right.noalias() += a.transpose() * columns.middleRows(from, rows);
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factor(normal.selfadjointView<Eigen::Lower>());
+  if (factor.rcond() < 1e-12) {
+    throw Error("the samples do not determine the harmonics", "Fourier fit", "give at least one whole period, or fewer harmonics",
+                ExitCode::usage);
+  }
+  fit.coefficients = factor.solve(right);
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(columns.cols());
+  for (Index from = 0; from < t_s.size(); from += kBlock) {
+    const Index rows = std::min(kBlock, t_s.size() - from);
+    squares += (columns.middleRows(from, rows) - fit.evaluate(t_s.segment(from, rows))).colwise().squaredNorm().transpose();
+  }
+  fit.residual_std = (squares / static_cast<double>(t_s.size() - unknowns)).cwiseSqrt();
+  return fit;
+}
+
+std::optional<Period> find_period(const Log& log, const PeriodOptions& options) {
+  const Index n = log.samples();
+  const Index longest = n / std::max(2, options.min_periods) + 1;
+  if (n < 20) return std::nullopt;
+  const double h = log.sample_time_s();
+  Eigen::VectorXd allowed(log.drives());
+  Eigen::VectorXd deviation(log.drives());
+  Eigen::VectorXd fastest(log.drives());
+  for (Index d = 0; d < log.drives(); ++d) {
+    const auto q = log.q.col(d);
+    const double range = q.maxCoeff() - q.minCoeff();
+    if (!(range > 0)) {
+      allowed(d) = deviation(d) = fastest(d) = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    // The difference of two noisy values has sqrt(2) of the noise.
+    allowed(d) = std::max(options.noise_ratio * std::numbers::sqrt2 * position_noise(q), options.range_ratio * range);
+    deviation(d) = std::sqrt((q.array() - q.mean()).square().mean());
+    fastest(d) = (q.tail(n - 1) - q.head(n - 1)).cwiseAbs().maxCoeff();
+  }
+  if (!deviation.array().isFinite().any()) return std::nullopt;
+
+  // A few samples reject most lags: none may differ by more than its noise and a shift below one sample explain.
+  constexpr Index kProbes = 64;
+  const auto rejected = [&](Index lag) {
+    for (Index probe = 0; probe < kProbes; ++probe) {
+      const Index i = probe * (n - lag - 1) / kProbes;
+      for (Index d = 0; d < log.drives(); ++d) {
+        if (std::abs(log.q(i + lag, d) - log.q(i, d)) > 5.0 * allowed(d) + fastest(d)) return true;
+      }
+    }
+    return false;
+  };
+  // Short lags match because a motion is smooth, not because it repeats: start where the motion has left its place.
+  bool left = false;
+  std::optional<Period> best;
+  double best_score = 1.0;
+  for (Index lag = 2; lag <= std::min(longest, n - 4); ++lag) {
+    if (!left) {
+      double square = 0;
+      for (Index probe = 0; probe < kProbes; ++probe) {
+        const Index i = probe * (n - lag - 1) / kProbes;
+        square = std::max(square, ((log.q.row(i + lag) - log.q.row(i)).transpose().array() / deviation.array()).abs().maxCoeff());
+      }
+      left = square > 1.0;
+      continue;
+    }
+    if (rejected(lag)) {
+      if (best) break;  // the neighbours of a match have been compared
+      continue;
+    }
+    const Mismatch match = mismatch(log, lag, allowed);
+    if (match.rms_over_allowed < best_score) {
+      best_score = match.rms_over_allowed;
+      best = Period{static_cast<double>(lag) * h + match.shift_s, 0, match.rms};
+    }
+  }
+  if (!best) return std::nullopt;
+  // Over many periods the same comparison measures the period more finely.
+  for (int times = 2; times <= whole_periods(log, best->period_s); times *= 2) {
+    const auto lag = static_cast<Index>(std::lround(times * best->period_s / h));
+    if (lag > n - 20) break;
+    best->period_s = (static_cast<double>(lag) * h + mismatch(log, lag, allowed).shift_s) / times;
+  }
+  // A whole number of samples to within the accuracy is meant to be one.
+  const double samples = best->period_s / h;
+  if (std::abs(samples - std::round(samples)) < 0.02) best->period_s = std::round(samples) * h;
+  best->whole_periods = whole_periods(log, best->period_s);
+  if (best->whole_periods < options.min_periods) return std::nullopt;
+  return best;
+}
+
+int choose_harmonics(const Log& log, double period_s, int max_harmonics) {
+  const int periods = whole_periods(log, period_s);
+  const double h = log.sample_time_s();
+  const auto count = std::min(log.samples(), static_cast<Index>(std::lround(periods * period_s / h)));
+  const int limit = std::min(max_harmonics, static_cast<int>(0.45 * period_s / h));
+  if (periods < 1 || limit < 1) {
+    throw Error("the log holds no whole period", log.file, "record at least two periods", ExitCode::bad_input);
+  }
+  const Eigen::VectorXd t_s = log.t_s.head(count).array() - log.t_s(0);
+  const FourierFit fit = fit_fourier(t_s, log.q.topRows(count), 1.0 / period_s, limit);
+  int chosen = 1;
+  for (Index d = 0; d < log.drives(); ++d) {
+    // Noise of one amplitude: from the sample noise, or, where it is larger, from the amplitudes themselves beyond the motion.
+    const double white = position_noise(log.q.col(d)) * std::sqrt(2.0 / static_cast<double>(count));
+    std::vector<double> amplitudes;
+    for (int k = 1; k <= limit; ++k) amplitudes.push_back(std::hypot(fit.coefficients(2 * k - 1, d), fit.coefficients(2 * k, d)));
+    std::vector<double> sorted = amplitudes;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double floor = std::max(white, limit >= 20 ? sorted[sorted.size() / 2] : 0.0);
+    for (int k = 1; k <= limit; ++k) {
+      if (amplitudes[static_cast<std::size_t>(k - 1)] > 4.0 * floor) chosen = std::max(chosen, k);
+    }
+  }
+  return chosen;
+}
+
+PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
+  const double h = log.sample_time_s();
+  PeriodMean mean;
+  mean.periods = period_s > 0 ? whole_periods(log, period_s) : 0;
+  if (mean.periods < 2) {
+    throw Error("the log holds fewer than two whole periods", log.file, "record more periods, or do not average",
+                ExitCode::bad_input);
+  }
+  const auto count = std::min(log.samples(), static_cast<Index>(std::lround(mean.periods * period_s / h)));
+  const Eigen::VectorXd t_s = log.t_s.array() - log.t_s(0);
+  if (harmonics <= 0) harmonics = choose_harmonics(log, period_s);
+  mean.series = fit_fourier(t_s.head(count), log.q.topRows(count), 1.0 / period_s, harmonics);
+
+  const auto points = static_cast<Index>(std::lround(period_s / h));
+  Log& one = mean.log;
+  one.file = log.file;
+  one.t_s = Eigen::VectorXd::LinSpaced(points, 0.0, period_s * static_cast<double>(points - 1) / static_cast<double>(points));
+  one.q = mean.series.evaluate(one.t_s, 0);
+  one.qd = mean.series.evaluate(one.t_s, 1);
+  one.qdd = mean.series.evaluate(one.t_s, 2);
+  one.notes = log.notes;
+  if (log.tau.size() == 0) return mean;
+
+  const bool whole_samples = std::abs(period_s / h - static_cast<double>(points)) < 1e-6;
+  const Index drives = log.drives();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(points, drives);
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(points, drives);
+  Eigen::VectorXd used = Eigen::VectorXd::Zero(points);
+  const Eigen::RowVectorXd reference = log.tau.colwise().mean();  // squares of small numbers do not cancel
+  for (int period = 0; period < mean.periods; ++period) {
+    Eigen::MatrixXd tau;
+    const Eigen::VectorXd when = one.t_s.array() + period * period_s;
+    if (whole_samples) {
+      tau = log.tau.middleRows(period * points, points);
+    } else {
+      tau = resample(t_s, log.tau, when);
+    }
+    for (Index i = 0; i < points; ++i) {
+      const Index nearest = std::min(log.samples() - 1, static_cast<Index>(std::lround(when(i) / h)));
+      if (log.is_filled(nearest)) continue;
+      const Eigen::RowVectorXd difference = tau.row(i) - reference;
+      sum.row(i) += difference;
+      squares.row(i) += difference.cwiseAbs2();
+      used(i) += 1.0;
+    }
+  }
+  one.tau.resize(points, drives);
+  mean.tau_std.resize(points, drives);
+  for (Index i = 0; i < points; ++i) {
+    const double n = used(i);
+    if (n < 1.0) {
+      one.filled.resize(static_cast<std::size_t>(points), 0);
+      one.filled[static_cast<std::size_t>(i)] = 1;
+      one.tau.row(i) = reference;
+      mean.tau_std.row(i).setConstant(std::numeric_limits<double>::infinity());
+      continue;
+    }
+    one.tau.row(i) = reference + sum.row(i) / n;
+    // One sample shows no scatter.
+    for (Index d = 0; d < drives; ++d) {
+      const double variance = n > 1.0 ? std::max(0.0, squares(i, d) - sum(i, d) * sum(i, d) / n) / (n - 1.0)
+                                      : std::numeric_limits<double>::infinity();
+      mean.tau_std(i, d) = std::sqrt(variance / n);
+    }
+  }
+  return mean;
+}
+
+}  // namespace deltadyn

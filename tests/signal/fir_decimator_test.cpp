@@ -1,0 +1,74 @@
+#include "deltadyn/signal/fir_decimator.hpp"
+
+#include <gtest/gtest.h>
+#include <random>
+
+#include "deltadyn/runtime/error.hpp"
+
+#include "signal/multi_sine.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace deltadyn::testing;
+
+TEST(FirDecimator, IsSymmetricFlatAndQuietWhereItShould) {
+  for (const double cutoff : {4.0, 20.0, 45.0}) {
+    const FirDecimator filter(1000, cutoff, 10);
+    const Eigen::VectorXd& taps = filter.taps();
+    EXPECT_EQ(taps.size(), 2 * filter.half_width() + 1);
+    EXPECT_EQ(taps, Eigen::VectorXd(taps.reverse()));
+    EXPECT_NEAR(taps.sum(), 1.0, 1e-14);
+    EXPECT_NEAR(filter.gain(0), 1.0, 1e-14);
+    EXPECT_NEAR(filter.gain(cutoff), 0.5, 1e-3);
+    for (double f = 0; f <= 0.75 * cutoff; f += 0.05 * cutoff) EXPECT_NEAR(filter.gain(f), 1.0, 1e-3) << f;
+    for (double f = 1.25 * cutoff; f < 500; f += 0.05 * cutoff) EXPECT_LT(std::abs(filter.gain(f)), 1e-3) << f;
+  }
+}
+
+TEST(FirDecimator, HasNoLag) {
+  const FirDecimator filter(1000, 20.0, 7);
+  const Eigen::VectorXd t = times(1000, 3000);
+  const Eigen::MatrixXd in = ((2 * std::numbers::pi * 5.0) * t.array()).sin().matrix();
+  Eigen::MatrixXd out(filter.outputs(3000), 1);
+  filter.apply(in, 0, out.rows(), out);
+  for (Eigen::Index k = 0; k < out.rows(); ++k) EXPECT_NEAR(out(k, 0), in(filter.centre(k), 0), 1e-3);
+  Eigen::MatrixXd line = (3.0 - 2.0 * t.array()).matrix();
+  filter.apply(line, 0, out.rows(), out);
+  for (Eigen::Index k = 0; k < out.rows(); ++k) EXPECT_NEAR(out(k, 0), line(filter.centre(k), 0), 1e-12);
+}
+
+TEST(FirDecimator, BlocksGiveTheSameAsTheWhole) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd in = Eigen::MatrixXd::NullaryExpr(5000, 3, [&] { return normal(random); });
+  const FirDecimator filter(1000, 30.0, 9);
+  const Eigen::Index n = filter.outputs(5000);
+  EXPECT_LE(filter.centre(n - 1) + filter.half_width(), 4999);
+  EXPECT_GT(filter.centre(n) + filter.half_width(), 4999);
+  Eigen::MatrixXd whole(n, 3);
+  filter.apply(in, 0, n, whole);
+  for (const Eigen::Index block : {1, 17, 100}) {
+    for (Eigen::Index first = 0; first < n; first += block) {
+      const Eigen::Index count = std::min(block, n - first);
+      const Eigen::Index offset = filter.first_input(first);
+      Eigen::MatrixXd out(count, 3);
+      filter.apply(in.middleRows(offset, filter.inputs(count)), first, count, out, offset);
+      ASSERT_EQ(out, whole.middleRows(first, count)) << "block " << block << " at " << first;
+    }
+  }
+}
+
+TEST(FirDecimator, RefusesAliasesAndBlocksThatAreTooShort) {
+  EXPECT_THROW(FirDecimator(1000, 60.0, 10), Error);
+  EXPECT_THROW(FirDecimator(1000, 0.0, 10), Error);
+  EXPECT_THROW(FirDecimator(1000, 40.0, 0), Error);
+  const FirDecimator filter(1000, 40.0, 10);
+  EXPECT_EQ(filter.outputs(2 * filter.half_width()), 0);
+  EXPECT_EQ(filter.outputs(2 * filter.half_width() + 1), 1);
+  Eigen::MatrixXd out(2, 1);
+  EXPECT_THROW(filter.apply(Eigen::MatrixXd::Zero(2 * filter.half_width() + 10, 1), 0, 2, out), Error);
+}
+
+}  // namespace
+}  // namespace deltadyn
