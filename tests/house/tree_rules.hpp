@@ -192,8 +192,9 @@ inline Findings check_core(const SourceFile& file) {
   return findings;
 }
 
-/// Ceres, NLopt and urdfdom each in the one source folder that wraps it.
+/// Ceres, NLopt and urdfdom each in the one source folder that wraps it. Tests may use them as oracles.
 inline Findings check_wrapped_libraries(const SourceFile& file) {
+  if (file.path.compare(0, 6, "tests/") == 0) return {};
   static const std::vector<std::pair<std::regex, std::string>> homes = {
       {std::regex("(ceres|glog)/.*"), "src/identification/"},
       {std::regex(R"(nlopt\.(h|hpp))"), "src/excitation/"},
