@@ -35,10 +35,10 @@ run() {
 
 run delta-model info "$robot"
 run delta-model prior "$robot" -o "$out/prior.csv"
-run delta-identify "$robot" "$data/logs/identification_fast.csv" "$data/logs/identification_slow.csv" \
+run delta-identify "$robot" "$data/logs/mujoco_delta4/identification_fast.csv" "$data/logs/identification_slow.csv" \
   --prior "$out/prior.csv" -o "$out/params.csv" --base "$out/base.csv" \
   --summary "$out/identify_summary.csv" --report "$out/identification.html"
-run delta-validate "$robot" --params "$out/params.csv" "$data/logs/verification.csv" -o "$out/residuals.csv" \
+run delta-validate "$robot" --params "$out/params.csv" "$data/logs/mujoco_delta4/verification.csv" -o "$out/residuals.csv" \
   --summary "$out/validate_summary.csv" --report "$out/validation.html"
 
 echo

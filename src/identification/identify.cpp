@@ -82,55 +82,21 @@ std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>&
 
 }  // namespace
 
-std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                      const IdentificationOptions& options) {
-  constexpr double kRatio = 1.26;    // a third of an octave
-  constexpr Index kRows = 1000;      // of each log: enough to tell cut-offs apart
-  std::vector<CutoffPoint> points;
-  double rate_hz = 1e300;
-  double shortest_s = 1e300;
-  for (const Log& log : logs) {
-    rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
-    shortest_s = std::min(shortest_s, static_cast<double>(log.samples()) * log.sample_time_s());
-  }
-  for (double cutoff = std::max(5.0, 20.0 / shortest_s); cutoff < 0.25 * rate_hz; cutoff *= kRatio) {
-    ProcessingOptions processing = options.processing;
-    processing.cutoff_hz = cutoff;
-    processing.periods = Periods::ignore;
-    processing.low_pass_torque = false;  // one and the same torque for all cut-offs
-    DataFold fold;
-    for (const Log& log : logs) {
-      processing.stride = static_cast<int>(std::max<Index>(1, log.samples() / kRows));
-      fold.add(fold_log(robot, prepare_log(robot, log, processing), options.threads));
-    }
-    std::vector<DriveReport> drives(fold.regular.size());
-    const std::vector<DriveFold> folds = select(fold, keep_reversals(base, fold, Reversals::mask, drives));
-    const BaseEstimate estimate = estimate_base_parameters(base, folds);
-    const Eigen::VectorXd p = any_parameters(base, estimate.value, robot.parameters());
-    CutoffPoint point{cutoff, 0.0, Eigen::VectorXd(robot.drives())};
-    for (int j = 0; j < robot.drives(); ++j) point.rms(j) = folds[static_cast<std::size_t>(j)].rms(p);
-    point.score = std::exp(point.rms.cwiseMax(1e-15).array().log().mean());
-    points.push_back(point);
-    // Well past the minimum, the noise only grows.
-    const auto best = std::min_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.score < b.score; });
-    if (point.score > 1.5 * best->score && points.end() - best > 3) break;
-  }
-  if (points.empty()) throw Error("the sampling rate is too low to filter the motion", logs.front().file, "record at 100 Hz or more");
-  return points;
-}
-
 Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
                         const IdentificationOptions& options) {
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   const auto start = Clock::now();
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
   Identification out;
   out.drives.resize(static_cast<std::size_t>(robot.drives()));
   out.processing = options.processing;
   out.base = find_base_parameters(robot, options.base);
   if (options.processing.filter && options.choose_cutoff) {
-    out.cutoffs = scan_cutoffs(robot, out.base, logs, options);
-    out.processing.cutoff_hz =
-        std::min_element(out.cutoffs.begin(), out.cutoffs.end(), [](auto& a, auto& b) { return a.score < b.score; })->cutoff_hz;
+    const auto scanned = [&](double share) { report(0.8 * share); };
+    out.cutoffs = scan_cutoffs(robot, logs, options.processing, options.threads, scanned);
+    out.processing.cutoff_hz = best_cutoff_hz(out.cutoffs);
   }
 
   const auto fold_start = Clock::now();
@@ -138,6 +104,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   for (const PreparedLog& log : prepared) out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
   DataFold fold = fold_all(robot, prepared, options.threads);
   out.fold_time_s = seconds_since(fold_start);
+  report(0.9);
   out.samples = fold.samples;
 
   const std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 20;
-constexpr int kFewestPeriods = 3;       // below, averaging gains less than the part of a period it leaves out
+constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
 constexpr double kBreakaway_s = 0.02;  // a joint needs about so long to slide again after a reversal
 
@@ -124,11 +124,11 @@ std::optional<double> period_of(const Log& log, const ProcessingOptions& options
   if (options.periods == Periods::ignore) return std::nullopt;
   double period_s = options.period_s;
   if (options.periods == Periods::detect) {
-    PeriodOptions wanted;
-    wanted.min_periods = kFewestPeriods;
-    const std::optional<Period> found = find_period(log, wanted);
+    const std::optional<Period> found = find_period(log);
     if (!found) return std::nullopt;
     period_s = found->period_s;
+    const double length_s = static_cast<double>(log.samples()) * log.sample_time_s();
+    if (static_cast<double>(found->whole_periods) * period_s < kLeastCoverage * length_s) return std::nullopt;
   }
   const double per_period = period_s / log.sample_time_s();
   if (period_s * options.cutoff_hz > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {

@@ -3,6 +3,7 @@
 /// \file
 /// Robot for one compile-time type and layout. Columns that the options leave out are dropped here, once, by index.
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -71,8 +72,10 @@ class RobotOf final : public Robot {
     for (int column = 0; column < Layout::kColumns; ++column) {
       const bool tool = R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
       const bool rotor = column >= Layout::kRotorInertia && column < Layout::kOffset;
+      const bool wanted_rotor = std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(),
+                                           column - Layout::kRotorInertia + 1) > 0;
       const bool offset = column >= Layout::kOffset;
-      if ((tool && !options.tool) || (rotor && !options.rotor_inertia) || (offset && !options.offset)) continue;
+      if ((tool && !options.tool) || (rotor && !wanted_rotor) || (offset && !options.offset)) continue;
       columns_.push_back(column);
       names_.push_back(text.names[static_cast<std::size_t>(column)]);
       units_.push_back(text.units[static_cast<std::size_t>(column)]);

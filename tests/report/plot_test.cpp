@@ -6,6 +6,8 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -177,7 +179,8 @@ TEST(RenderSvg, OddDataIsDrawnWithoutComplaint) {
   const auto with_y = [](std::initializer_list<double> y) {
     PlotSpec spec = simple();
     spec.series[0].x = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(y.size()), 0.0, 1.0);
-    spec.series[0].y = Eigen::Map<const Eigen::VectorXd>(y.begin(), static_cast<Eigen::Index>(y.size()));
+    spec.series[0].y.resize(static_cast<Eigen::Index>(y.size()));
+    std::copy(y.begin(), y.end(), spec.series[0].y.begin());
     return spec;
   };
   const double inf = std::numeric_limits<double>::infinity();

@@ -54,7 +54,8 @@ TEST(NominalParameters, BodiesAreConsistentAndNoUncertaintyIsZero) {
     for (const bool individual : {false, true}) {
       ParameterOptions options;
       options.individual_limbs = individual;
-      options.rotor_inertia = options.offset = true;
+      options.rotor_inertia = {1, 2, 3, 4};
+      options.offset = true;
       const auto robot = make_robot(delta4(size), options);
       const NominalParameters nominal = nominal_parameters(*robot, PartShapes(robot->description()));
       ASSERT_EQ(nominal.value.size(), robot->parameters());

@@ -4,12 +4,13 @@
 /// The main job: logs in, physically consistent parameters with their uncertainty out.
 
 #include <Eigen/Core>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/consistent_fit.hpp"
+#include "deltadyn/identification/cutoff_scan.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
 
@@ -30,13 +31,7 @@ struct IdentificationOptions {
   BaseParameterOptions base;
   ConsistentFitOptions fit;
   int threads = 0;                     ///< 0: all
-};
-
-/// Residual of the base-parameter fit over the cut-off of the motion.
-struct CutoffPoint {
-  double cutoff_hz;
-  double score;               ///< geometric mean over the drives of the residual [N m | N]
-  Eigen::VectorXd rms;        ///< of each drive
+  std::function<void(double)> progress;  ///< called with the share done, 0 to 1; may be empty
 };
 
 struct DriveReport {
@@ -61,11 +56,6 @@ struct Identification {
   double fold_time_s = 0, total_time_s = 0;
   std::vector<std::string> notes;
 };
-
-/// Cut-off of the motion, from the logs themselves: too low a cut-off bends the accelerations, too high a one lets encoder noise
-/// through, so that the residual of the base-parameter fit has a minimum between.
-[[nodiscard]] std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                                    const IdentificationOptions& options);
 
 /// Identifies the parameters of `robot` from one or more logs.
 /// \param prior      one value a parameter of the robot, physically consistent

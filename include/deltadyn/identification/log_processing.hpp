@@ -20,7 +20,7 @@ namespace deltadyn {
 
 /// How a log that repeats itself is used.
 enum class Periods {
-  detect,  ///< a log of at least two equal periods counts as periodic
+  detect,  ///< a log that consists of equal periods, nine tenths of it at least, counts as periodic
   given,   ///< ProcessingOptions::period_s
   ignore   ///< every log is filtered like any other
 };

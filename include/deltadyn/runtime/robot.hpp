@@ -18,7 +18,7 @@ namespace deltadyn {
 struct ParameterOptions {
   bool individual_limbs = false;  ///< each limb has its own upper_armK and strutK
   bool tool = true;               ///< the tool's ten parameters (delta4)
-  bool rotor_inertia = false;     ///< driveK.rotor_inertia
+  std::vector<int> rotor_inertia; ///< drives, from 1, that have a column driveK.rotor_inertia
   bool offset = false;            ///< driveK.offset
 };
 

@@ -1,0 +1,250 @@
+/// \file
+/// delta-identify: base parameters and the physically consistent set from drive logs.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/identify.hpp"
+#include "deltadyn/identification/mass_matrix_survey.hpp"
+#include "deltadyn/identification/validate.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/identification_report.hpp"
+#include "deltadyn/runtime/nominal_parameters.hpp"
+#include "deltadyn/runtime/robot.hpp"
+#include "processing_flags.hpp"
+#include "tool_support.hpp"
+
+namespace {
+
+using namespace deltadyn;
+using tools::ToolRun;
+
+constexpr int kSurveyStates = 2000;  // poses at which M is factored; enough to see the workspace, a few milliseconds
+
+class Identify {
+ public:
+  Identify(int argc, char** argv) : command_line_(tools::command_line(argc, argv)) {}
+
+  void add_to(CLI::App& app, ToolRun& run) {
+    app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
+    app.add_option("logs", log_files_, "logs of this robot (CSV t_s, q1_rad.., tau1_Nm..)")->required()->type_name("LOG");
+    app.add_option("-o,--output", output_, "parameters name,value,unit,std,prior,data_share (CSV)")->required()->type_name("FILE");
+    app.add_option("--base", base_file_, "base parameters index,expression,value,unit,std,relative_std_percent (CSV)")->type_name("FILE");
+    app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
+    app.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
+        ->type_name("FILE");
+    app.add_option("--parameters", set_, "reduced: section VI of the paper; full: ten a body")
+        ->check(CLI::IsMember({"reduced", "full"}))
+        ->capture_default_str();
+    app.add_option("--metric", metric_, "distance to the prior: relative (15), bregman or riemannian (frame-invariant)")
+        ->check(CLI::IsMember({"relative", "bregman", "riemannian"}))
+        ->capture_default_str();
+    app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")->capture_default_str();
+    app.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
+    app.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
+    app.add_option("--rotor-inertia", rotor_inertia_, "drives with a rotor inertia of their own, e.g. 4 or 1,2,3")->delimiter(',');
+    app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
+    app.add_option("--reversals", reversals_, "rows near velocity reversals: auto leaves them out if they fit three times worse")
+        ->check(CLI::IsMember({"auto", "mask", "keep"}))
+        ->capture_default_str();
+    app.add_flag("--robust", robust_, "Huber weights against single bad samples");
+    processing_.add_to(app);
+    run.on(app, [this, &run] { return execute(run); });
+  }
+
+ private:
+  ExitCode execute(ToolRun& run) {
+    for (const std::string& file : {output_, base_file_, report_file_}) refuse_outputs(file);
+    if (!report_file_.empty() && !gnuplot_available()) {
+      throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
+    }
+    const RobotDescription description = read_robot_file(robot_file_);
+    const auto robot = make_robot(description, parameter_options(description));
+    const IdentificationOptions options = identification_options(run);
+    Eigen::VectorXd prior, prior_std;
+    read_prior(*robot, prior, prior_std);
+    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    tools::ProgressBar bar("identifying");
+    IdentificationOptions with_progress = options;
+    with_progress.progress = [&bar](double share) { bar.update(share); };
+    const Identification result = identify(*robot, logs, prior, prior_std, with_progress);
+    const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
+
+    write_parameters(output_, parameter_table(*robot, result));
+    if (!base_file_.empty()) write_base(result);
+    if (!report_file_.empty()) {
+      const Validation training = validate(*robot, logs, result.fit.p, result.processing);
+      ReportContext context;
+      context.robot_file = robot_file_;
+      context.log_files = log_files_;
+      context.parameter_file = prior_file_;
+      context.command_line = command_line_;
+      write_file(report_file_, identification_report(*robot, result, training, survey, context));
+    }
+    return tell(*robot, result, survey, run);
+  }
+
+  void refuse_outputs(const std::string& file) const {
+    if (file.empty()) return;
+    std::vector<std::string> inputs = log_files_;
+    inputs.push_back(robot_file_);
+    if (!prior_file_.empty()) inputs.push_back(prior_file_);
+    refuse_overwrite(file, inputs);
+  }
+
+  ParameterOptions parameter_options(const RobotDescription& robot) const {
+    ParameterOptions options;
+    options.individual_limbs = individual_limbs_;
+    options.tool = !without_tool_;
+    for (const int drive : rotor_inertia_) {
+      if (drive < 1 || drive > robot.drives()) {
+        throw Error(fmt::format("--rotor-inertia names drive {}", drive), "", fmt::format("the robot has drives 1 to {}", robot.drives()),
+                    ExitCode::usage);
+      }
+    }
+    options.rotor_inertia = rotor_inertia_;
+    options.offset = offset_.value_or(robot.type == Axis::kName);  // a drive on its test bench has its amplifier's offset
+    return options;
+  }
+
+  IdentificationOptions identification_options(const ToolRun& run) const {
+    IdentificationOptions options;
+    options.processing = processing_.options();
+    options.choose_cutoff = processing_.automatic_cutoff();
+    options.reversals = reversals_ == "mask" ? Reversals::mask : (reversals_ == "keep" ? Reversals::keep : Reversals::automatic);
+    options.robust = robust_;
+    options.base.seed = run.seed;
+    options.fit.set = set_ == "full" ? ParameterSet::full : ParameterSet::reduced;
+    options.fit.metric = metric_ == "bregman" ? FitMetric::bregman : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
+    if (regularization_ != "auto") options.fit.regularization = tools::number_of(regularization_, "--regularization", "auto");
+    return options;
+  }
+
+  void read_prior(const Robot& robot, Eigen::VectorXd& prior, Eigen::VectorXd& prior_std) const {
+    const NominalParameters nominal = nominal_parameters(robot, PartShapes(robot.description()));
+    prior = nominal.value;
+    prior_std = nominal.std;
+    if (prior_file_.empty()) {
+      fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
+      return;
+    }
+    const ParameterMatch match = match_parameters(read_parameters(prior_file_), robot.parameter_names(), robot.parameter_units());
+    prior = match.value;
+    for (Eigen::Index k = 0; k < prior.size(); ++k) {
+      const double std = match.std(k);
+      const double share = nominal.value(k) != 0 ? nominal.std(k) / std::abs(nominal.value(k)) : 0.0;
+      // The file's own trust in its values; without it the nominal one, carried over as a share of the value.
+      prior_std(k) = std::isfinite(std) && std > 0 ? std : (share > 0 && prior(k) != 0 ? share * std::abs(prior(k)) : nominal.std(k));
+    }
+    for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
+    if (!match.missing.empty()) {
+      fmt::print("note: {}: {} parameters are not in the file and count as 0: {}\n", prior_file_, match.missing.size(),
+                 fmt::join(match.missing, " "));
+    }
+  }
+
+  static ParameterTable parameter_table(const Robot& robot, const Identification& result) {
+    ParameterTable table;
+    for (int k = 0; k < robot.parameters(); ++k) {
+      ParameterEntry entry;
+      entry.name = robot.parameter_names()[static_cast<std::size_t>(k)];
+      entry.value = result.fit.p(k);
+      entry.unit = robot.parameter_units()[static_cast<std::size_t>(k)];
+      entry.std = result.fit.std(k);
+      entry.prior = result.fit.prior(k);
+      entry.data_share = result.fit.data_share(k);
+      table.entries.push_back(std::move(entry));
+    }
+    return table;
+  }
+
+  void write_base(const Identification& result) const {
+    OutputFile file(base_file_);
+    file.write("index,expression,value,unit,std,relative_std_percent\n");
+    const Eigen::VectorXd std = result.base_estimate.std();
+    for (int k = 0; k < result.base.count(); ++k) {
+      const double value = result.base_estimate.value(k);
+      const auto at = static_cast<std::size_t>(k);
+      file.print("{},{},{},{},{},{}\n", k + 1, result.base.expressions[at], value, result.base.units[at], std(k),
+                 100 * std(k) / std::max(std::abs(value), 1e-300));
+    }
+    file.commit();
+  }
+
+  ExitCode tell(const Robot& robot, const Identification& result, const MassMatrixSurvey& survey, ToolRun& run) const {
+    const int columns = robot.parameters();
+    Summary& out = run.summary;
+    for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : result.fit.notes) fmt::print("note: {}\n", note);
+    fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n", result.samples,
+               result.base.count(), columns, result.base_estimate.condition_number);
+    if (result.processing.filter) {
+      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz, result.cutoffs.empty() ? "" : ", chosen from the logs");
+    }
+    out.add("samples", result.samples);
+    out.add("columns", columns);
+    out.add("base_parameters", result.base.count());
+    out.add("condition_number", result.base_estimate.condition_number);
+    out.add("log_det", result.base_estimate.log_det);
+    if (result.processing.filter) out.add("cutoff_hz", result.processing.cutoff_hz, "Hz");
+    fmt::print("drive   rms residual   of torque   base parameters alone   rows left out near reversals\n");
+    for (int j = 0; j < robot.drives(); ++j) {
+      const DriveReport& drive = result.drives[static_cast<std::size_t>(j)];
+      const char* unit = tools::torque_unit(robot.description(), j);
+      const double relative = drive.rms / std::max(drive.rms_torque, 1e-300);
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}            {:>6.1f} %\n", j + 1, drive.rms, unit, 100 * relative,
+                 drive.rms_base, unit, 100.0 * static_cast<double>(drive.masked_rows) / static_cast<double>(std::max<Eigen::Index>(1, drive.rows + drive.masked_rows)));
+      out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms, unit);
+      out.add(fmt::format("relative_residual_drive{}", j + 1), relative);
+      out.add(fmt::format("rms_residual_base_drive{}", j + 1), drive.rms_base, unit);
+    }
+    fmt::print("{}\n", result.fit.brief_report());
+    out.add("variables", result.fit.variables);
+    out.add("regularization", result.fit.lambda);
+    out.add("chi_square_rise", result.fit.data_cost - result.fit.data_cost_min);
+    out.add("certificate_passed", result.fit.certificate.passed ? "yes" : (result.fit.certificate.available ? "no" : "not available"));
+    out.add("certificate_gap", result.fit.certificate.gap);
+    out.add("mass_matrix_min_eigenvalue", survey.min_eigenvalue, robot.drives() > 0 && robot.description().kind_of_drive(0) == DriveKind::revolute ? "kg*m^2" : "kg");
+    out.add("fold_time_s", result.fold_time_s, "s");
+    out.add("solve_time_s", result.fit.solve_time_s, "s");
+    out.add("total_time_s", result.total_time_s, "s");
+    fmt::print("smallest eigenvalue of the mass matrix over {} poses: {:.4g}\n", survey.states, survey.min_eigenvalue);
+    fmt::print("wrote {}{}{}\n", output_, base_file_.empty() ? "" : ", " + base_file_, report_file_.empty() ? "" : ", " + report_file_);
+    if (!result.fit.converged) {
+      throw Error("the consistent fit did not converge: " + result.fit.message, "", "look at the report; try --regularization with a larger value",
+                  ExitCode::no_convergence);
+    }
+    const bool proven = result.fit.certificate.passed || !result.fit.certificate.available;
+    const bool trusted = proven && survey.min_eigenvalue > 0;
+    out.add("verdict", trusted ? "trusted" : "not-trusted");
+    if (!proven) fmt::print("warning: the fit is not proven to be the best one (gap {:.3g} of chi^2)\n", result.fit.certificate.gap);
+    if (!(survey.min_eigenvalue > 0)) fmt::print("warning: the mass matrix is not positive definite everywhere\n");
+    return trusted ? ExitCode::done : ExitCode::not_trusted;
+  }
+
+  std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_;
+  std::vector<std::string> log_files_;
+  std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto";
+  bool individual_limbs_ = false, without_tool_ = false, robust_ = false;
+  std::optional<bool> offset_;
+  std::vector<int> rotor_inertia_;
+  tools::ProcessingFlags processing_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Identify identify(argc, argv);
+  return tools::run_tool(argc, argv,
+                         {"delta-identify",
+                          "Identify the dynamic parameters of a Delta-like robot from drive logs: base parameters by weighted least squares "
+                          "and a complete, physically consistent set.",
+                          "delta-identify robot.urdf fast.csv slow.csv --prior prior.csv -o params.csv --base base.csv --report report.html"},
+                         [&](CLI::App& app, ToolRun& run) { identify.add_to(app, run); });
+}

@@ -1,0 +1,159 @@
+/// \file
+/// delta-validate: how well parameters predict the torque of logs that took no part in the fit.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/validate.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/validation_report.hpp"
+#include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/signal/log_columns.hpp"
+#include "processing_flags.hpp"
+#include "tool_support.hpp"
+
+namespace {
+
+using namespace deltadyn;
+using tools::ToolRun;
+
+/// The layout that a parameter file was written in: limbs of their own, rotor inertias, offsets.
+ParameterOptions layout_of(const ParameterTable& table, const RobotDescription& robot) {
+  ParameterOptions options;
+  for (const ParameterEntry& entry : table.entries) {
+    for (const char* body : {"upper_arm", "strut"}) {
+      const std::string prefix = body;
+      if (entry.name.compare(0, prefix.size(), prefix) == 0 && entry.name.size() > prefix.size() && std::isdigit(entry.name[prefix.size()])) {
+        options.individual_limbs = true;
+      }
+    }
+    for (int j = 1; j <= robot.drives(); ++j) {
+      if (entry.name == fmt::format("drive{}.rotor_inertia", j)) options.rotor_inertia.push_back(j);
+      if (entry.name == fmt::format("drive{}.offset", j)) options.offset = true;
+    }
+  }
+  return options;
+}
+
+class Validate {
+ public:
+  Validate(int argc, char** argv) : command_line_(tools::command_line(argc, argv)) {}
+
+  void add_to(CLI::App& app, ToolRun& run) {
+    app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
+    app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV)")->required()->type_name("LOG");
+    app.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
+    app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")->type_name("FILE");
+    app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
+    processing_.add_to(app);
+    run.on(app, [this, &run] { execute(run); });
+  }
+
+ private:
+  void execute(ToolRun& run) {
+    std::vector<std::string> inputs = log_files_;
+    inputs.insert(inputs.end(), {robot_file_, parameter_file_});
+    for (const std::string& file : {output_, report_file_}) {
+      if (!file.empty()) refuse_overwrite(file, inputs);
+    }
+    if (!report_file_.empty() && !gnuplot_available()) {
+      throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
+    }
+    const RobotDescription description = read_robot_file(robot_file_);
+    const ParameterTable table = read_parameters(parameter_file_);
+    const auto robot = make_robot(description, layout_of(table, description));
+    const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
+    for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
+    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    ProcessingOptions options = processing_.options();
+    tools::ProgressBar bar("validating");
+    if (options.filter && processing_.automatic_cutoff()) {
+      options.cutoff_hz = best_cutoff_hz(scan_cutoffs(*robot, logs, options, 0, [&bar](double share) { bar.update(share); }));
+    }
+    const Validation result = validate(*robot, logs, match.value, options);
+    if (!output_.empty()) write_residuals(description, result);
+    if (!report_file_.empty()) {
+      ReportContext context;
+      context.robot_file = robot_file_;
+      context.log_files = log_files_;
+      context.parameter_file = parameter_file_;
+      context.command_line = command_line_;
+      write_file(report_file_, validation_report(*robot, result, context));
+    }
+    tell(description, result, run);
+  }
+
+  void write_residuals(const RobotDescription& robot, const Validation& result) const {
+    OutputFile file(output_);
+    const int n = robot.drives();
+    std::string header = result.logs.size() > 1 ? "log,t_s" : "t_s";
+    for (int j = 0; j < n; ++j) {
+      const DriveColumns names = drive_columns(robot, j);
+      const std::string unit = names.tau.substr(names.tau.find('_'));
+      header += fmt::format(",{0},model{1}{2},residual{1}{2},{3},{4},{5},reversal{1}", names.tau, j + 1, unit, names.q, names.qd, names.qdd);
+    }
+    file.write(header + "\n");
+    for (std::size_t k = 0; k < result.logs.size(); ++k) {
+      const Prediction& p = result.logs[k].prediction;
+      for (Eigen::Index row = 0; row < p.rows(); ++row) {
+        if ((p.use.row(row) == RowUse::unusable).any()) continue;
+        if (result.logs.size() > 1) file.print("{},", k + 1);
+        file.print("{}", p.t_s(row));
+        for (int j = 0; j < n; ++j) {
+          file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j), p.q(row, j), p.qd(row, j),
+                     p.qdd(row, j), p.use(row, j) == RowUse::reversal ? 1 : 0);
+        }
+        file.write("\n");
+      }
+    }
+    file.commit();
+  }
+
+  void tell(const RobotDescription& robot, const Validation& result, ToolRun& run) const {
+    Summary& out = run.summary;
+    Eigen::Index samples = 0;
+    for (const ValidatedLog& log : result.logs) {
+      samples += log.samples;
+      for (const std::string& note : log.notes) fmt::print("note: {}\n", note);
+    }
+    out.add("samples", samples);
+    if (result.processing.filter) {
+      fmt::print("{} samples, motion filtered at {:.4g} Hz\n", samples, result.processing.cutoff_hz);
+      out.add("cutoff_hz", result.processing.cutoff_hz, "Hz");
+    } else {
+      fmt::print("{} samples, taken as they are\n", samples);
+    }
+    fmt::print("drive   rms residual   of torque   largest   with reversals\n");
+    for (int j = 0; j < robot.drives(); ++j) {
+      const ValidatedDrive& drive = result.drives[static_cast<std::size_t>(j)];
+      const char* unit = tools::torque_unit(robot, j);
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {}\n", j + 1, drive.rms_residual, unit, 100 * drive.relative_residual,
+                 drive.max_residual, drive.rms_with_reversals, unit);
+      out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms_residual, unit);
+      out.add(fmt::format("relative_residual_drive{}", j + 1), drive.relative_residual);
+      out.add(fmt::format("max_residual_drive{}", j + 1), drive.max_residual, unit);
+      out.add(fmt::format("rms_with_reversals_drive{}", j + 1), drive.rms_with_reversals, unit);
+    }
+    if (!output_.empty()) fmt::print("wrote {}\n", output_);
+    if (!report_file_.empty()) fmt::print("wrote {}\n", report_file_);
+  }
+
+  std::string command_line_, robot_file_, output_, report_file_, parameter_file_;
+  std::vector<std::string> log_files_;
+  tools::ProcessingFlags processing_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Validate validate(argc, argv);
+  return tools::run_tool(argc, argv,
+                         {"delta-validate", "Predict the torque of logs that took no part in the fit, and show where model and measurement differ.",
+                          "delta-validate robot.urdf --params params.csv verification.csv -o residuals.csv --report validation.html"},
+                         [&](CLI::App& app, ToolRun& run) { validate.add_to(app, run); });
+}

@@ -1,0 +1,89 @@
+#pragma once
+
+/// \file
+/// Flags of the tools that read logs: how logs are filtered, and the files they come from.
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/cutoff_scan.hpp"
+#include "deltadyn/io/log_file.hpp"
+#include "tool_support.hpp"
+
+namespace deltadyn::tools {
+
+/// Number or word of a flag like --cutoff-hz auto|VALUE. Throws Error(usage) that names the flag.
+inline double number_of(const std::string& text, const std::string& flag, const std::string& words) {
+  try {
+    std::size_t used = 0;
+    const double value = std::stod(text, &used);
+    if (used == text.size() && std::isfinite(value)) return value;
+  } catch (const std::exception&) {  // falls through to the message below
+  }
+  throw Error(fmt::format("{} {} is neither a number nor {}", flag, text, words), "", "give one of these", ExitCode::usage);
+}
+
+/// The flags and what they mean.
+class ProcessingFlags {
+ public:
+  void add_to(CLI::App& app) {
+    app.add_flag("--no-filter", no_filter_, "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
+    app.add_option("--cutoff-hz", cutoff_, "-3 dB of the zero-phase filter of the motion [Hz], or auto: from the logs")->capture_default_str();
+    app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
+        ->capture_default_str();
+  }
+
+  /// Options without the cut-off if that is automatic.
+  [[nodiscard]] ProcessingOptions options() const {
+    ProcessingOptions options;
+    options.filter = !no_filter_;
+    if (!automatic_cutoff()) options.cutoff_hz = number_of(cutoff_, "--cutoff-hz", "auto");
+    if (period_ == "none") {
+      options.periods = Periods::ignore;
+    } else if (period_ != "auto") {
+      options.periods = Periods::given;
+      options.period_s = number_of(period_, "--period-s", "auto or none");
+    }
+    options.validate();
+    return options;
+  }
+  [[nodiscard]] bool automatic_cutoff() const { return cutoff_ == "auto"; }
+
+  /// Reads the logs and prints what the reader had to say.
+  [[nodiscard]] std::vector<Log> read_logs(const std::vector<std::string>& paths, const RobotDescription& robot) const {
+    LogReadOptions options;
+    options.need_derivatives = no_filter_;
+    options.checks.motion = !no_filter_;
+    std::vector<Log> logs;
+    for (const std::string& path : paths) {
+      logs.push_back(read_log(path, robot, options));
+      for (const std::string& note : logs.back().notes) fmt::print("note: {}\n", note);
+    }
+    return logs;
+  }
+
+ private:
+  bool no_filter_ = false;
+  std::string cutoff_ = "auto";
+  std::string period_ = "auto";
+};
+
+/// "N m" or "N", as the drive turns or slides.
+inline const char* torque_unit(const RobotDescription& robot, int drive) {
+  return robot.kind_of_drive(drive) == DriveKind::revolute ? "N*m" : "N";
+}
+
+/// The whole command line, for reports.
+inline std::string command_line(int argc, char** argv) {
+  std::string text;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto slash = i == 0 ? word.rfind('/') : std::string::npos;
+    text += (i > 0 ? " " : "") + (slash == std::string::npos ? word : word.substr(slash + 1));
+  }
+  return text;
+}
+
+}  // namespace deltadyn::tools
