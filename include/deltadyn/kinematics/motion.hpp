@@ -36,9 +36,11 @@ void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::
                      Motion<T, Robot>& motion);
 
 /// Motion of a drive state (q, qd, qdd).
+/// \return out_of_range if a number is not finite, else the status of the forward kinematics
 template <class T, class Robot>
 Status motion_from_drives(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
                           const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& qdd, Motion<T, Robot>& motion) {
+  if (!qd.allFinite() || !qdd.allFinite()) return Status::out_of_range;
   const Status status = posture_from_drives(geometry, q, motion.posture);
   if (status != Status::ok) return status;
   set_drive_rates(geometry, qd, qdd, motion);
@@ -52,9 +54,11 @@ Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& 
                    const Vector<T, Robot::kDrives>& zdd, Vector<T, Robot::kDrives>& qd, Vector<T, Robot::kDrives>& qdd);
 
 /// Motion of a task-space state (z, zd, zdd).
+/// \return out_of_range if a number is not finite, else the status of the inverse kinematics or of drive_rates
 template <class T, class Robot>
 Status motion_from_task(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z, const Vector<T, Robot::kDrives>& zd,
                         const Vector<T, Robot::kDrives>& zdd, Motion<T, Robot>& motion) {
+  if (!zd.allFinite() || !zdd.allFinite()) return Status::out_of_range;
   Vector<T, Robot::kDrives> q, qd, qdd;
   Status status = inverse_kinematics(geometry, z, q);
   if (status == Status::ok) status = assemble_posture(geometry, q, z, motion.posture);
