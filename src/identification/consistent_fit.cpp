@@ -1,0 +1,353 @@
+#include "deltadyn/identification/consistent_fit.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <ceres/ceres.h>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/runtime/error.hpp"
+
+#include "fit_blocks.hpp"
+#include "fit_convex.hpp"
+#include "fit_metric.hpp"
+
+namespace deltadyn {
+namespace {
+
+using fit::Block;
+using fit::ConvexProblem;
+using fit::Layout;
+using fit::Shape;
+using Clock = std::chrono::steady_clock;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Fitted entries of a block from its variables, with dy/dpi when asked for.
+Eigen::VectorXd fitted_entries(const Block& block, const double* variables, Eigen::MatrixXd* jacobian) {
+  Eigen::VectorXd y(block.fitted());
+  if (!block.is_body()) {
+    const bool positive = block.shape == Shape::positive;
+    y(0) = positive ? std::exp(variables[0]) : variables[0];
+    if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, positive ? y(0) : 1.0);
+    return y;
+  }
+  const LogCholeskyVector<double> pi = Eigen::Map<const LogCholeskyVector<double>>(variables);
+  const InertialVector<double> p = from_log_cholesky(pi);
+  for (int i = 0; i < block.fitted(); ++i) y(i) = p(block.entries[static_cast<std::size_t>(i)]);
+  if (jacobian != nullptr) {
+    const Matrix<double, 10, 10> J = log_cholesky_jacobian(pi);
+    jacobian->resize(block.fitted(), 10);
+    for (int i = 0; i < block.fitted(); ++i) jacobian->row(i) = J.row(block.entries[static_cast<std::size_t>(i)]);
+  }
+  return y;
+}
+
+/// First term of (15): A y(pi) - b over all blocks at once.
+class DataResidual final : public ceres::CostFunction {
+ public:
+  DataResidual(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b) : layout_(layout), A_(A), b_(b) {
+    set_num_residuals(static_cast<int>(A.rows()));
+    for (const Block& block : layout.blocks) mutable_parameter_block_sizes()->push_back(block.width());
+  }
+
+  bool Evaluate(double const* const* variables, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> residual(residuals, A_.rows());
+    residual = -b_;
+    Eigen::MatrixXd J;
+    for (std::size_t i = 0; i < layout_.blocks.size(); ++i) {
+      const Block& block = layout_.blocks[i];
+      const bool wanted = jacobians != nullptr && jacobians[i] != nullptr;
+      const Eigen::VectorXd y = fitted_entries(block, variables[i], wanted ? &J : nullptr);
+      const auto columns = A_.middleCols(block.y, block.fitted());
+      residual.noalias() += columns * y;
+      if (!wanted) continue;
+      if (block.width() == 1) {
+        Eigen::Map<Eigen::VectorXd>(jacobians[i], A_.rows()).noalias() = columns * J.col(0);
+      } else {
+        Eigen::Map<RowMajor>(jacobians[i], A_.rows(), block.width()).noalias() = columns * J;
+      }
+    }
+    return residual.allFinite();
+  }
+
+ private:
+  const Layout& layout_;
+  const Eigen::MatrixXd& A_;
+  const Eigen::VectorXd& b_;
+};
+
+/// Second term of (15) for one block: sqrt(lambda) times the residual of the metric.
+class RegularizationResidual final : public ceres::CostFunction {
+ public:
+  RegularizationResidual(const Layout& layout, const Block& block, FitMetric metric, double lambda)
+      : layout_(layout), block_(block), metric_(metric), weight_(std::sqrt(lambda)) {
+    set_num_residuals(fit::residual_size(block, metric));
+    mutable_parameter_block_sizes()->push_back(block.width());
+  }
+
+  bool Evaluate(double const* const* variables, double* residuals, double** jacobians) const override {
+    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
+    Eigen::MatrixXd dy_dpi, dr_dy;
+    const Eigen::VectorXd y = fitted_entries(block_, variables[0], wanted ? &dy_dpi : nullptr);
+    Eigen::Map<Eigen::VectorXd> residual(residuals, num_residuals());
+    if (!fit::metric_residual(block_, layout_, metric_, y, residual, wanted ? &dr_dy : nullptr)) return false;
+    residual *= weight_;
+    if (wanted && block_.width() == 1) {
+      Eigen::Map<Eigen::VectorXd>(jacobians[0], num_residuals()) = weight_ * dr_dy * dy_dpi.col(0);
+    } else if (wanted) {
+      Eigen::Map<RowMajor>(jacobians[0], num_residuals(), block_.width()) = weight_ * dr_dy * dy_dpi;
+    }
+    return residual.allFinite();
+  }
+
+ private:
+  const Layout& layout_;
+  const Block& block_;
+  FitMetric metric_;
+  double weight_;
+};
+
+/// The variables of all blocks, in Ceres's hands.
+using Variables = std::vector<LogCholeskyVector<double>>;
+
+Eigen::VectorXd fitted_of(const Layout& layout, const Variables& variables) {
+  Eigen::VectorXd y(layout.fitted);
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    const Block& block = layout.blocks[i];
+    y.segment(block.y, block.fitted()) = fitted_entries(block, variables[i].data(), nullptr);
+  }
+  return y;
+}
+
+void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                      const ConsistentFitOptions& options, double lambda, Variables& variables, ConsistentFitSummary& summary) {
+  ceres::Problem problem;
+  std::vector<double*> all;
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    const Block& block = layout.blocks[i];
+    all.push_back(variables[i].data());
+    std::vector<int> constant;
+    for (int variable = 0; block.is_body() && variable < 10; ++variable) {
+      if (std::find(block.variables.begin(), block.variables.end(), variable) == block.variables.end())
+        constant.push_back(variable);
+    }
+    if (constant.empty()) {
+      problem.AddParameterBlock(all.back(), block.width());
+    } else {
+      problem.AddParameterBlock(all.back(), block.width(), new ceres::SubsetManifold(block.width(), constant));
+    }
+    problem.AddResidualBlock(new RegularizationResidual(layout, block, options.metric, lambda), nullptr, all.back());
+  }
+  problem.AddResidualBlock(new DataResidual(layout, A, b), nullptr, all);
+
+  ceres::Solver::Options solver;
+  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  solver.linear_solver_type = ceres::DENSE_QR;  // normal equations would lose the weakly excited directions
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.gradient_tolerance = options.gradient_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.logging_type = ceres::SILENT;
+  solver.num_threads = 1;
+  ceres::Solver::Summary result;
+  ceres::Solve(solver, &problem, &result);
+  summary.iterations = std::max(0, result.num_successful_steps + result.num_unsuccessful_steps - 1);
+  summary.converged = result.termination_type == ceres::CONVERGENCE;
+  summary.message = result.message;
+}
+
+/// The largest lambda that costs the data no more than the admitted rise of chi^2.
+double choose_lambda(const Layout& layout, const ConvexProblem& convex, const ConsistentFitOptions& options,
+                     ConsistentFitSummary& summary) {
+  const FitMetric metric = options.metric;
+  const double highest =
+      1 / (options.prior_relative_std * options.prior_relative_std);  // the prior is not trusted beyond its word
+  const double lowest = 1e-6 * highest;
+  const Eigen::VectorXd start = fit::convex_start(layout);
+  auto solve = [&](FitMetric solved_metric, double lambda) -> Eigen::VectorXd {
+    const ConvexProblem::Result result = convex.minimise(solved_metric, lambda, start);
+    if (!result.converged) {
+      throw Error(fmt::format("the fit did not converge at a regularisation of {:g}", lambda), "consistent fit",
+                  "give --regularization a value", ExitCode::no_convergence);
+    }
+    return result.x.head(layout.fitted);
+  };
+  auto visit = [&](double lambda) {
+    const Eigen::VectorXd y = solve(metric, lambda);
+    summary.l_curve.push_back({lambda, convex.data_cost(y), convex.regularization_cost(metric, y)});
+    return summary.l_curve.back().data_cost;
+  };
+  // the minimum of chi^2 on the cones does not depend on the metric: take it where the problem is convex
+  summary.data_cost_min = visit(lowest);
+  if (metric == FitMetric::riemannian) summary.data_cost_min = convex.data_cost(solve(FitMetric::relative, lowest));
+  const double limit = summary.data_cost_min + options.data_misfit_rise;
+  double low = std::log(lowest), high = std::log(highest);
+  if (visit(highest) <= limit) low = high;
+  while (high - low > 0.1) {
+    const double middle = 0.5 * (low + high);
+    (visit(std::exp(middle)) <= limit ? low : high) = middle;
+  }
+  std::sort(summary.l_curve.begin(), summary.l_curve.end(), [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
+  return std::exp(low);
+}
+
+/// The better of two proofs. Where bodies end on the boundary, the dual point of the centred solution bounds the optimum more
+/// tightly than that of the point where Ceres stops, which lies lower but is not centred.
+OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, double lambda, const Eigen::VectorXd& y,
+                              const Eigen::VectorXd& centred) {
+  OptimalityCertificate own = convex.certify(metric, lambda, y);
+  if (!own.available) return own;
+  OptimalityCertificate other = convex.certify(metric, lambda, centred);
+  const double cost = convex.cost(metric, lambda, y);
+  other.gap = std::max(0.0, cost - (convex.cost(metric, lambda, centred) - other.gap));
+  other.relative_gap = other.gap / std::max(1.0, cost);
+  return other.available && other.gap < own.gap ? other : own;
+}
+
+/// Entries that section VI drops keep the prior's value where the data do not see them and the body stays consistent: the mass
+/// matrix does not change, and a model handed to a simulator keeps what its maker knew. Where a fitted inertia moved too far for
+/// that, the others move in proportion.
+InertialVector<double> complete_body(const Block& block, const ConsistentFitProblem& problem, const Layout& layout,
+                                     const InertialVector<double>& fitted) {
+  const InertialVector<double> prior = problem.prior.segment<10>(block.column);
+  if (block.shape == Shape::spatial || !is_physically_consistent(prior)) return fitted;
+  const int measure = block.shape == Shape::planar ? block.inertia : inertial::kM;
+  InertialVector<double> as_prior = fitted, in_proportion = fitted;
+  for (int i = 0; i < 10; ++i) {
+    const bool is_fitted = std::find(block.entries.begin(), block.entries.end(), i) != block.entries.end();
+    const double seen = problem.A.col(block.column + i).norm() * layout.scale(block.column + i);
+    if (is_fitted || seen > 1e-6) continue;  // in standard deviations of the noise
+    as_prior(i) = prior(i);
+    in_proportion(i) = prior(i) * fitted(measure) / prior(measure);
+  }
+  constexpr double kMargin = 1e-9;
+  if (is_physically_consistent(as_prior, kMargin)) return as_prior;
+  for (double share = 1; share > 1e-3; share *= 0.5) {
+    const InertialVector<double> candidate = fitted + share * (in_proportion - fitted);
+    if (is_physically_consistent(candidate, kMargin)) return candidate;
+  }
+  return fitted;
+}
+
+/// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width.
+void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOptions& options, const Layout& layout,
+                     const Eigen::MatrixXd& A, ConsistentFitSummary& summary) {
+  const int n = layout.fitted;
+  summary.std = problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
+  summary.data_share = Eigen::VectorXd::Zero(layout.parameters);
+  Eigen::VectorXd prior_std(n);
+  for (int i = 0; i < n; ++i) prior_std(i) = summary.std(layout.y_to_p[static_cast<std::size_t>(i)]);
+  // in units of the prior's width: covariance = (A^T A + I)^{-1}, share = 1 - its diagonal
+  Eigen::MatrixXd stacked(A.rows() + n, n);
+  stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  const Eigen::MatrixXd inverse = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  for (int i = 0; i < n; ++i) {
+    const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
+    const double variance = inverse.row(i).squaredNorm();
+    summary.std(parameter) = std::sqrt(variance) * prior_std(i);
+    summary.data_share(parameter) = std::clamp(1 - variance, 0.0, 1.0);
+  }
+}
+
+}  // namespace
+
+bool ConsistentFitOptions::is_valid(std::string* error) const {
+  auto refuse = [error](const std::string& text) {
+    if (error != nullptr) *error = text;
+    return false;
+  };
+  auto positive = [](double value) { return value > 0 && std::isfinite(value); };
+  if (regularization && !positive(*regularization))
+    return refuse("regularization must be a positive number or chosen from the data");
+  if (!positive(data_misfit_rise)) return refuse("data_misfit_rise must be positive");
+  if (max_iterations < 1) return refuse("max_iterations must be at least 1");
+  if (!positive(function_tolerance)) return refuse("function_tolerance must be positive");
+  if (!positive(gradient_tolerance)) return refuse("gradient_tolerance must be positive");
+  if (!positive(parameter_tolerance)) return refuse("parameter_tolerance must be positive");
+  if (!positive(prior_relative_std)) return refuse("prior_relative_std must be positive");
+  if (!positive(certificate_gap)) return refuse("certificate_gap must be positive");
+  return true;
+}
+
+ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem, const ConsistentFitOptions& options) {
+  const auto start_time = Clock::now();
+  if (std::string error; !options.is_valid(&error)) {
+    throw Error(error, "consistent fit, options", "see ConsistentFitOptions for the ranges", ExitCode::usage);
+  }
+  const Layout layout = fit::make_layout(problem, options.set);
+  const int n = layout.fitted;
+  ConsistentFitSummary summary;
+  summary.names = problem.names;
+  summary.prior = problem.prior;
+  summary.notes = layout.notes;
+  summary.variables = layout.variables;
+
+  Eigen::MatrixXd A(problem.A.rows(), n);
+  for (int i = 0; i < n; ++i) A.col(i) = problem.A.col(layout.y_to_p[static_cast<std::size_t>(i)]);
+  Eigen::VectorXd b = problem.b;
+  double constant = 0;  // the part of b that no parameter reaches; kept apart, it would only cost digits
+  if (A.rows() > n) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
+    const Eigen::VectorXd rotated = qr.householderQ().transpose() * b;
+    b = rotated.head(n);
+    constant = rotated.tail(rotated.size() - n).squaredNorm();
+    A = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().toDenseMatrix();
+  }
+  const ConvexProblem convex(layout, A, b);
+  const Eigen::VectorXd start = fit::convex_start(layout);
+  summary.initial_data_cost = constant + convex.data_cost(start.head(n));
+  summary.lambda_from_data = !options.regularization.has_value();
+  summary.lambda = options.regularization ? *options.regularization : choose_lambda(layout, convex, options, summary);
+
+  const auto solve_time = Clock::now();
+  Variables variables;
+  for (const Block& block : layout.blocks) variables.push_back(block.pi);
+  const ConvexProblem::Result inside = convex.minimise(options.metric, summary.lambda, start);
+  summary.interior_point_iterations = inside.iterations;
+  if (inside.x.size() > 0) {
+    for (std::size_t i = 0; i < layout.blocks.size(); ++i) variables[i] = fit::variables_of(layout.blocks[i], inside.x);
+  }
+  solve_with_ceres(layout, A, b, options, summary.lambda, variables, summary);
+  summary.solve_time_s = seconds_since(solve_time);
+
+  const Eigen::VectorXd y = fitted_of(layout, variables);
+  summary.data_cost = constant + convex.data_cost(y);
+  summary.regularization_cost = convex.regularization_cost(options.metric, y);
+  summary.data_cost_min = summary.lambda_from_data ? constant + summary.data_cost_min : summary.data_cost;
+  for (LCurvePoint& point : summary.l_curve) point.data_cost += constant;
+  summary.certificate = certify(convex, options.metric, summary.lambda, y, inside.x.size() > 0 ? inside.x.head(n).eval() : y);
+  summary.certificate.passed = summary.certificate.available && summary.certificate.gap <= options.certificate_gap;
+
+  summary.p.resize(layout.parameters);
+  summary.pi.resize(layout.parameters);
+  summary.fitted.assign(static_cast<std::size_t>(layout.parameters), false);
+  for (const int parameter : layout.y_to_p) summary.fitted[static_cast<std::size_t>(parameter)] = true;
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    const Block& block = layout.blocks[i];
+    if (!block.is_body()) {
+      summary.p(block.column) = y(block.y);
+      summary.pi(block.column) = variables[i](0);
+      continue;
+    }
+    const InertialVector<double> p = complete_body(block, problem, layout, from_log_cholesky(variables[i]));
+    LogCholeskyVector<double> pi = variables[i];
+    if (to_log_cholesky(p, pi) != Status::ok) {
+      // the body is so thin that its digits do not show its volume; the variables of the solver still do
+      summary.notes.push_back(fmt::format("{} ends on the boundary of what a body can have", block.name));
+      pi = variables[i];
+    }
+    summary.p.segment<10>(block.column) = p;
+    summary.pi.segment<10>(block.column) = pi;
+  }
+  add_uncertainty(problem, options, layout, A, summary);
+  summary.total_time_s = seconds_since(start_time);
+  return summary;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,282 @@
+#include "fit_convex.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fit_metric.hpp"
+
+namespace deltadyn::fit {
+namespace {
+
+constexpr double kFinalBarrier = 1e-5;  // chi^2 an eigenvalue of a cone; far below what any statistic can see
+constexpr double kFirstBarrier = 1.0;
+constexpr double kBarrierCut = 0.03;
+constexpr double kRounding = 1e-10;
+constexpr int kMaxNewton = 400;
+
+}  // namespace
+
+ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
+    : layout_(layout), A_(A), b_(b), scale_(layout.convex), centring_(Eigen::VectorXd::Zero(layout.convex)) {
+  for (int i = 0; i < layout.fitted; ++i) scale_(i) = layout.scale(layout.y_to_p[static_cast<std::size_t>(i)]);
+  for (const Block& block : layout.blocks) {
+    if (block.split >= 0) scale_(block.split) = block.anchor(block.inertia);
+  }
+  const Eigen::VectorXd start = convex_start(layout);
+  for (const Block& block : layout.blocks) {
+    if (block.cone.size == 0) continue;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd hessian;
+    double value = 0;
+    if (!log_det_barrier(block.cone, block.gather(start), value, &gradient, &hessian)) continue;
+    centring_.segment(block.y, block.fitted()) = -gradient.head(block.fitted());
+    if (block.split >= 0) centring_(block.split) = -gradient(block.fitted());
+  }
+  // Normal equations of a problem with far more digits in some directions than in others lose the weak ones. In the singular
+  // directions the data term is diagonal, and Jacobi scaling makes the Newton matrix well conditioned.
+  const int n = layout.fitted;
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(n);
+  const auto rows = std::min<Eigen::Index>(A_.rows(), n);
+  square.topRows(rows) = A_.topRows(rows) * scale_.head(n).asDiagonal();
+  rhs.head(rows) = b_.head(rows);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  singular_ = svd.singularValues();
+  V_ = svd.matrixV();
+  target_ = svd.matrixU().transpose() * rhs;
+}
+
+double ConvexProblem::regularization_cost(FitMetric metric, const Eigen::VectorXd& y) const {
+  double sum = 0;
+  for (const Block& block : layout_.blocks) {
+    Eigen::VectorXd residual(residual_size(block, metric));
+    if (!metric_residual(block, layout_, metric, y.segment(block.y, block.fitted()), residual, nullptr)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    sum += residual.squaredNorm();
+  }
+  return sum;
+}
+
+bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barrier, const Eigen::VectorXd& x, Terms& terms,
+                                    bool derivatives) const {
+  terms.value = 0;
+  if (derivatives) {
+    terms.gradient.setZero(layout_.convex);
+    terms.factor.setZero(layout_.convex, layout_.convex);
+  }
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  for (const Block& block : layout_.blocks) {
+    const Eigen::VectorXd own = block.gather(x);
+    const auto n = own.size();
+    const int count = block.fitted();
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
+    double value = 0;
+    if (!metric_terms(block, layout_, metric, own.head(count), value, derivatives ? &gradient : nullptr, &hessian)) return false;
+    terms.value += lambda * value;
+    if (derivatives) {
+      g.head(count) += lambda * gradient;
+      H.topLeftCorner(count, count) += lambda * hessian;
+    }
+    if (block.cone.size > 0) {
+      if (!log_det_barrier(block.cone, own, value, derivatives ? &gradient : nullptr, &hessian)) return false;
+      // The barrier is the log-det divergence from the anchor. A plain -log det has no minimum where neither the data nor a weak
+      // lambda hold a body, and would send it to infinity. The last stage does without the divergence's linear part: from a thin
+      // anchor it would bias the result by more than the certificate admits.
+      const Eigen::VectorXd centring = barrier > kFinalBarrier ? block.gather(centring_) : Eigen::VectorXd::Zero(n).eval();
+      terms.value += barrier * (value + centring.dot(own));
+      if (derivatives) {
+        g += barrier * (gradient + centring);
+        H += barrier * hessian;
+      }
+    }
+    if (!derivatives) continue;
+    Eigen::VectorXi index(n);
+    for (int i = 0; i < count; ++i) index(i) = block.y + i;
+    if (block.split >= 0) index(count) = block.split;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      g(i) *= scale_(index(i));
+      for (Eigen::Index j = 0; j < n; ++j) H(i, j) *= scale_(index(i)) * scale_(index(j));
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(H);
+    const Eigen::MatrixXd L = factor.matrixL();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      terms.gradient(index(i)) = g(i);
+      for (Eigen::Index j = 0; j <= i; ++j) terms.factor(index(i), index(j)) = L(i, j);
+    }
+  }
+  return true;
+}
+
+ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const {
+  const int n = layout_.convex, fitted = layout_.fitted;
+  Result result;
+  Eigen::VectorXd x = start.cwiseQuotient(scale_);  // scaled from here on
+  auto unscaled = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return v.cwiseProduct(scale_); };
+  auto data_residual = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    return singular_.cwiseProduct(V_.transpose() * v.head(fitted)) - target_;
+  };
+  Eigen::VectorXd residual = data_residual(x);
+  double barrier = kFirstBarrier;
+  Terms terms;
+  Eigen::MatrixXd H(n, n), rotated(n, n);
+  while (result.iterations < kMaxNewton) {
+    ++result.iterations;
+    if (!separable_terms(metric, lambda, barrier, unscaled(x), terms, true)) return result;
+    const double value = residual.squaredNorm() + terms.value;
+    // in (V^T y, splits)
+    Eigen::VectorXd gradient = terms.gradient;
+    gradient.head(fitted) = V_.transpose() * terms.gradient.head(fitted) + 2 * singular_.cwiseProduct(residual);
+    rotated = terms.factor;
+    rotated.topRows(fitted).noalias() = V_.transpose() * terms.factor.topRows(fitted);
+    H.setZero();
+    H.selfadjointView<Eigen::Lower>().rankUpdate(rotated);
+    H.diagonal().head(fitted) += 2 * singular_.cwiseAbs2();
+    const Eigen::VectorXd jacobi = H.diagonal().cwiseSqrt().cwiseInverse();
+    H = jacobi.asDiagonal() * H * jacobi.asDiagonal();
+    // Near the boundary the barrier's own spread can exceed the digits; a ridge then bends the step, never its descent.
+    Eigen::LLT<Eigen::MatrixXd> factor(H.selfadjointView<Eigen::Lower>());
+    for (double ridge = 1e-14; factor.info() != Eigen::Success && ridge < 1e-6; ridge *= 100) {
+      H.diagonal().array() += ridge;
+      factor.compute(H.selfadjointView<Eigen::Lower>());
+    }
+    if (factor.info() != Eigen::Success) return result;
+    Eigen::VectorXd step = -jacobi.cwiseProduct(factor.solve(jacobi.cwiseProduct(gradient)));
+    const double decrement = -gradient.dot(step);
+    step.head(fitted) = (V_ * step.head(fitted)).eval();
+
+    double length = 1;
+    bool accepted = false;
+    for (int trial = 0; trial < 60 && decrement > 0; ++trial, length *= 0.5) {
+      const Eigen::VectorXd candidate = x + length * step;
+      Terms at_candidate;
+      if (!separable_terms(metric, lambda, barrier, unscaled(candidate), at_candidate, false)) continue;
+      const Eigen::VectorXd new_residual = data_residual(candidate);
+      if (new_residual.squaredNorm() + at_candidate.value > value - 1e-4 * length * decrement) continue;
+      x = candidate;
+      residual = new_residual;
+      accepted = true;
+      break;
+    }
+    // centred well enough: the Newton decrement is small against the barrier (or rounding ends the progress)
+    if (decrement > (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier && accepted) continue;
+    if (barrier <= kFinalBarrier) {
+      // a line search that fails counts as converged only where no more than rounding is left to gain
+      result.converged = decrement <= std::max(barrier, kRounding * (1 + std::abs(value)));
+      break;
+    }
+    barrier = std::max(barrier * kBarrierCut, kFinalBarrier);
+  }
+  result.x = unscaled(x);
+  return result;
+}
+
+namespace {
+
+/// Dual of one block's cone: the gradient as symmetric matrices that must be positive semidefinite, scaled to the anchor.
+struct Dual {
+  double min_eigenvalue = 0;
+  Eigen::VectorXd identity;  // gradient that shifts every eigenvalue by 1
+};
+
+double min_eigenvalue(const Eigen::MatrixXd& M) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues()(0);
+}
+
+Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
+  Dual dual;
+  dual.identity.setZero(block.fitted());
+  if (block.shape == Shape::spatial) {
+    InertialVector<double> g10 = InertialVector<double>::Zero();
+    for (int i = 0; i < block.fitted(); ++i) g10(block.entries[static_cast<std::size_t>(i)]) = g(i);
+    const Eigen::Vector4d size = to_pseudo_inertia(block.anchor).diagonal().cwiseSqrt();
+    dual.min_eigenvalue = min_eigenvalue(size.asDiagonal() * dual_pseudo_inertia(g10) * size.asDiagonal());
+    // <I, D^-1 Mbar(p) D^-1> as a linear function of p
+    for (int i = 0; i < block.fitted(); ++i) {
+      const Eigen::Matrix4d basis = block.cone.basis[static_cast<std::size_t>(i)];
+      dual.identity(i) = basis.diagonal().cwiseQuotient(size.cwiseAbs2()).sum();
+    }
+  } else if (block.shape == Shape::planar) {
+    // The cone (|a| + |b|)^2 <= m I has the dual max(|g_a|, |g_b|)^2 <= 4 g_m g_I: two 2 x 2 matrices (the completion of S_ab).
+    const double m = block.anchor(inertial::kM), I = block.anchor(block.inertia);
+    for (int j = 0; j < 2; ++j) {
+      Eigen::Matrix2d G;
+      G << g(3) * I, 0.5 * g(1 + j) * std::sqrt(m * I), 0.5 * g(1 + j) * std::sqrt(m * I), g(0) * m;
+      const double smallest = min_eigenvalue(G);
+      dual.min_eigenvalue = j == 0 ? smallest : std::min(dual.min_eigenvalue, smallest);
+    }
+    dual.identity(0) = 1 / m;
+    dual.identity(3) = 1 / I;
+  } else if (block.shape != Shape::free) {
+    dual.min_eigenvalue = g(0) * block.anchor(0);
+    dual.identity(0) = 1 / block.anchor(0);
+  }
+  return dual;
+}
+
+}  // namespace
+
+OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, const Eigen::VectorXd& y) const {
+  OptimalityCertificate certificate;
+  if (metric == FitMetric::riemannian) return certificate;
+  const int n = layout_.fitted;
+  // J(y') >= J(y) + g.(y'-y) + ||A (y'-y)||^2 + lambda (D's own growth). For any z in the dual cone, z.y' >= z.floor, so that
+  //   gap <= z.(y - floor) + max over steps of -(g - z).step - growth(step),
+  // where growth is a quadratic form H (relative), or a self-concordant function with Hessian H (bregman).
+  Eigen::VectorXd g = 2 * A_.transpose() * (A_ * y - b_);
+  Eigen::MatrixXd stacked(A_.rows() + n, n);  // R^T R = half the Hessian of J
+  stacked.setZero();
+  stacked.topRows(A_.rows()) = A_;
+  Eigen::VectorXd z(n);
+  double at_y = 0;
+  certificate.min_dual_eigenvalue = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  for (const Block& block : layout_.blocks) {
+    const int count = block.fitted();
+    double value = 0;
+    if (!metric_terms(block, layout_, metric, y.segment(block.y, count), value, &gradient, &hessian)) return certificate;
+    g.segment(block.y, count) += lambda * gradient;
+    stacked.block(A_.rows() + block.y, block.y, count, count) =
+        Eigen::LLT<Eigen::MatrixXd>(0.5 * lambda * hessian).matrixU().toDenseMatrix();
+    const Eigen::VectorXd own = g.segment(block.y, count);
+    if (block.shape == Shape::free) {
+      z(block.y) = 0;
+      continue;
+    }
+    const Dual dual = dual_of(block, own);
+    if (dual.min_eigenvalue < certificate.min_dual_eigenvalue) {
+      certificate.min_dual_eigenvalue = dual.min_eigenvalue;
+      certificate.min_dual_name = block.name;
+    }
+    Eigen::VectorXd above = y.segment(block.y, count);
+    above(0) -= block.mass_floor;
+    certificate.complementarity += own.dot(above);
+    z.segment(block.y, count) = own + std::max(0.0, -dual.min_eigenvalue) * dual.identity;
+    at_y += z.segment(block.y, count).dot(above);
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  const auto R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  auto growth_bound = [&](const Eigen::VectorXd& slope) {
+    const double quarter = 0.25 * R.transpose().solve(slope).squaredNorm();
+    if (!std::isfinite(quarter)) return std::numeric_limits<double>::infinity();
+    if (metric == FitMetric::relative) return quarter;
+    const double decrement = std::sqrt(2 * quarter / lambda);  // of J / lambda, which is self-concordant
+    if (decrement >= 1) return std::numeric_limits<double>::infinity();
+    return lambda * (-decrement - std::log1p(-decrement));
+  };
+  // z = 0 is a dual point too, and the better one where the optimum is inside the cones
+  certificate.gap = std::min(std::max(at_y, 0.0) + growth_bound(g - z), growth_bound(g));
+  certificate.available = true;
+  certificate.relative_gap = certificate.gap / std::max(1.0, cost(metric, lambda, y));
+  return certificate;
+}
+
+}  // namespace deltadyn::fit

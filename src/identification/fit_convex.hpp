@@ -1,0 +1,56 @@
+#pragma once
+
+/// \file
+/// The fit as a convex problem in p: an interior-point solver in p and the certificate of global optimality.
+
+#include <Eigen/Core>
+
+#include "fit_blocks.hpp"
+
+namespace deltadyn::fit {
+
+/// ||A y - b||^2 + lambda D(y) over the cones, prepared once for any number of lambdas.
+class ConvexProblem {
+ public:
+  /// \param A  rows x fitted columns
+  ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+  struct Result {
+    Eigen::VectorXd x;
+    int iterations = 0;
+    bool converged = false;
+  };
+  /// Follows the central path from `start` down to a duality gap that is negligible in units of chi^2.
+  /// With `riemannian` the problem is not convex and the result is a local minimum.
+  [[nodiscard]] Result minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const;
+
+  /// Evidence at y, valid for any y of the consistent set.
+  [[nodiscard]] OptimalityCertificate certify(FitMetric metric, double lambda, const Eigen::VectorXd& y) const;
+
+  [[nodiscard]] double data_cost(const Eigen::VectorXd& y) const { return (A_ * y - b_).squaredNorm(); }
+  [[nodiscard]] double regularization_cost(FitMetric metric, const Eigen::VectorXd& y) const;
+  /// J
+  [[nodiscard]] double cost(FitMetric metric, double lambda, const Eigen::VectorXd& y) const {
+    return data_cost(y) + lambda * regularization_cost(metric, y);
+  }
+
+ private:
+  struct Terms {
+    double value = 0;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd factor;  // block triangular: Hessian = factor factor^T, in units of the scale
+  };
+  bool separable_terms(FitMetric metric, double lambda, double barrier, const Eigen::VectorXd& x, Terms& terms,
+                       bool derivatives) const;
+
+  const Layout& layout_;
+  Eigen::MatrixXd A_;
+  Eigen::VectorXd b_;
+  Eigen::VectorXd scale_;     // of x
+  Eigen::VectorXd centring_;  // of x: linear part of the barrier, which puts its minimum at the anchors
+  Eigen::VectorXd singular_;  // of A diag(scale)
+  Eigen::MatrixXd V_;         // right singular vectors
+  Eigen::VectorXd target_;    // U^T b
+};
+
+}  // namespace deltadyn::fit
