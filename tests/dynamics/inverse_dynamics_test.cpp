@@ -79,7 +79,8 @@ TYPED_TEST(InverseDynamics, AtRestIsTheGradientOfThePotentialPlusOffsets) {
     const auto load = load_of<TypeParam, Layout>(this->p);
     const auto gradient = to_vector<TypeParam::kDrives>(
         oracles::gravity_torque(oracle_of(this->geometry), load, numbers(q), numbers(this->task.z)));
-    set_drive_rates<double, TypeParam>(this->geometry, TestFixture::DriveVector::Zero(), TestFixture::DriveVector::Zero(), this->motion);
+    const typename TestFixture::DriveVector still = TestFixture::DriveVector::Zero();
+    set_drive_rates<double, TypeParam>(this->geometry, still, still, this->motion);
     const auto offsets = this->p.template tail<TypeParam::kDrives>();
     EXPECT_THAT(this->torque(this->p), IsNear((gradient + offsets).eval(), 1e-12 * this->size()));
   }

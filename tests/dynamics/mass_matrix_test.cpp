@@ -80,8 +80,8 @@ TYPED_TEST(MassMatrix, IsTheSecondDerivativeOfTheKineticEnergy) {
     for (int i = 0; i < kSize; ++i) {
       for (int j = 0; j < kSize; ++j) {
         expected(i, j) = static_cast<double>(oracles::mass_matrix_entry(
-            oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q), static_cast<std::size_t>(i),
-            static_cast<std::size_t>(j), numbers(this->task.z)));
+            oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q),
+            static_cast<std::size_t>(i), static_cast<std::size_t>(j), numbers(this->task.z)));
       }
     }
     EXPECT_THAT((mass_matrix<Layout>(this->geometry, this->motion.posture, p)), IsNear(expected, 1e-12 * expected.norm()));

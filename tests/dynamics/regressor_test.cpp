@@ -85,7 +85,9 @@ TYPED_TEST(Regressor, SharedColumnsAreTheSumOfTheLimbs) {
   typename TestFixture::template Y<Individual> individual;
   regressor<Shared>(this->geometry, this->motion, shared);
   regressor<Individual>(this->geometry, this->motion, individual);
-  const auto body = [](const auto& y, int b) { return y.template middleCols<kInertialParameters>(kInertialParameters * b).eval(); };
+  const auto body = [](const auto& y, int b) {
+    return y.template middleCols<kInertialParameters>(kInertialParameters * b).eval();
+  };
   for (const Body kind : {Body::upper_arm, Body::strut}) {
     if (kind == Body::strut && !kHasPlate<TypeParam>) continue;
     auto sum = body(individual, Individual::body(kind, 0));

@@ -134,7 +134,8 @@ Geometry<double, Delta3> flat_delta() {
 TEST(AssemblePosture, IsSingularWithAllStrutsInOnePlane) {
   const auto geometry = flat_delta();
   Posture<double, Delta3> posture;
-  EXPECT_EQ((assemble_posture<double, Delta3>(geometry, Vector3<double>::Zero(), Vector3<double>::Zero(), posture)), Status::singular);
+  EXPECT_EQ((assemble_posture<double, Delta3>(geometry, Vector3<double>::Zero(), Vector3<double>::Zero(), posture)),
+            Status::singular);
 }
 
 TEST(AssemblePosture, IsSingularWithAStrutAlongTheLimbsAxis) {
@@ -158,7 +159,8 @@ TEST(DriveRates, IsSingularWhereArmAndStrutAreInLine) {
   Posture<double, Delta3> posture;
   ASSERT_EQ((assemble_posture<double, Delta3>(geometry, Vector3<double>::Constant(q), z, posture)), Status::ok);
   Vector3<double> qd, qdd;
-  EXPECT_EQ((drive_rates<double, Delta3>(geometry, posture, Vector3<double>::UnitZ(), Vector3<double>::Zero(), qd, qdd)), Status::singular);
+  EXPECT_EQ((drive_rates<double, Delta3>(geometry, posture, Vector3<double>::UnitZ(), Vector3<double>::Zero(), qd, qdd)),
+            Status::singular);
 }
 
 }  // namespace

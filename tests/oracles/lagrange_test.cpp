@@ -55,7 +55,8 @@ TEST(DriveTorque, IsThatOfAPendulum) {
   const Real q = 0.3L, qd = -2, qdd = 5;
   const Real expected = 0.95L * qdd - 9.81L * (0.3L * std::cos(q) + 0.2L * std::sin(q)) - 1.5L * 2 - 2.5L + 0.125L;
   // z of the point (mcx, mcz) turned down by q about y is -mcx sin q + mcz cos q
-  EXPECT_NEAR(static_cast<double>(drive_torque(axis(false), load, {q}, {qd}, {qdd}, {})[0]), static_cast<double>(expected), 1e-14);
+  const Real torque = drive_torque(axis(false), load, {q}, {qd}, {qdd}, {})[0];
+  EXPECT_NEAR(static_cast<double>(torque), static_cast<double>(expected), 1e-14);
 }
 
 TEST(DriveTorque, IsThatOfALift) {

@@ -75,7 +75,8 @@ TEST(Robot, NamesItsColumnsInTheOrderOfTheRegressor) {
   const auto axis = make_robot(axis_description(DriveKind::revolute));
   EXPECT_THAT(axis->parameter_names(),
               ElementsAre("upper_arm.m", "upper_arm.mcx", "upper_arm.mcy", "upper_arm.mcz", "upper_arm.Ixx", "upper_arm.Iyy",
-                          "upper_arm.Izz", "upper_arm.Ixy", "upper_arm.Iyz", "upper_arm.Ixz", "drive1.viscous", "drive1.coulomb"));
+                          "upper_arm.Izz", "upper_arm.Ixy", "upper_arm.Iyz", "upper_arm.Ixz",
+                          "drive1.viscous", "drive1.coulomb"));
   EXPECT_EQ(axis->parameter_units().back(), "N*m");
   const auto linear = make_robot(axis_description(DriveKind::prismatic), all_columns(1));
   EXPECT_EQ(linear->parameter_units().back(), "N");
@@ -92,16 +93,18 @@ TEST(Robot, LeavesOutColumnsByName) {
   ASSERT_EQ(full->to_drives({task.z, task.zd, task.zdd}, q, qd, qdd), Status::ok);
   Eigen::MatrixXd Y(4, full->parameters());
   ASSERT_EQ(full->regressor(q, qd, qdd, Y), Status::ok);
-  const ParameterOptions bare{false, false, {}, false}, with_offset{false, true, {}, true}, with_rotor{false, false, {4, 2}, false};
+  const ParameterOptions bare{false, false, {}, false}, with_offset{false, true, {}, true},
+      with_rotor{false, false, {4, 2}, false};
   for (const ParameterOptions& options : {bare, with_offset, with_rotor}) {
     const auto robot = make_robot(delta_description("delta4"), options);
     Eigen::MatrixXd part(4, robot->parameters());
     ASSERT_EQ(robot->regressor(q, qd, qdd, part), Status::ok);
     for (int k = 0; k < robot->parameters(); ++k) {
       const auto& names = full->parameter_names();
-      const auto at = std::find(names.begin(), names.end(), robot->parameter_names()[static_cast<std::size_t>(k)]) - names.begin();
+      const std::string& wanted = robot->parameter_names()[static_cast<std::size_t>(k)];
+      const auto at = std::find(names.begin(), names.end(), wanted) - names.begin();
       ASSERT_LT(at, full->parameters());
-      EXPECT_EQ(part.col(k), Y.col(at)) << robot->parameter_names()[static_cast<std::size_t>(k)];
+      EXPECT_EQ(part.col(k), Y.col(at)) << wanted;
     }
     EXPECT_EQ(std::count(robot->parameter_names().begin(), robot->parameter_names().end(), "tool.m"), options.tool ? 1 : 0);
     const int rotors = static_cast<int>(options.rotor_inertia.size());

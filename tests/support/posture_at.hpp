@@ -10,8 +10,8 @@ namespace deltadyn::testing_support {
 
 /// \param guess  task coordinates near the solution
 template <class R>
-Status posture_at(const Geometry<double, R>& geometry, const Vector<double, R::kDrives>& q, const Vector<double, R::kDrives>& guess,
-                  Posture<double, R>& posture) {
+Status posture_at(const Geometry<double, R>& geometry, const Vector<double, R::kDrives>& q,
+                  const Vector<double, R::kDrives>& guess, Posture<double, R>& posture) {
   Vector<double, R::kDrives> z = q;
   const auto y = oracles::plate(oracle_of(geometry), numbers(q), numbers(guess));
   for (std::size_t k = 0; k < y.size(); ++k) z(static_cast<Eigen::Index>(k)) = static_cast<double>(y[k]);

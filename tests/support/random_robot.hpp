@@ -131,7 +131,9 @@ inline Vector<double, kInertialParameters> random_body(Random& random) {
 template <class Layout>
 Vector<double, Layout::kColumns> random_parameters(Random& random) {
   Vector<double, Layout::kColumns> p;
-  for (int b = 0; b < Layout::kBodies; ++b) p.template segment<kInertialParameters>(kInertialParameters * b) = random_body(random);
+  for (int b = 0; b < Layout::kBodies; ++b) {
+    p.template segment<kInertialParameters>(kInertialParameters * b) = random_body(random);
+  }
   for (int k = Layout::kFriction; k < Layout::kOffset; ++k) p(k) = random.uniform(0.1, 3.0);
   for (int k = Layout::kOffset; k < Layout::kColumns; ++k) p(k) = random.uniform(-2.0, 2.0);
   return p;
