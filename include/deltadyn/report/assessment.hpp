@@ -1,0 +1,80 @@
+#pragma once
+
+/// \file
+/// Can the result be trusted? The judgement behind the verdict of the reports, apart from the page it is printed on, so that a
+/// tool can print it, too, and choose its exit code by it.
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/identify.hpp"
+#include "deltadyn/identification/mass_matrix_survey.hpp"
+#include "deltadyn/identification/residual_structure.hpp"
+#include "deltadyn/identification/torque_uncertainty.hpp"
+#include "deltadyn/identification/validate.hpp"
+#include "deltadyn/report/html_report.hpp"
+
+namespace deltadyn {
+
+/// One question put to the result.
+struct Check {
+  std::string subject;   ///< e.g. "Size of the residual"
+  std::string figure;    ///< what was found, e.g. "1.2 % of the torque (drive 4)"
+  Verdict verdict = Verdict::good;
+  std::string meaning;   ///< what it means for the user, and what to do about it if it is not good; one or two sentences
+};
+
+struct Assessment {
+  Verdict verdict = Verdict::good;  ///< the worst one of the checks
+  std::string headline;             ///< one sentence
+  std::vector<std::string> lines;   ///< what is trustworthy, what is not, what to do next
+  std::vector<Check> checks;
+};
+
+/// How a parameter shows in the torques of the drives.
+enum class Visibility {
+  alone,     ///< a motion can tell its value
+  combined,  ///< only in sums with others: no motion of the drives can tell its value apart
+  hidden,    ///< not at all
+};
+
+/// One value a parameter.
+[[nodiscard]] std::vector<Visibility> parameter_visibility(const BaseParameters& base);
+
+/// Where a value comes from, by its data share.
+enum class Source { data, both, prior };
+[[nodiscard]] Source source_of(double data_share);
+
+/// What is left to the prior in one body or joint, and what would replace it.
+struct PriorGap {
+  std::string owner;                    ///< "tool", "drive2", ...
+  std::vector<std::string> parameters;  ///< "m (8 %)": name and data share
+  bool by_motion = false;               ///< another motion of the drives would do
+  bool negligible = false;              ///< a motion could show it, but it acts too little on the torques to matter
+  std::string advice;                   ///< "weigh the tool"
+};
+
+/// All of them, in the order of the parameters; parameter_effect() as below. Parameters that do not show in the torques are left out.
+[[nodiscard]] std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base,
+                                               const Eigen::VectorXd& parameter_effect);
+
+/// False if the estimate of a parameter lies so far from its prior that the prior cannot have decided it, whatever the data share.
+[[nodiscard]] bool held_by_prior(const ConsistentFitSummary& fit, Eigen::Index parameter);
+
+/// What the judgement on an identification rests on besides the fit.
+struct IdentificationEvidence {
+  std::vector<ResidualStructure> residual;  ///< of the training logs, one a drive
+  TorqueUncertainty on_logs, in_workspace;
+  Eigen::VectorXd parameter_effect;  ///< parameter_effect() of the fit
+};
+
+[[nodiscard]] IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification,
+                                                     const Validation& training);
+
+[[nodiscard]] Assessment assess_identification(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey,
+                                               const IdentificationEvidence& evidence);
+
+[[nodiscard]] Assessment assess_validation(const Robot& robot, const Validation& validation,
+                                           const std::vector<ResidualStructure>& residual);
+
+}  // namespace deltadyn

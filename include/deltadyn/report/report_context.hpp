@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace deltadyn {
+
+/// Where the figures of a report come from, so that they can be made again.
+struct ReportContext {
+  std::string robot_file;
+  std::vector<std::string> log_files;
+  std::string parameter_file;  ///< prior of an identification, model of a validation; empty: nominal values of simple shapes
+  std::string command_line;
+};
+
+}  // namespace deltadyn

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/report/format.hpp"
+
+#include "assessment_limits.hpp"
+#include "assessment_parts.hpp"
+#include "drive_names.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+
+std::vector<DriveFigures> figures_of(const Identification& identification) {
+  std::vector<DriveFigures> out;
+  for (const DriveReport& drive : identification.drives) {
+    const auto rows = static_cast<double>(drive.rows + drive.masked_rows);
+    out.push_back({drive.rms, drive.rms_torque, drive.reversal_ratio, rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0});
+  }
+  return out;
+}
+
+Check check_solver(const ConsistentFitSummary& fit) {
+  Check check{"Best possible fit", "", Verdict::good, ""};
+  if (!fit.converged) {
+    check.verdict = Verdict::bad;
+    check.figure = "not converged";
+    check.meaning = "The solver stopped before it was done: " + fit.message + ". Allow more iterations, or check the prior.";
+  } else if (!fit.certificate.available) {
+    check.figure = "converged, no proof";
+    check.meaning = "This metric is not convex: a better set of parameters may exist. The metrics 'relative' and 'bregman' give a proof.";
+  } else if (fit.certificate.passed) {
+    check.figure = "proven";
+    check.meaning = fmt::format(
+        "No physically consistent parameters fit data and prior better by more than {} in χ² (a change of 1 would be within the noise).",
+        format_number(std::max(fit.certificate.gap, 0.0), 2));
+  } else {
+    check.verdict = Verdict::caution;
+    check.figure = "not proven";
+    check.meaning = fmt::format("Parameters that fit better by up to {} in χ² may exist (weakest at {}). Try the full parameter set or another prior.",
+                                format_number(fit.certificate.gap, 2), fit.certificate.min_dual_name);
+  }
+  return check;
+}
+
+Check check_consistency(const Identification& identification) {
+  double ratio = 1;
+  int drive = 0;
+  for (std::size_t j = 0; j < identification.drives.size(); ++j) {
+    const DriveReport& report = identification.drives[j];
+    const double r = report.rms_base > 0 ? report.rms / report.rms_base : 1.0;
+    if (r > ratio) {
+      ratio = r;
+      drive = static_cast<int>(j);
+    }
+  }
+  Check check{"Price of physical consistency", "", grade(ratio, kCheapConsistency, kDearConsistency), ""};
+  check.figure = ratio - 1 < 5e-4 ? "none" : fmt::format("residual +{} ({})", format_percent(ratio - 1, 2), drive_name(drive));
+  if (check.verdict == Verdict::good) {
+    check.meaning = "Parameters that a real machine can have explain the data as well as free base parameters do.";
+  } else {
+    check.meaning =
+        "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong length, a wrong prior "
+        "with too much weight, or an effect that the model lacks.";
+  }
+  return check;
+}
+
+Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& evidence) {
+  const TorqueUncertainty& known = evidence.in_workspace;
+  Index worst = 0;
+  (known.std.array() / known.rms_torque.array().max(1e-300)).maxCoeff(&worst);
+  const double relative = known.worst_relative();
+  Check check{"Torque on other motions", "", grade(relative, kWellKnownTorque, kKnownTorque), ""};
+  check.figure = fmt::format("± {} {} ({})", format_percent(1.96 * relative, 2), "at 95 %", drive_name(static_cast<int>(worst)));
+  const std::string where = robot.description().parts.empty() ? "over the axis" : "over the whole workspace";
+  if (check.verdict == Verdict::good) {
+    check.meaning = fmt::format("The uncertainty of the base parameters leaves the torque of fast motions {} this well known.", where);
+  } else {
+    check.meaning = fmt::format(
+        "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches further and accelerates "
+        "harder, and trust the model only near the recorded motions.",
+        format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
+  }
+  return check;
+}
+
+Check check_excitation(const Identification& identification) {
+  const double condition = identification.base_estimate.condition_number;
+  const Eigen::VectorXd std = identification.base_estimate.std();
+  Index poor = 0;
+  for (Index k = 0; k < std.size(); ++k) poor += std(k) > kPoorlySeen * std::abs(identification.base_estimate.value(k)) ? 1 : 0;
+  Check check{"Excitation by the logs", "", condition > kHighCondition ? Verdict::caution : Verdict::good, ""};
+  check.figure = fmt::format("condition {}, {} of {} base parameters hardly seen", format_number(condition, 3), poor, std.size());
+  if (condition <= kGoodCondition) {
+    check.meaning = "The motion shows the base parameters well apart.";
+  } else if (condition <= kHighCondition) {
+    check.meaning = "The motion shows the base parameters, some only in sums; an optimised excitation would sharpen them.";
+  } else {
+    check.meaning = "The motion hardly tells some base parameters apart: record one that moves all drives, fast and slow, over the workspace.";
+  }
+  return check;
+}
+
+Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
+  Check check{"Mass matrix", "", survey.positive_definite() ? Verdict::good : Verdict::bad, ""};
+  check.figure = fmt::format("smallest eigenvalue {}", format_number(survey.min_eigenvalue, inertia_unit_of(robot), 3));
+  const std::string count = format_count(survey.states);
+  if (survey.positive_definite()) {
+    check.meaning = fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count);
+  } else {
+    check.meaning = fmt::format("Not positive definite at {} of {} poses: simulation and model-based control with it can become unstable.",
+                                format_count(survey.not_positive), count);
+  }
+  return check;
+}
+
+struct Counts {
+  int fitted = 0, data = 0, both = 0, prior = 0;
+};
+
+Counts count_sources(const ConsistentFitSummary& fit) {
+  Counts counts;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    if (!fit.fitted[i]) continue;
+    ++counts.fitted;
+    switch (source_of(fit.data_share(static_cast<Index>(i)))) {
+      case Source::data: ++counts.data; break;
+      case Source::both: ++counts.both; break;
+      case Source::prior: ++counts.prior; break;
+    }
+  }
+  return counts;
+}
+
+Check check_prior(const ConsistentFitSummary& fit, const std::vector<PriorGap>& gaps) {
+  const Counts counts = count_sources(fit);
+  const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
+  Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
+  check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} from the prior", counts.data, counts.fitted,
+                             counts.both, counts.prior);
+  if (motion_lacks) {
+    check.meaning = "Some parameters that a motion can show were not shown by these logs; they are named below.";
+  } else if (counts.prior > 0) {
+    check.meaning = "Those from the prior act on the drives only in sums with others: the torque is right, the single values are not measured.";
+  } else {
+    check.meaning = "No value rests on the prior.";
+  }
+  return check;
+}
+
+/// Names of parameters that the data decided, friction in one word where it is all there.
+std::string trusted_values(const ConsistentFitSummary& fit) {
+  std::vector<std::string> names;
+  int friction = 0, friction_from_data = 0;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const std::string& name = fit.names[i];
+    const bool data = fit.fitted[i] && source_of(fit.data_share(static_cast<Index>(i))) == Source::data;
+    if (name.ends_with(".viscous") || name.ends_with(".coulomb")) {
+      ++friction;
+      friction_from_data += data ? 1 : 0;
+    }
+  }
+  const bool all_friction = friction > 0 && friction == friction_from_data;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const std::string& name = fit.names[i];
+    const bool is_friction = name.ends_with(".viscous") || name.ends_with(".coulomb");
+    if (all_friction && is_friction) continue;
+    if (fit.fitted[i] && source_of(fit.data_share(static_cast<Index>(i))) == Source::data) names.push_back(name);
+  }
+  if (all_friction) names.insert(names.begin(), "friction of all joints");
+  constexpr std::size_t kNamed = 8;  // more do not fit a line; all stand in the table
+  if (names.size() > kNamed) {
+    const std::size_t others = names.size() - kNamed;
+    names.resize(kNamed);
+    names.push_back(fmt::format("{} more", others));
+  }
+  return join_words(names);
+}
+
+/// The gaps that are worth a place in the verdict: those that a motion can close, then bodies whose mass is from the prior.
+std::vector<std::string> urgent_gaps(const std::vector<PriorGap>& gaps) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> lines;
+  for (const bool by_motion : {true, false}) {
+    for (const PriorGap& gap : gaps) {
+      if (gap.by_motion != by_motion || gap.negligible || lines.size() == kNamed) continue;
+      const std::string& first = gap.parameters.front();
+      if (!by_motion && !first.starts_with("m (")) continue;
+      const auto bracket = first.find(" (");
+      const std::string share = first.substr(bracket + 2, first.size() - bracket - 3);
+      lines.push_back(fmt::format("{}.{} {} (data share {}): {}.", gap.owner, first.substr(0, bracket),
+                                  by_motion ? "hardly shows in these logs" : "comes from the prior", share, gap.advice));
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+Assessment assess_identification(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey,
+                                 const IdentificationEvidence& evidence) {
+  const std::vector<DriveFigures> drives = figures_of(identification);
+  const std::vector<PriorGap> gaps = prior_gaps(identification.fit, identification.base, evidence.parameter_effect);
+  Assessment out;
+  const Check size = check_residual_size(robot, drives), shape = check_residual_shape(drives, evidence.residual);
+  out.checks = {size,
+                shape,
+                check_torque_knowledge(robot, evidence),
+                check_mass_matrix(robot, survey),
+                check_prior(identification.fit, gaps),
+                check_consistency(identification),
+                check_solver(identification.fit),
+                check_excitation(identification),
+                check_reversals(drives)};
+  out.verdict = worst_of(out.checks);
+  const auto first = std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
+  switch (out.verdict) {
+    case Verdict::good:
+      out.headline = fmt::format("The model can be trusted on motions like the recorded ones: the residual is {}.", size.figure);
+      break;
+    case Verdict::caution: out.headline = headline_of("Usable with care", *first); break;
+    case Verdict::bad: out.headline = headline_of("Do not use this model yet", *first); break;
+  }
+  for (const Verdict level : {Verdict::bad, Verdict::caution}) {
+    for (const Check& check : out.checks) {
+      if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
+    }
+  }
+  if (out.verdict != Verdict::bad) {
+    const std::string trusted = trusted_values(identification.fit);
+    if (!trusted.empty()) out.lines.push_back("Measured by these logs: " + trusted + ".");
+  }
+  const std::vector<std::string> urgent = urgent_gaps(gaps);
+  out.lines.insert(out.lines.end(), urgent.begin(), urgent.end());
+  if (shape.verdict == Verdict::good && size.verdict == Verdict::good) {
+    out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
+                                                         : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
+  }
+  const Check& reversals = out.checks.back();
+  if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {
+    out.lines.push_back(fmt::format("Near velocity reversals: {}. {}", reversals.figure, reversals.meaning));
+  }
+  return out;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,233 @@
+#include "deltadyn/report/assessment.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/report/format.hpp"
+
+#include "assessment_limits.hpp"
+#include "assessment_parts.hpp"
+#include "drive_names.hpp"
+
+namespace deltadyn {
+
+std::vector<Visibility> parameter_visibility(const BaseParameters& base) {
+  constexpr double kZero = 1e-6;  // B is exact to rounding times its condition
+  const Eigen::Index parameters = base.B.cols();
+  std::vector<Visibility> out(static_cast<std::size_t>(parameters), Visibility::hidden);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(base.B.transpose());
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(parameters, base.B.rows());
+  const double largest = base.B.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < parameters; ++i) {
+    if (base.B.col(i).cwiseAbs().maxCoeff() < kZero * largest) continue;
+    // Seen alone: the unit vector lies in the row space of B.
+    const double outside = 1.0 - Q.row(i).squaredNorm();
+    out[static_cast<std::size_t>(i)] = outside < kZero ? Visibility::alone : Visibility::combined;
+  }
+  return out;
+}
+
+Source source_of(double data_share) {
+  if (data_share >= kDataDecides) return Source::data;
+  return data_share >= kPriorDecides ? Source::both : Source::prior;
+}
+
+namespace {
+
+/// What would show a parameter to the drives.
+std::string motion_advice(const std::string& parameter, const std::string& owner) {
+  if (parameter == "viscous") return "record longer stretches at high speed of " + owner;
+  if (parameter == "coulomb") return "record slow stretches of " + owner + " in both directions";
+  if (parameter == "rotor_inertia") return "take it from the data sheet of the motor, or record stronger accelerations of " + owner;
+  if (parameter == "offset") return "record " + owner + " at the same positions in both directions";
+  return "record stronger accelerations and wider motions that move the " + owner;
+}
+
+}  // namespace
+
+bool held_by_prior(const ConsistentFitSummary& fit, Eigen::Index i) {
+  return std::abs(fit.p(i) - fit.prior(i)) <= kHeldByPrior * fit.std(i);
+}
+
+std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base, const Eigen::VectorXd& effect) {
+  const std::vector<Visibility> visibility = parameter_visibility(base);
+  std::vector<PriorGap> gaps;
+  struct Missing {
+    bool mass = false, centre = false, inertia = false;
+  };
+  std::vector<Missing> missing;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const double share = fit.data_share(static_cast<Eigen::Index>(i));
+    if (!fit.fitted[i] || visibility[i] == Visibility::hidden || source_of(share) != Source::prior) continue;
+    const std::size_t dot = std::min(fit.names[i].find('.'), fit.names[i].size() - 1);
+    const std::string owner = fit.names[i].substr(0, dot), parameter = fit.names[i].substr(dot + 1);
+    const double acts = effect(static_cast<Eigen::Index>(i));
+    const bool alone = visibility[i] == Visibility::alone, negligible = alone && acts < kNegligibleEffect, by_motion = alone && !negligible;
+    auto found = std::find_if(gaps.begin(), gaps.end(), [&](const PriorGap& gap) { return gap.owner == owner && gap.by_motion == by_motion && gap.negligible == negligible;
+    });
+    if (found == gaps.end()) {
+      gaps.push_back({owner, {}, by_motion, negligible, by_motion ? motion_advice(parameter, owner_in_words(owner)) : ""});
+      missing.emplace_back();
+      found = gaps.end() - 1;
+    }
+    found->parameters.push_back(fmt::format("{} ({:.0f} %)", parameter, 100 * share));
+    Missing& what = missing[static_cast<std::size_t>(found - gaps.begin())];
+    what.mass |= parameter == "m";
+    what.centre |= parameter.starts_with("mc");
+    what.inertia |= parameter.starts_with("I");
+  }
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    if (gaps[k].by_motion) continue;
+    if (gaps[k].negligible) {
+      gaps[k].advice = fmt::format("nothing: it makes less than {} of any drive's torque", format_percent(kNegligibleEffect, 1));
+      continue;
+    }
+    const Missing& what = missing[k];
+    std::vector<std::string> steps;
+    if (what.mass) steps.push_back("weigh the " + owner_in_words(gaps[k].owner));
+    if (what.centre) steps.emplace_back(what.mass ? "balance it on an edge for its centre of mass" : "find its centre of mass (balance it on an edge, or CAD)");
+    if (what.inertia) steps.emplace_back("take its moments of inertia from CAD or a swing test");
+    gaps[k].advice = steps.empty() ? "take it from the data sheet" : join_words(steps);
+  }
+  return gaps;
+}
+
+IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification, const Validation& training) {
+  IdentificationEvidence evidence;
+  evidence.residual = residual_structure(training);
+  const BaseEstimate& estimate = identification.base_estimate;
+  evidence.on_logs =
+      torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
+  evidence.in_workspace = torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
+  evidence.parameter_effect = parameter_effect(robot, identification.fit.p);
+  return evidence;
+}
+
+// ---- parts that both judgements share -------------------------------------------------------------------------------
+
+Verdict grade(double value, double good, double usable) {
+  if (!(value > good)) return std::isnan(value) ? Verdict::bad : Verdict::good;
+  return value <= usable ? Verdict::caution : Verdict::bad;
+}
+
+Verdict grade_residual(double relative) { return grade(relative, kGoodResidual, kUsableResidual); }
+
+Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives) {
+  std::size_t worst = 0;
+  for (std::size_t j = 1; j < drives.size(); ++j) {
+    if (drives[j].relative() > drives[worst].relative()) worst = j;
+  }
+  const double relative = drives.empty() ? 0.0 : drives[worst].relative();
+  const auto drive = static_cast<int>(worst);
+  Check check{"Size of the residual", "", grade_residual(relative), ""};
+  check.figure = fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
+  switch (check.verdict) {
+    case Verdict::good: check.meaning = "Small: as feed-forward the model leaves little to the feedback loop."; break;
+    case Verdict::caution:
+      check.meaning = "Usable as feed-forward, but not for forces estimated from the drive currents. Look below at what the residual follows.";
+      break;
+    case Verdict::bad:
+      check.meaning =
+          "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear ratios, and "
+          "that position and torque belong to the same instant.";
+      break;
+  }
+  return check;
+}
+
+std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found) {
+  const std::pair<const char*, const DependenceOnMotion*> all[] = {{"velocity", &structure.on_velocity},
+                                                                   {"position", &structure.on_position},
+                                                                   {"acceleration", &structure.on_acceleration}};
+  std::string name;
+  for (const auto& [coordinate, dependence] : all) {
+    if (dependence->p_value > kRareByChance || dependence->share < kNotableShare) continue;
+    if (name.empty() || dependence->share > found.share) {
+      name = coordinate;
+      found = *dependence;
+    }
+  }
+  return name;
+}
+
+std::string meaning_of_dependence(const std::string& coordinate) {
+  if (coordinate == "velocity") return "friction there is more than Coulomb and viscous (Stribeck, a load-dependent part, a gear)";
+  if (coordinate == "position") return "a spring, a cable, an unbalance or a wrong length acts there, or the gear has a ripple";
+  return "inertia is missing there (a rotor), or torque and position are not of the same instant (a lag)";
+}
+
+Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::vector<ResidualStructure>& residual) {
+  Check check{"Shape of the residual", "like noise", Verdict::good, ""};
+  double largest = 0;
+  for (std::size_t j = 0; j < residual.size(); ++j) {
+    DependenceOnMotion found;
+    const std::string coordinate = worst_dependence(residual[j], found);
+    if (coordinate.empty()) continue;
+    const double structured = std::sqrt(found.share) * drives[j].relative();
+    if (structured <= largest) continue;
+    largest = structured;
+    const auto drive = static_cast<int>(j);
+    check.figure = fmt::format("{} of it follows the {} of {}", format_percent(found.share, 2), coordinate, drive_name(drive));
+    check.verdict = structured > kRelevantStructure ? Verdict::caution : Verdict::good;
+    check.meaning = fmt::format("That part is {} of the torque{}: {}.", format_percent(structured, 2),
+                                check.verdict == Verdict::good ? ", too little to act on" : "", meaning_of_dependence(coordinate));
+  }
+  if (largest > 0) return check;
+  const auto longest = std::max_element(residual.begin(), residual.end(),
+                                        [](const auto& a, const auto& b) { return a.correlation < b.correlation; });
+  if (longest != residual.end() && longest->correlation > kNoticeableMemory) {
+    const auto j = static_cast<std::size_t>(longest - residual.begin());
+    const bool relevant = drives[j].relative() > kRelevantStructure;
+    check.verdict = relevant ? Verdict::caution : Verdict::good;
+    check.figure = fmt::format("slow waves in {}", drive_name(static_cast<int>(j)));
+    check.meaning = fmt::format(
+        "The residual follows neither position, velocity nor acceleration of its drive, but it has a memory: {:.0f} rows tell as much as "
+        "one. {}",
+        longest->correlation,
+        relevant ? "Other drives, the temperature or a slow sensor may be behind it; see its spectrum." : "It is too small to act on.");
+    return check;
+  }
+  check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
+  return check;
+}
+
+Check check_reversals(const std::vector<DriveFigures>& drives) {
+  Check check{"Velocity reversals", "no worse than elsewhere", Verdict::good, "Coulomb friction describes the reversals well enough."};
+  std::vector<std::string> worse;
+  double ratio = 1, masked = 0;
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    if (drives[j].reversal_ratio >= kOtherLaw) worse.push_back(drive_name(static_cast<int>(j)));
+    ratio = std::max(ratio, drives[j].reversal_ratio);
+    masked = std::max(masked, drives[j].masked_share);
+  }
+  if (!worse.empty()) {
+    check.figure = fmt::format("residual there up to {:.1f} times that elsewhere ({})", ratio, join_words(worse));
+    check.meaning =
+        "Near standstill the sign of the velocity is uncertain and friction does not follow Coulomb's law; all other figures leave these rows "
+        "out. Do not trust the torque in the first instants after a reversal.";
+  } else if (masked > 0) {
+    check.figure = fmt::format("left out, at most {} of a drive's rows", format_percent(masked, 2));
+  }
+  if (masked > kFewMasked) {
+    check.verdict = Verdict::caution;
+    if (!worse.empty()) check.figure += fmt::format("; {} of a drive's rows are left out", format_percent(masked, 2));
+    check.meaning += " The logs reverse so often that they say little about slow motion: record one with longer strokes.";
+  }
+  return check;
+}
+
+std::string headline_of(const std::string& opening, const Check& check) {
+  std::string subject = check.subject;
+  if (!subject.empty() && subject[0] >= 'A' && subject[0] <= 'Z') subject[0] = static_cast<char>(subject[0] - 'A' + 'a');
+  return fmt::format("{}: {} ({}).", opening, subject, check.figure);
+}
+
+Verdict worst_of(const std::vector<Check>& checks) {
+  Verdict worst = Verdict::good;
+  for (const Check& check : checks) worst = std::max(worst, check.verdict);
+  return worst;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/report/assessment.hpp"
+
+namespace deltadyn {
+
+/// What both judgements need of one drive.
+struct DriveFigures {
+  double rms = 0;             ///< residual without rows near reversals [N m | N]
+  double rms_torque = 0;      ///< over the same rows
+  double reversal_ratio = 1;  ///< residual near reversals over that elsewhere
+  double masked_share = 0;    ///< rows near reversals that were left out, of all
+
+  [[nodiscard]] double relative() const { return rms_torque > 0 ? rms / rms_torque : (rms > 0 ? 1.0 : 0.0); }
+};
+
+/// Good up to and including `good`, caution up to `usable`, else bad.
+[[nodiscard]] Verdict grade(double value, double good, double usable);
+/// Of a residual over the rms torque.
+[[nodiscard]] Verdict grade_residual(double relative);
+[[nodiscard]] Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives);
+[[nodiscard]] Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::vector<ResidualStructure>& residual);
+[[nodiscard]] Check check_reversals(const std::vector<DriveFigures>& drives);
+/// "Usable with care", check -> "Usable with care: size of the residual (7 % of ...)."
+[[nodiscard]] std::string headline_of(const std::string& opening, const Check& check);
+[[nodiscard]] Verdict worst_of(const std::vector<Check>& checks);
+
+/// Coordinate that the residual follows most, empty if none.
+[[nodiscard]] std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found);
+/// What is behind a residual that follows "velocity", "position" or "acceleration".
+[[nodiscard]] std::string meaning_of_dependence(const std::string& coordinate);
+
+}  // namespace deltadyn

@@ -1,0 +1,160 @@
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/report/format.hpp"
+
+#include "assessment_limits.hpp"
+#include "drive_names.hpp"
+#include "identification_sections.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kInterval95 = 1.96;
+
+const char* words_for(Source source) {
+  switch (source) {
+    case Source::data: return "data";
+    case Source::both: return "both";
+    case Source::prior: return "prior";
+  }
+  return "";
+}
+
+const char* words_for(Visibility visibility) {
+  switch (visibility) {
+    case Visibility::alone: return "on its own";
+    case Visibility::combined: return "in sums";
+    case Visibility::hidden: return "not at all";
+  }
+  return "";
+}
+
+/// "a, b and c", broken only between the items.
+std::string unbroken_items(std::vector<std::string> items) {
+  for (std::string& item : items) item = unbroken(item);
+  return join_words(items);
+}
+
+}  // namespace
+
+void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
+  Table table({{"drive", Align::left}, {"rms residual"}, {fmt::format("of the rms {}", effort_of(robot, 0))}, {"free base parameters"}, {"rows"}, {"left out near reversals"},
+               {"residual there / elsewhere"}});
+  for (std::size_t j = 0; j < identification.drives.size(); ++j) {
+    const DriveReport& drive = identification.drives[j];
+    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    table.row({drive_name(static_cast<int>(j)), format_number(drive.rms, unit, 3),
+               drive.rms_torque > 0 ? format_percent(drive.rms / drive.rms_torque) : "–", format_number(drive.rms_base, unit, 3),
+               format_count(drive.rows), format_count(drive.masked_rows), fmt::format("{:.2f}", drive.reversal_ratio)});
+  }
+  report.table(table,
+               "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing can undercut.");
+}
+
+void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
+  const ConsistentFitSummary& fit = identification.fit;
+  const std::vector<Visibility> visibility = parameter_visibility(identification.base);
+  Table table({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"estimate ± 95 %"}, {"data share"}, {"decided by", Align::left},
+               {"shows in the torque", Align::left}});
+  Table others({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
+  bool any_neither = false;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const std::string unit = unbroken(pretty_unit(robot.parameter_units()[i]));
+    if (!fit.fitted[i]) {
+      others.row({fit.names[i], unit, format_number(fit.prior(k)), format_number(fit.p(k)), words_for(visibility[i])});
+      continue;
+    }
+    const Source source = source_of(fit.data_share(k));
+    const bool neither = source == Source::prior && !held_by_prior(fit, k);
+    any_neither |= neither;
+    table.row({fit.names[i], unit, format_number(fit.prior(k)),
+               neither ? format_number(fit.p(k), 2) + " (?)" : format_with_uncertainty(fit.p(k), kInterval95 * fit.std(k)),
+               fmt::format("{:.0f} %", 100 * fit.data_share(k)), neither ? "neither" : words_for(source), unbroken(words_for(visibility[i]))},
+              source != Source::prior ? Tone::plain : visibility[i] == Visibility::hidden ? Tone::muted : Tone::caution);
+  }
+  report.table(table,
+               fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took away; marked rows (below "
+                           "{:.0f} %) are the prior, hardly touched; grey ones do not act on the drives at all.",
+                           100 * kPriorDecides));
+  report.note(
+      "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base parameters below say, and "
+      "with them the torque; the single value leans on the prior and carries its uncertainty. It matters if you use the body on its own.");
+  if (any_neither) {
+    report.note(
+        "(?): the data hardly show the value and the chosen weight of the prior is too small to hold it; take it as unknown. It acts too little on "
+        "the torque to matter there.");
+  }
+  if (!others.empty()) {
+    report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
+      inside.paragraph(
+          "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do not feel "
+          "follow the prior.");
+      inside.table(others);
+    });
+  }
+}
+
+void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
+  if (gaps.empty()) {
+    report.paragraph("Nothing: the data decided every fitted parameter at least in part.");
+    return;
+  }
+  Table table({{"body or joint", Align::left}, {"from the prior (data share)", Align::left}, {"what would replace it", Align::left}});
+  for (const bool by_motion : {true, false}) {
+    for (const PriorGap& gap : gaps) {
+      if (gap.by_motion != by_motion) continue;
+      table.row({gap.owner, unbroken_items(gap.parameters), gap.advice}, by_motion ? Tone::caution : gap.negligible ? Tone::muted : Tone::plain);
+    }
+  }
+  report.table(table,
+               "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on their own: one value "
+               "measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
+}
+
+void add_base_parameters(HtmlReport& report, const Identification& identification) {
+  const BaseParameters& base = identification.base;
+  const BaseEstimate& estimate = identification.base_estimate;
+  const Eigen::VectorXd std = estimate.std();
+  const Index count = base.count();
+  Eigen::VectorXd index(count), deviation(count);
+  Table table({{"", Align::right}, {"base parameter", Align::left}, {"unit", Align::left}, {"least squares ± std"}, {"rel. std"}, {"consistent fit"},
+               {"deviation [std]"}});
+  Index poor = 0, far = 0;
+  for (Index k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    index(k) = static_cast<double>(k + 1);
+    deviation(k) = std(k) > 0 ? (identification.base_from_fit(k) - estimate.value(k)) / std(k) : 0.0;
+    const double relative = std::abs(estimate.value(k)) > 0 ? std(k) / std::abs(estimate.value(k)) : HUGE_VAL;
+    const bool hardly = relative > kPoorlySeen;
+    poor += hardly ? 1 : 0;
+    far += std::abs(deviation(k)) > kRemarkableDeviation ? 1 : 0;
+    table.row({fmt::format("{}", k + 1), base.expressions[i], pretty_unit(base.units[i]), format_with_uncertainty(estimate.value(k), std(k)),
+               relative < 10 ? format_percent(relative, 2) : "> 1000 %", format_number(identification.base_from_fit(k)), fmt::format("{:+.2f}", deviation(k))},
+              hardly ? Tone::caution : Tone::plain);
+  }
+  report.paragraph(fmt::format(
+      "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above {:.0f} %, marked); "
+      "condition number {}.",
+      count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
+  PlotSpec spec;
+  spec.x_label = "base parameter (number in the table)";
+  spec.y_label = "deviation [std]";
+  spec.height = 220;
+  spec.series.push_back({"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue});
+  spec.series.push_back({"", index, deviation, SeriesStyle::points, {}, PlotColor::blue});
+  spec.horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}};
+  spec.x_range = PlotRange{0.0, static_cast<double>(count + 1)};
+  report.plot(spec, fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
+                                far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
+                                         : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.", far,
+                                                       far == 1 ? "differs" : "differ", kRemarkableDeviation)));
+  report.details(fmt::format("The {} base parameters", count), [&](HtmlReport& inside) {
+    inside.table(table, "Base parameters. Rows are marked where the data hardly tell the value from zero.");
+  });
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,229 @@
+#include "deltadyn/report/identification_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "deltadyn/report/assessment.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+#include "report/synthetic_run.hpp"
+#include "report/xml_checks.hpp"
+
+namespace deltadyn {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::shipped_robot;
+using testing::synthetic_run;
+using testing::SyntheticRun;
+using testing::texts;
+
+constexpr std::size_t kLargestPage = 2'000'000;
+
+std::string page_of(const SyntheticRun& run) {
+  return identification_report(*run.robot, run.identification, run.training, run.survey,
+                               {"robot.urdf", {"made_up.csv"}, "prior.csv", "delta-identify robot.urdf made_up.csv"});
+}
+
+Assessment assess(const SyntheticRun& run) {
+  return assess_identification(*run.robot, run.identification, run.survey, gather_evidence(*run.robot, run.identification, run.training));
+}
+
+std::string all_text(const Assessment& assessment) {
+  std::string text = assessment.headline;
+  for (const std::string& line : assessment.lines) text += "\n" + line;
+  return text;
+}
+
+Verdict verdict_on(const Assessment& assessment, const std::string& subject) {
+  for (const Check& check : assessment.checks) {
+    if (check.subject == subject) return check.verdict;
+  }
+  ADD_FAILURE() << "no check '" << subject << "'";
+  return Verdict::bad;
+}
+
+/// One run for all tests that only look at it or change a copy.
+const SyntheticRun& good_run() {
+  static const SyntheticRun run = synthetic_run("delta3");
+  return run;
+}
+
+SyntheticRun copy_of(const SyntheticRun& run) {
+  return {shipped_robot("delta3"), run.truth, run.identification, run.training, run.survey};
+}
+
+TEST(IdentificationAssessment, AGoodRunIsTrusted) {
+  const Assessment assessment = assess(good_run());
+  EXPECT_EQ(assessment.verdict, Verdict::good) << all_text(assessment);
+  EXPECT_THAT(all_text(assessment), HasSubstr("looks like measurement noise"));
+  EXPECT_THAT(all_text(assessment), HasSubstr("friction of all joints"));
+}
+
+TEST(IdentificationAssessment, HiddenFrictionIsSeenAndPlacedAtItsDrive) {
+  const auto stribeck = [](int drive, double, double qd) {
+    return drive == 1 ? std::copysign(2.0 * std::exp(-qd * qd / 0.5), qd) : 0.0;
+  };
+  const SyntheticRun run = synthetic_run("delta3", 0.01, stribeck);
+  const Assessment assessment = assess(run);
+  EXPECT_NE(assessment.verdict, Verdict::good);
+  EXPECT_THAT(all_text(assessment), HasSubstr("follows the velocity of drive\u00A02"));
+}
+
+TEST(IdentificationAssessment, TheSizeOfTheResidualDecides) {
+  SyntheticRun run = copy_of(good_run());
+  DriveReport& drive = run.identification.drives[2];
+  drive.rms = drive.rms_base = 0.10 * drive.rms_torque;
+  EXPECT_EQ(assess(run).verdict, Verdict::caution);
+  drive.rms = drive.rms_base = 0.40 * drive.rms_torque;
+  const Assessment assessment = assess(run);
+  EXPECT_EQ(assessment.verdict, Verdict::bad);
+  EXPECT_THAT(assessment.headline, HasSubstr("40 % of the rms torque (drive\u00A03)"));
+}
+
+TEST(IdentificationAssessment, AMassMatrixThatIsNotPositiveForbidsUse) {
+  SyntheticRun run = copy_of(good_run());
+  run.survey.not_positive = 3;
+  const Assessment assessment = assess(run);
+  EXPECT_EQ(assessment.verdict, Verdict::bad);
+  EXPECT_THAT(all_text(assessment), HasSubstr("Not positive definite at 3 of 200 poses"));
+}
+
+TEST(IdentificationAssessment, TheSolverMustBeDoneAndProvenRight) {
+  SyntheticRun run = copy_of(good_run());
+  run.identification.fit.certificate.passed = false;
+  EXPECT_EQ(assess(run).verdict, Verdict::caution);
+  run.identification.fit.certificate.available = false;
+  EXPECT_EQ(assess(run).verdict, Verdict::good);
+  run.identification.fit.converged = false;
+  EXPECT_EQ(assess(run).verdict, Verdict::bad);
+}
+
+TEST(IdentificationAssessment, ConsistencyThatCostsMuchIsTold) {
+  SyntheticRun run = copy_of(good_run());
+  run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.05;
+  EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::caution);
+  run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.5;
+  EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::bad);
+}
+
+TEST(IdentificationAssessment, UncertainBaseParametersMakeTheTorqueUncertain) {
+  SyntheticRun run = copy_of(good_run());
+  EXPECT_EQ(verdict_on(assess(run), "Torque on other motions"), Verdict::good);
+  run.identification.base_estimate.covariance *= 1e4;
+  EXPECT_NE(verdict_on(assess(run), "Torque on other motions"), Verdict::good);
+}
+
+TEST(IdentificationAssessment, ReversalsThatTakeMostOfTheLogAreTold) {
+  SyntheticRun run = copy_of(good_run());
+  run.identification.drives[0].reversal_ratio = 5;
+  EXPECT_EQ(assess(run).verdict, Verdict::good);
+  EXPECT_THAT(all_text(assess(run)), HasSubstr("up to 5.0 times that elsewhere (drive\u00A01)"));
+  run.identification.drives[0].masked_rows = 4 * run.identification.drives[0].rows;
+  EXPECT_EQ(assess(run).verdict, Verdict::caution);
+}
+
+TEST(PriorGaps, SayWhatToMeasure) {
+  const BaseParameters base = [] {
+    BaseParameters made;  // a alone, b + c together, d not at all
+    made.B = Eigen::MatrixXd::Zero(3, 5);
+    made.B << 1, 0, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 0, 0, 0, 1;
+    made.independent = {0, 1, 4};
+    return made;
+  }();
+  EXPECT_THAT(parameter_visibility(base), ::testing::ElementsAre(Visibility::alone, Visibility::combined, Visibility::combined,
+                                                                 Visibility::hidden, Visibility::alone));
+  ConsistentFitSummary fit;
+  fit.names = {"drive2.viscous", "tool.m", "telescope_lower.mcz", "platform.Ixx", "strut.Ixx"};
+  fit.fitted.assign(5, true);
+  fit.p = fit.prior = fit.std = Eigen::VectorXd::Ones(5);
+  fit.data_share = Eigen::VectorXd::Constant(5, 0.08);
+  Eigen::VectorXd effect = Eigen::VectorXd::Constant(5, 0.3);
+  effect(4) = 1e-5;
+  const std::vector<PriorGap> gaps = prior_gaps(fit, base, effect);
+  ASSERT_EQ(gaps.size(), 4U) << "platform.Ixx does not act on the drives";
+  EXPECT_TRUE(gaps[0].by_motion);
+  EXPECT_THAT(gaps[0].advice, HasSubstr("high speed of drive\u00A02"));
+  EXPECT_EQ(gaps[1].advice, "weigh the tool");
+  EXPECT_THAT(gaps[1].parameters, ::testing::ElementsAre("m (8 %)"));
+  EXPECT_FALSE(gaps[1].by_motion);
+  EXPECT_THAT(gaps[2].advice, HasSubstr("centre of mass"));
+  EXPECT_TRUE(gaps[3].negligible);
+  EXPECT_FALSE(gaps[3].by_motion);
+
+  fit.data_share(1) = 0.95;
+  EXPECT_EQ(prior_gaps(fit, base, effect).size(), 3U);
+  fit.fitted[0] = false;
+  EXPECT_EQ(prior_gaps(fit, base, effect).size(), 2U);
+}
+
+TEST(PriorGaps, AValueFarFromItsPriorIsNotHeldByIt) {
+  ConsistentFitSummary fit;
+  fit.p = Eigen::Vector2d(1.0, 1.0);
+  fit.prior = Eigen::Vector2d(0.9, 0.5);
+  fit.std = Eigen::Vector2d(0.1, 0.1);
+  EXPECT_TRUE(held_by_prior(fit, 0));
+  EXPECT_FALSE(held_by_prior(fit, 1));
+}
+
+class IdentificationReportOf : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(IdentificationReportOf, GivesAWholePage) {
+  const SyntheticRun run = synthetic_run(GetParam());
+  const std::string page = page_of(run);
+  EXPECT_LT(page.size(), kLargestPage);
+  EXPECT_THAT(texts(page, "h1"), ::testing::ElementsAre("Identification of " + run.robot->description().name));
+  EXPECT_THAT(texts(page, "h2"), ::testing::IsSupersetOf({"Checks", "Parameters", "Base parameters", "What to measure next"}));
+  const std::vector<std::string> cells = texts(page, "td");
+  for (const std::string& name : run.robot->parameter_names()) EXPECT_THAT(cells, Contains(name)) << "every parameter is in some table";
+  for (const std::string& expression : run.identification.base.expressions) EXPECT_THAT(cells, Contains(expression));
+  const bool slides = run.robot->description().drive_kind == DriveKind::prismatic;
+  EXPECT_THAT(page, HasSubstr(slides ? "force [N]" : "torque [N m]"));
+  EXPECT_THAT(page, HasSubstr(slides ? "residual [N]" : "residual [N m]"));
+  EXPECT_THAT(page, HasSubstr("delta-identify robot.urdf made_up.csv"));
+  const bool axis = run.robot->description().parts.empty();
+  EXPECT_THAT(page, axis ? Not(HasSubstr("height of the plate")) : ::testing::Matcher<const std::string&>(HasSubstr("height of the plate")));
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryType, IdentificationReportOf, ::testing::Values("delta3", "linear_delta3", "mujoco_delta4", "emps"));
+
+TEST(IdentificationReport, MarksThePriorAndFoldsAwayWhatWasNotFitted) {
+  SyntheticRun run = copy_of(good_run());
+  ConsistentFitSummary& fit = run.identification.fit;
+  const auto index = [&](const std::string& name) {
+    return static_cast<Eigen::Index>(std::find(fit.names.begin(), fit.names.end(), name) - fit.names.begin());
+  };
+  const auto row_class = [&](const std::string& name) {
+    std::string found = "none";
+    testing::for_each_element(page_of(run), [&](const tinyxml2::XMLElement& element) {
+      if (std::string(element.Name()) != "tr" || element.FirstChildElement("td") == nullptr) return;
+      if (testing::text_of(*element.FirstChildElement("td")) != name) return;
+      found = element.Attribute("class") != nullptr ? element.Attribute("class") : "";
+    });
+    return found;
+  };
+  fit.data_share(index("platform.m")) = 0.97;
+  EXPECT_EQ(row_class("platform.m"), "");
+  fit.data_share(index("platform.m")) = 0.05;
+  EXPECT_EQ(row_class("platform.m"), "caution");
+  EXPECT_THAT(texts(page_of(run), "summary"), Contains("Parameters that were not fitted"));
+}
+
+TEST(IdentificationReport, NotesOfTheLogAndOfTheFitAreShown) {
+  SyntheticRun run = copy_of(good_run());
+  run.identification.notes = {"made_up.csv, line 7: <repaired>"};
+  run.identification.fit.notes = {"the prior was moved"};
+  EXPECT_THAT(texts(page_of(run), "li"), ::testing::IsSupersetOf({"made_up.csv, line 7: <repaired>", "the prior was moved"}));
+}
+
+TEST(IdentificationReport, PartsOfAnotherRobotAreRefused) {
+  SyntheticRun run = copy_of(good_run());
+  run.robot = shipped_robot("mujoco_delta4");
+  EXPECT_THROW((void)page_of(run), Error);
+}
+
+}  // namespace
+}  // namespace deltadyn
