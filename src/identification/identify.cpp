@@ -73,6 +73,31 @@ std::vector<double> correlations(const Robot& robot, const std::vector<PreparedL
   return sum;
 }
 
+/// Standard deviation of each drive's residual from its median size, which outliers hardly move.
+std::vector<double> robust_scales(const Robot& robot, const std::vector<PreparedLog>& logs, const Eigen::VectorXd& p,
+                                  const std::vector<bool>& keep, int threads) {
+  constexpr double kMedianToSigma = 1.4826;  // for normal noise
+  std::vector<std::vector<double>> sizes(keep.size());
+  for (const PreparedLog& log : logs) {
+    const Prediction prediction = predict(robot, log, p, threads);
+    for (std::size_t j = 0; j < keep.size(); ++j) {
+      const auto drive = static_cast<int>(j);
+      const auto usable = prediction.usable(drive, keep[j]);
+      for (Index k = 0; k < prediction.rows(); ++k) {
+        if (usable(k)) sizes[j].push_back(std::abs(prediction.tau(k, drive) - prediction.model(k, drive)));
+      }
+    }
+  }
+  std::vector<double> scales;
+  for (std::vector<double>& size : sizes) {
+    if (size.empty()) size.push_back(0);
+    const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+    std::nth_element(size.begin(), middle, size.end());
+    scales.push_back(std::max(kMedianToSigma * *middle, 1e-12));
+  }
+  return scales;
+}
+
 std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& options) {
   std::vector<PreparedLog> prepared;
   prepared.reserve(logs.size());
@@ -114,8 +139,9 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   if (options.robust) {
     const std::vector<DriveFold> all_rows = folds;
     for (int pass = 0; pass < 5; ++pass) {
-      const RowWeight weight = [&](int drive, double residual) {
-        const double limit = kHuber * out.base_estimate.noise[static_cast<std::size_t>(drive)].std;
+      const std::vector<double> scale = robust_scales(robot, prepared, p, keep, options.threads);
+      const RowWeight weight = [&scale](int drive, double residual) {
+        const double limit = kHuber * scale[static_cast<std::size_t>(drive)];
         return std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);
       };
       folds = select(fold_all(robot, prepared, options.threads, &p, weight), keep);

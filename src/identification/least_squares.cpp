@@ -15,6 +15,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double kSilent = 1e-9;  // a column or direction this much weaker than the strongest one is rounding
+
 /// Weighted factors of all drives, triangular again: A^T A = sum over the drives of w^2 R^T R.
 void stack(const std::vector<DriveFold>& folds, const Eigen::VectorXd& weight, Eigen::MatrixXd& A, Eigen::VectorXd& b) {
   const Index P = folds.front().R.cols();
@@ -76,11 +78,13 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(A_B, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd& s = svd.singularValues();
     out.condition_number = s(0) / std::max(s(s.size() - 1), 1e-300);
-    Index silent;
-    if (norm.minCoeff(&silent) < 1e-9 * largest || out.condition_number > 1e9) {
-      const Eigen::VectorXd direction =
-          norm(silent) < 1e-9 * largest ? Eigen::VectorXd::Unit(norm.size(), silent) : Eigen::VectorXd(svd.matrixV().rightCols<1>());
-      throw Error("the motion does not excite every base parameter; it says nothing about " + weakest(base, direction), "",
+    std::string unseen;
+    for (Index k = 0; k < norm.size(); ++k) {
+      if (norm(k) < kSilent * largest) unseen += (unseen.empty() ? "" : ", ") + base.expressions[static_cast<std::size_t>(k)];
+    }
+    if (unseen.empty() && out.condition_number > 1 / kSilent) unseen = weakest(base, svd.matrixV().rightCols<1>());
+    if (!unseen.empty()) {
+      throw Error("the motion does not excite every base parameter; it says nothing about " + unseen, "",
                   "record a motion that moves all drives, fast and slow, over the workspace", ExitCode::not_trusted);
     }
     out.value = norm.cwiseInverse().asDiagonal() * svd.solve(out.b);

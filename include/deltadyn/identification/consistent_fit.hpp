@@ -45,7 +45,7 @@ struct ConsistentFitOptions {
   std::optional<double> regularization;  ///< lambda; chosen from the data when empty
   /// Chosen lambda: the largest one that raises chi^2 by no more than this over its minimum on the consistent set. The bias of
   /// everything the data determine is then below sqrt(data_misfit_rise) standard deviations, all directions together.
-  double data_misfit_rise = 0.1;
+  double data_misfit_rise = 0.001;
   int max_iterations = 200;          ///< of Ceres
   double function_tolerance = 1e-8;  ///< relative change of J at which Ceres stops
   double gradient_tolerance = 1e-10;

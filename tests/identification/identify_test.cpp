@@ -1,0 +1,87 @@
+#include "deltadyn/identification/identify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "deltadyn/runtime/error.hpp"
+#include "identification/synthetic_log.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+std::vector<Log> recorded(const Robot& robot, double outlier = 0) {
+  std::vector<Log> logs;
+  for (const std::uint64_t seed : {1, 2}) {
+    SyntheticOptions synthetic;
+    synthetic.duration_s = 6;
+    synthetic.torque_noise = 0.05;
+    synthetic.encoder_step = 1.2e-5;
+    synthetic.with_derivatives = false;
+    synthetic.seed = seed;
+    synthetic.base_frequency_hz = seed == 1 ? 0.35 : 0.15;
+    logs.push_back(synthetic_log(robot, delta_truth(robot), synthetic));
+    if (outlier > 0) {
+      for (Eigen::Index k = 0; k < logs.back().samples(); k += 1500) logs.back().tau(k, 0) += outlier;
+    }
+  }
+  return logs;
+}
+
+double friction_error(const Robot& robot, const Identification& result) {
+  const Eigen::VectorXd truth = delta_truth(robot);
+  double worst = 0;
+  for (int k = 0; k < robot.parameters(); ++k) {
+    if (robot.parameter_names()[static_cast<std::size_t>(k)].find("drive") == 0) worst = std::max(worst, std::abs(result.fit.p(k) / truth(k) - 1));
+  }
+  return worst;
+}
+
+TEST(Identify, RecoversWhatTheDataShowFromTwoPriors) {
+  const auto robot = make_robot(delta_description("delta4"));
+  const Eigen::VectorXd truth = delta_truth(*robot);
+  const std::vector<Log> logs = recorded(*robot);
+  Eigen::VectorXd last;
+  for (const double scale : {0.7, 1.3}) {
+    const Identification result = identify(*robot, logs, scale * truth, {}, IdentificationOptions{});
+    EXPECT_TRUE(result.fit.converged);
+    EXPECT_EQ(result.base.count(), 37);
+    EXPECT_LT(friction_error(*robot, result), 0.01);
+    const Eigen::VectorXd sigmas = (result.base_from_fit - result.base.B * truth).cwiseQuotient(result.base_estimate.std());
+    EXPECT_LT(sigmas.cwiseAbs().maxCoeff(), 4.5);
+    for (const DriveReport& drive : result.drives) EXPECT_LT(drive.rms, 1.02 * drive.rms_base);
+    if (last.size() > 0) {
+      EXPECT_LT((result.base_from_fit - last).cwiseQuotient(result.base_estimate.std()).cwiseAbs().maxCoeff(), 0.2);
+    }
+    last = result.base_from_fit;
+  }
+}
+
+TEST(Identify, HuberWeightsResistOutliers) {
+  const auto robot = make_robot(delta_description("delta3"));
+  const Eigen::VectorXd truth = delta_truth(*robot);
+  std::vector<Log> logs;
+  for (Log& log : recorded(*robot, 25.0)) logs.push_back(log);
+  IdentificationOptions options;
+  options.choose_cutoff = false;
+  const Identification plain = identify(*robot, logs, 0.8 * truth, {}, options);
+  options.robust = true;
+  const Identification robust = identify(*robot, logs, 0.8 * truth, {}, options);
+  const Eigen::VectorXd beta = plain.base.B * truth;
+  const Eigen::MatrixXd information = robust.base_estimate.covariance.inverse();
+  const auto distance = [&](const Identification& result) {
+    const Eigen::VectorXd error = result.base_estimate.value - beta;
+    return std::sqrt(error.dot(information * error));
+  };
+  EXPECT_LT(distance(robust), 0.5 * distance(plain));
+}
+
+TEST(Identify, RefusesWithoutLogs) {
+  const auto robot = make_robot(delta_description("delta3"));
+  EXPECT_THROW((void)identify(*robot, {}, delta_truth(*robot), {}, IdentificationOptions{}), Error);
+}
+
+}  // namespace
+}  // namespace deltadyn

@@ -1,0 +1,60 @@
+#include "deltadyn/identification/validate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "identification/synthetic_log.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+TEST(Validate, FiguresAreThoseOfTheRows) {
+  const auto robot = make_robot(delta_description("delta3"));
+  std::vector<Log> logs;
+  for (const std::uint64_t seed : {1, 2}) {
+    SyntheticOptions synthetic;
+    synthetic.seed = seed;
+    synthetic.torque_noise = 0.2;
+    logs.push_back(synthetic_log(*robot, delta_truth(*robot), synthetic));
+  }
+  const Validation result = validate(*robot, logs, 0.9 * delta_truth(*robot), ProcessingOptions{});
+  ASSERT_EQ(result.logs.size(), 2U);
+  for (int j = 0; j < 3; ++j) {
+    double square = 0, tau_square = 0, largest = 0;
+    Eigen::Index rows = 0;
+    for (const ValidatedLog& log : result.logs) {
+      const auto usable = log.prediction.usable(j, false);
+      for (Eigen::Index k = 0; k < log.prediction.rows(); ++k) {
+        if (!usable(k)) continue;
+        const double e = log.prediction.tau(k, j) - log.prediction.model(k, j);
+        square += e * e;
+        tau_square += log.prediction.tau(k, j) * log.prediction.tau(k, j);
+        largest = std::max(largest, std::abs(e));
+        ++rows;
+      }
+    }
+    const ValidatedDrive& drive = result.drives[static_cast<std::size_t>(j)];
+    EXPECT_EQ(drive.rows, rows);
+    EXPECT_GT(drive.reversal_rows, 0);
+    EXPECT_NEAR(drive.rms_residual, std::sqrt(square / static_cast<double>(rows)), 1e-12);
+    EXPECT_NEAR(drive.relative_residual, std::sqrt(square / tau_square), 1e-12);
+    EXPECT_EQ(drive.max_residual, largest);
+  }
+}
+
+TEST(Validate, TheTruthPredictsBestAndWithoutNoiseExactly) {
+  const auto robot = make_robot(delta_description("delta3"));
+  const Log log = synthetic_log(*robot, delta_truth(*robot), SyntheticOptions{});
+  ProcessingOptions options;
+  options.filter = false;
+  const Validation truth = validate(*robot, {log}, delta_truth(*robot), options);
+  const Validation wrong = validate(*robot, {log}, 1.1 * delta_truth(*robot), options);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_LT(truth.drives[j].max_residual, 1e-10);
+    EXPECT_NEAR(wrong.drives[j].relative_residual, 0.1, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace deltadyn
