@@ -1,10 +1,9 @@
 #include "deltadyn/identification/mass_matrix_survey.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
@@ -14,8 +13,8 @@ namespace deltadyn {
 
 MassMatrixSurvey survey_mass_matrix(const Robot& robot, const Eigen::VectorXd& p, int states, std::uint64_t seed, int keep) {
   if (states < 1 || keep < 1) {
-    throw Error(fmt::format("a survey over {} states of which {} are kept", states, keep), "mass matrix", "give counts of at least 1",
-                ExitCode::usage);
+    throw Error(fmt::format("a survey over {} states of which {} are kept", states, keep), "mass matrix",
+                "give counts of at least 1", ExitCode::usage);
   }
   if (p.size() != robot.parameters()) {
     throw Error(fmt::format("{} values for {} parameters", p.size(), robot.parameters()), "mass matrix",

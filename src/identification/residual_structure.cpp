@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kIntervals = 24;      // fine enough for the shape of a friction curve on both sides of zero
-constexpr Index kShifts = 199;        // the smallest p-value is 1/200
-constexpr Index kRowsPerInterval = 4; // below that the means are noise
+constexpr Index kIntervals = 24;        // fine enough for the shape of a friction curve on both sides of zero
+constexpr Index kShifts = 199;          // the smallest p-value is 1/200
+constexpr Index kRowsPerInterval = 4;   // below that the means are noise
 constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for, as in identify()
 
 /// Interval of each row; all intervals hold the same number of rows, so that rare speeds count as little as they occur.
@@ -22,7 +22,8 @@ std::vector<Index> intervals_of(const Eigen::VectorXd& coordinate) {
   std::vector<Index> order(static_cast<std::size_t>(n)), interval(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return coordinate(a) < coordinate(b); });
-  for (Index rank = 0; rank < n; ++rank) interval[static_cast<std::size_t>(order[static_cast<std::size_t>(rank)])] = rank * kIntervals / n;
+  for (Index rank = 0; rank < n; ++rank)
+    interval[static_cast<std::size_t>(order[static_cast<std::size_t>(rank)])] = rank * kIntervals / n;
   return interval;
 }
 

@@ -1,9 +1,8 @@
 #include "deltadyn/identification/torque_uncertainty.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/workspace.hpp"
@@ -65,8 +64,9 @@ TorqueUncertainty torque_uncertainty_on_logs(const Robot& robot, const BaseParam
   return torque_uncertainty(robot, base, covariance, p, q.topRows(taken), qd.topRows(taken), qdd.topRows(taken));
 }
 
-TorqueUncertainty torque_uncertainty_in_workspace(const Robot& robot, const BaseParameters& base, const Eigen::MatrixXd& covariance,
-                                                  const Eigen::VectorXd& p, int states, std::uint64_t seed) {
+TorqueUncertainty torque_uncertainty_in_workspace(const Robot& robot, const BaseParameters& base,
+                                                  const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p, int states,
+                                                  std::uint64_t seed) {
   WorkspaceSampler sampler(robot, seed);
   Eigen::MatrixXd Q(states, robot.drives()), Qd = Q, Qdd = Q;
   Eigen::VectorXd q, qd, qdd;

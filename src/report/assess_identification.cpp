@@ -17,7 +17,8 @@ std::vector<DriveFigures> figures_of(const Identification& identification) {
   std::vector<DriveFigures> out;
   for (const DriveReport& drive : identification.drives) {
     const auto rows = static_cast<double>(drive.rows + drive.masked_rows);
-    out.push_back({drive.rms, drive.rms_torque, drive.reversal_ratio, rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0});
+    out.push_back(
+        {drive.rms, drive.rms_torque, drive.reversal_ratio, rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0});
   }
   return out;
 }
@@ -30,17 +31,20 @@ Check check_solver(const ConsistentFitSummary& fit) {
     check.meaning = "The solver stopped before it was done: " + fit.message + ". Allow more iterations, or check the prior.";
   } else if (!fit.certificate.available) {
     check.figure = "converged, no proof";
-    check.meaning = "This metric is not convex: a better set of parameters may exist. The metrics 'relative' and 'bregman' give a proof.";
+    check.meaning =
+        "This metric is not convex: a better set of parameters may exist. The metrics 'relative' and 'bregman' give a proof.";
   } else if (fit.certificate.passed) {
     check.figure = "proven";
     check.meaning = fmt::format(
-        "No physically consistent parameters fit data and prior better by more than {} in χ² (a change of 1 would be within the noise).",
+        "No physically consistent parameters fit data and prior better by more than {} in χ² (a change of 1 would be within the "
+        "noise).",
         format_number(std::max(fit.certificate.gap, 0.0), 2));
   } else {
     check.verdict = Verdict::caution;
     check.figure = "not proven";
-    check.meaning = fmt::format("Parameters that fit better by up to {} in χ² may exist (weakest at {}). Try the full parameter set or another prior.",
-                                format_number(fit.certificate.gap, 2), fit.certificate.min_dual_name);
+    check.meaning = fmt::format(
+        "Parameters that fit better by up to {} in χ² may exist (weakest at {}). Try the full parameter set or another prior.",
+        format_number(fit.certificate.gap, 2), fit.certificate.min_dual_name);
   }
   return check;
 }
@@ -62,7 +66,8 @@ Check check_consistency(const Identification& identification) {
     check.meaning = "Parameters that a real machine can have explain the data as well as free base parameters do.";
   } else {
     check.meaning =
-        "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong length, a wrong prior "
+        "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong length, a wrong "
+        "prior "
         "with too much weight, or an effect that the model lacks.";
   }
   return check;
@@ -77,10 +82,12 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   check.figure = fmt::format("± {} {} ({})", format_percent(1.96 * relative, 2), "at 95 %", drive_name(static_cast<int>(worst)));
   const std::string where = robot.description().parts.empty() ? "over the axis" : "over the whole workspace";
   if (check.verdict == Verdict::good) {
-    check.meaning = fmt::format("The uncertainty of the base parameters leaves the torque of fast motions {} this well known.", where);
+    check.meaning =
+        fmt::format("The uncertainty of the base parameters leaves the torque of fast motions {} this well known.", where);
   } else {
     check.meaning = fmt::format(
-        "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches further and accelerates "
+        "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches further and "
+        "accelerates "
         "harder, and trust the model only near the recorded motions.",
         format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
   }
@@ -99,7 +106,9 @@ Check check_excitation(const Identification& identification) {
   } else if (condition <= kHighCondition) {
     check.meaning = "The motion shows the base parameters, some only in sums; an optimised excitation would sharpen them.";
   } else {
-    check.meaning = "The motion hardly tells some base parameters apart: record one that moves all drives, fast and slow, over the workspace.";
+    check.meaning =
+        "The motion hardly tells some base parameters apart: record one that moves all drives, fast and slow, over the "
+        "workspace.";
   }
   return check;
 }
@@ -111,8 +120,9 @@ Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
   if (survey.positive_definite()) {
     check.meaning = fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count);
   } else {
-    check.meaning = fmt::format("Not positive definite at {} of {} poses: simulation and model-based control with it can become unstable.",
-                                format_count(survey.not_positive), count);
+    check.meaning =
+        fmt::format("Not positive definite at {} of {} poses: simulation and model-based control with it can become unstable.",
+                    format_count(survey.not_positive), count);
   }
   return check;
 }
@@ -139,12 +149,14 @@ Check check_prior(const ConsistentFitSummary& fit, const std::vector<PriorGap>& 
   const Counts counts = count_sources(fit);
   const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
-  check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} from the prior", counts.data, counts.fitted,
-                             counts.both, counts.prior);
+  check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} from the prior", counts.data,
+                             counts.fitted, counts.both, counts.prior);
   if (motion_lacks) {
     check.meaning = "Some parameters that a motion can show were not shown by these logs; they are named below.";
   } else if (counts.prior > 0) {
-    check.meaning = "Those from the prior act on the drives only in sums with others: the torque is right, the single values are not measured.";
+    check.meaning =
+        "Those from the prior act on the drives only in sums with others: the torque is right, the single values are not "
+        "measured.";
   } else {
     check.meaning = "No value rests on the prior.";
   }
@@ -216,7 +228,8 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
                 check_excitation(identification),
                 check_reversals(drives)};
   out.verdict = worst_of(out.checks);
-  const auto first = std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
+  const auto first =
+      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
   switch (out.verdict) {
     case Verdict::good:
       out.headline = fmt::format("The model can be trusted on motions like the recorded ones: the residual is {}.", size.figure);
@@ -237,7 +250,7 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
   out.lines.insert(out.lines.end(), urgent.begin(), urgent.end());
   if (shape.verdict == Verdict::good && size.verdict == Verdict::good) {
     out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
-                                                         : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
+                                                        : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
   }
   const Check& reversals = out.checks.back();
   if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {

@@ -28,23 +28,27 @@ Assessment assess_validation(const Robot& robot, const Validation& validation, c
   for (const ValidatedDrive& drive : validation.drives) {
     const double rms_torque = drive.relative_residual > 0 ? drive.rms_residual / drive.relative_residual : 0.0;
     const auto all = static_cast<double>(drive.rows + drive.reversal_rows);
-    drives.push_back({drive.rms_residual, rms_torque, reversal_ratio(drive),
-                      all > 0 ? static_cast<double>(drive.reversal_rows) / all : 0.0});
+    drives.push_back(
+        {drive.rms_residual, rms_torque, reversal_ratio(drive), all > 0 ? static_cast<double>(drive.reversal_rows) / all : 0.0});
     rows_everywhere = rows_everywhere && drive.rows > 0;
   }
   Assessment out;
   if (!rows_everywhere) {
-    out.checks.push_back({"Rows to judge by", "a drive has none", Verdict::bad,
-                          "All rows of a drive are near velocity reversals or repaired: record a log in which every drive moves."});
+    out.checks.push_back(
+        {"Rows to judge by", "a drive has none", Verdict::bad,
+         "All rows of a drive are near velocity reversals or repaired: record a log in which every drive moves."});
   }
   const Check size = check_residual_size(robot, drives), shape = check_residual_shape(drives, residual);
   out.checks.push_back(size);
   out.checks.push_back(shape);
   out.checks.push_back(check_reversals(drives));
   out.verdict = worst_of(out.checks);
-  const auto first = std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
+  const auto first =
+      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
   switch (out.verdict) {
-    case Verdict::good: out.headline = fmt::format("The model predicts these logs: the residual is at most {}.", size.figure); break;
+    case Verdict::good:
+      out.headline = fmt::format("The model predicts these logs: the residual is at most {}.", size.figure);
+      break;
     case Verdict::caution: out.headline = headline_of("The model predicts these logs with reservations", *first); break;
     case Verdict::bad: out.headline = headline_of("The model does not predict these logs", *first); break;
   }
@@ -55,7 +59,7 @@ Assessment assess_validation(const Robot& robot, const Validation& validation, c
   }
   if (shape.verdict == Verdict::good) {
     out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
-                                                         : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
+                                                        : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
   }
   const Check& reversals = out.checks.back();
   if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {

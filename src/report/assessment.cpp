@@ -40,7 +40,8 @@ namespace {
 std::string motion_advice(const std::string& parameter, const std::string& owner) {
   if (parameter == "viscous") return "record longer stretches at high speed of " + owner;
   if (parameter == "coulomb") return "record slow stretches of " + owner + " in both directions";
-  if (parameter == "rotor_inertia") return "take it from the data sheet of the motor, or record stronger accelerations of " + owner;
+  if (parameter == "rotor_inertia")
+    return "take it from the data sheet of the motor, or record stronger accelerations of " + owner;
   if (parameter == "offset") return "record " + owner + " at the same positions in both directions";
   return "record stronger accelerations and wider motions that move the " + owner;
 }
@@ -64,8 +65,10 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
     const std::size_t dot = std::min(fit.names[i].find('.'), fit.names[i].size() - 1);
     const std::string owner = fit.names[i].substr(0, dot), parameter = fit.names[i].substr(dot + 1);
     const double acts = effect(static_cast<Eigen::Index>(i));
-    const bool alone = visibility[i] == Visibility::alone, negligible = alone && acts < kNegligibleEffect, by_motion = alone && !negligible;
-    auto found = std::find_if(gaps.begin(), gaps.end(), [&](const PriorGap& gap) { return gap.owner == owner && gap.by_motion == by_motion && gap.negligible == negligible;
+    const bool alone = visibility[i] == Visibility::alone, negligible = alone && acts < kNegligibleEffect,
+               by_motion = alone && !negligible;
+    auto found = std::find_if(gaps.begin(), gaps.end(), [&](const PriorGap& gap) {
+      return gap.owner == owner && gap.by_motion == by_motion && gap.negligible == negligible;
     });
     if (found == gaps.end()) {
       gaps.push_back({owner, {}, by_motion, negligible, by_motion ? motion_advice(parameter, owner_in_words(owner)) : ""});
@@ -87,7 +90,9 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
     const Missing& what = missing[k];
     std::vector<std::string> steps;
     if (what.mass) steps.push_back("weigh the " + owner_in_words(gaps[k].owner));
-    if (what.centre) steps.emplace_back(what.mass ? "balance it on an edge for its centre of mass" : "find its centre of mass (balance it on an edge, or CAD)");
+    if (what.centre)
+      steps.emplace_back(what.mass ? "balance it on an edge for its centre of mass"
+                                   : "find its centre of mass (balance it on an edge, or CAD)");
     if (what.inertia) steps.emplace_back("take its moments of inertia from CAD or a swing test");
     gaps[k].advice = steps.empty() ? "take it from the data sheet" : join_words(steps);
   }
@@ -98,8 +103,7 @@ IdentificationEvidence gather_evidence(const Robot& robot, const Identification&
   IdentificationEvidence evidence;
   evidence.residual = residual_structure(training);
   const BaseEstimate& estimate = identification.base_estimate;
-  evidence.on_logs =
-      torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
+  evidence.on_logs = torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
   evidence.in_workspace = torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
   evidence.parameter_effect = parameter_effect(robot, identification.fit.p);
   return evidence;
@@ -112,7 +116,9 @@ Verdict grade(double value, double good, double usable) {
   return value <= usable ? Verdict::caution : Verdict::bad;
 }
 
-Verdict grade_residual(double relative) { return grade(relative, kGoodResidual, kUsableResidual); }
+Verdict grade_residual(double relative) {
+  return grade(relative, kGoodResidual, kUsableResidual);
+}
 
 Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives) {
   std::size_t worst = 0;
@@ -126,11 +132,14 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
   switch (check.verdict) {
     case Verdict::good: check.meaning = "Small: as feed-forward the model leaves little to the feedback loop."; break;
     case Verdict::caution:
-      check.meaning = "Usable as feed-forward, but not for forces estimated from the drive currents. Look below at what the residual follows.";
+      check.meaning =
+          "Usable as feed-forward, but not for forces estimated from the drive currents. Look below at what the residual "
+          "follows.";
       break;
     case Verdict::bad:
       check.meaning =
-          "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear ratios, and "
+          "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear "
+          "ratios, and "
           "that position and torque belong to the same instant.";
       break;
   }
@@ -138,9 +147,8 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
 }
 
 std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found) {
-  const std::pair<const char*, const DependenceOnMotion*> all[] = {{"velocity", &structure.on_velocity},
-                                                                   {"position", &structure.on_position},
-                                                                   {"acceleration", &structure.on_acceleration}};
+  const std::pair<const char*, const DependenceOnMotion*> all[] = {
+      {"velocity", &structure.on_velocity}, {"position", &structure.on_position}, {"acceleration", &structure.on_acceleration}};
   std::string name;
   for (const auto& [coordinate, dependence] : all) {
     if (dependence->p_value > kRareByChance || dependence->share < kNotableShare) continue;
@@ -153,7 +161,8 @@ std::string worst_dependence(const ResidualStructure& structure, DependenceOnMot
 }
 
 std::string meaning_of_dependence(const std::string& coordinate) {
-  if (coordinate == "velocity") return "friction there is more than Coulomb and viscous (Stribeck, a load-dependent part, a gear)";
+  if (coordinate == "velocity")
+    return "friction there is more than Coulomb and viscous (Stribeck, a load-dependent part, a gear)";
   if (coordinate == "position") return "a spring, a cable, an unbalance or a wrong length acts there, or the gear has a ripple";
   return "inertia is missing there (a rotor), or torque and position are not of the same instant (a lag)";
 }
@@ -171,8 +180,9 @@ Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::v
     const auto drive = static_cast<int>(j);
     check.figure = fmt::format("{} of it follows the {} of {}", format_percent(found.share, 2), coordinate, drive_name(drive));
     check.verdict = structured > kRelevantStructure ? Verdict::caution : Verdict::good;
-    check.meaning = fmt::format("That part is {} of the torque{}: {}.", format_percent(structured, 2),
-                                check.verdict == Verdict::good ? ", too little to act on" : "", meaning_of_dependence(coordinate));
+    check.meaning =
+        fmt::format("That part is {} of the torque{}: {}.", format_percent(structured, 2),
+                    check.verdict == Verdict::good ? ", too little to act on" : "", meaning_of_dependence(coordinate));
   }
   if (largest > 0) return check;
   const auto longest = std::max_element(residual.begin(), residual.end(),
@@ -183,10 +193,12 @@ Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::v
     check.verdict = relevant ? Verdict::caution : Verdict::good;
     check.figure = fmt::format("slow waves in {}", drive_name(static_cast<int>(j)));
     check.meaning = fmt::format(
-        "The residual follows neither position, velocity nor acceleration of its drive, but it has a memory: {:.0f} rows tell as much as "
+        "The residual follows neither position, velocity nor acceleration of its drive, but it has a memory: {:.0f} rows tell as "
+        "much as "
         "one. {}",
         longest->correlation,
-        relevant ? "Other drives, the temperature or a slow sensor may be behind it; see its spectrum." : "It is too small to act on.");
+        relevant ? "Other drives, the temperature or a slow sensor may be behind it; see its spectrum."
+                 : "It is too small to act on.");
     return check;
   }
   check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
@@ -194,7 +206,8 @@ Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::v
 }
 
 Check check_reversals(const std::vector<DriveFigures>& drives) {
-  Check check{"Velocity reversals", "no worse than elsewhere", Verdict::good, "Coulomb friction describes the reversals well enough."};
+  Check check{"Velocity reversals", "no worse than elsewhere", Verdict::good,
+              "Coulomb friction describes the reversals well enough."};
   std::vector<std::string> worse;
   double ratio = 1, masked = 0;
   for (std::size_t j = 0; j < drives.size(); ++j) {
@@ -205,7 +218,8 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
   if (!worse.empty()) {
     check.figure = fmt::format("residual there up to {:.1f} times that elsewhere ({})", ratio, join_words(worse));
     check.meaning =
-        "Near standstill the sign of the velocity is uncertain and friction does not follow Coulomb's law; all other figures leave these rows "
+        "Near standstill the sign of the velocity is uncertain and friction does not follow Coulomb's law; all other figures "
+        "leave these rows "
         "out. Do not trust the torque in the first instants after a reversal.";
   } else if (masked > 0) {
     check.figure = fmt::format("left out, at most {} of a drive's rows", format_percent(masked, 2));

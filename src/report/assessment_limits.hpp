@@ -14,7 +14,8 @@ inline constexpr double kUsableResidual = 0.15;
 inline constexpr double kRareByChance = 0.01;
 /// ... and that explains a tenth of its mean square is worth telling ...
 inline constexpr double kNotableShare = 0.10;
-/// ... and worth acting on if this part is above one fiftieth of the torque: less is lost in the change of friction as a machine warms up.
+/// ... and worth acting on if this part is above one fiftieth of the torque: less is lost in the change of friction as a machine
+/// warms up.
 inline constexpr double kRelevantStructure = 0.02;
 
 /// Rows that tell as much as one of white noise. Above it the residual has a memory, and is no measurement noise.

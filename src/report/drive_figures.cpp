@@ -21,11 +21,11 @@ namespace {
 using Eigen::Index;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kLogsShown = 3;    // keeps a report on many logs small; all of them count in the tables
-constexpr double kShown_s = 20;          // longer pieces of a torque curve cannot be read at the width of a page
-constexpr Index kPointsShown = 1200;     // of a scatter plot: 80 bytes each
-constexpr double kEndOfSpectrum = 1.1;   // in units of the low pass of the torque
-constexpr Index kIntervals = 24;         // as in residual_structure()
+constexpr std::size_t kLogsShown = 3;   // keeps a report on many logs small; all of them count in the tables
+constexpr double kShown_s = 20;         // longer pieces of a torque curve cannot be read at the width of a page
+constexpr Index kPointsShown = 1200;    // of a scatter plot: 80 bytes each
+constexpr double kEndOfSpectrum = 1.1;  // in units of the low pass of the torque
+constexpr Index kIntervals = 24;        // as in residual_structure()
 
 /// Residual with the rows of other use left out (NaN).
 Eigen::VectorXd masked_residual(const Prediction& prediction, int drive, bool regular, bool reversal) {
@@ -49,7 +49,8 @@ Rows shown_rows(const Validation& validation, const ValidatedLog& log) {
   if (all <= length + length / 4) return {0, all};
   Eigen::VectorXd square = Eigen::VectorXd::Zero(all);
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
-    const Eigen::ArrayXd e = masked_residual(p, static_cast<int>(j), true, false).array() / std::max(validation.drives[j].rms_residual, 1e-300);
+    const Eigen::ArrayXd e =
+        masked_residual(p, static_cast<int>(j), true, false).array() / std::max(validation.drives[j].rms_residual, 1e-300);
     square += e.isNaN().select(0.0, e.square()).matrix();
   }
   double sum = square.head(length).sum(), best = sum;
@@ -95,8 +96,8 @@ Series interval_means(const Eigen::VectorXd& x, const Eigen::VectorXd& e, double
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return x(a) < x(b); });
   const Index intervals = std::max<Index>(1, std::min<Index>(kIntervals, x.size() / 8));
-  Series means{"mean, ± 95 %", Eigen::VectorXd(intervals), Eigen::VectorXd(intervals), SeriesStyle::errorbars, Eigen::VectorXd(intervals),
-               PlotColor::vermillion};
+  Series means{"mean, ± 95 %",         Eigen::VectorXd(intervals), Eigen::VectorXd(intervals),
+               SeriesStyle::errorbars, Eigen::VectorXd(intervals), PlotColor::vermillion};
   for (Index k = 0; k < intervals; ++k) {
     const Index from = k * x.size() / intervals, to = (k + 1) * x.size() / intervals;
     double sum_x = 0, sum = 0, square = 0;
@@ -109,14 +110,17 @@ Series interval_means(const Eigen::VectorXd& x, const Eigen::VectorXd& e, double
     const auto count = static_cast<double>(std::max<Index>(1, to - from));
     means.x(k) = sum_x / count;
     means.y(k) = sum / count;
-    means.y_error(k) = 1.96 * std::sqrt(std::max(0.0, square / count - means.y(k) * means.y(k)) * std::max(1.0, correlation) / count);
+    means.y_error(k) =
+        1.96 * std::sqrt(std::max(0.0, square / count - means.y(k) * means.y(k)) * std::max(1.0, correlation) / count);
   }
   return means;
 }
 
 }  // namespace
 
-std::string short_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string short_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
 
 void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation& validation) {
   const std::size_t shown = std::min(kLogsShown, validation.logs.size());
@@ -141,7 +145,8 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
       rest.x_label = "time [s]";
       rest.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
       rest.height = 150;
-      const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)), reversal = piece(masked_residual(p, j, false, true));
+      const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)),
+                            reversal = piece(masked_residual(p, j, false, true));
       if (reversal.array().isFinite().any()) {
         grey = true;
         rest.series.push_back({"", t, reversal, SeriesStyle::line, {}, PlotColor::grey});
@@ -149,13 +154,15 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
       rest.series.push_back({"", t, regular, SeriesStyle::line, {}, PlotColor::green});
       // The rows that count set the scale: spikes at reversals would flatten everything else.
       const double largest = largest_finite(regular);
-      rest.y_range = symmetric_range(largest > 0 ? std::min(2 * largest, std::max(largest, largest_finite(reversal))) : largest_finite(reversal));
+      rest.y_range = symmetric_range(largest > 0 ? std::min(2 * largest, std::max(largest, largest_finite(reversal)))
+                                                 : largest_finite(reversal));
       cut_off = cut_off || largest_finite(reversal) > rest.y_range->high;
       panels.push_back(std::move(rest));
     }
     std::string caption = fmt::format("{}: measured and model {} with the residual below (measured minus model, filtered alike).",
                                       short_name(log.file), effort_of(robot, 0));
-    if (grey) caption += fmt::format(" Grey: near velocity reversals{}.", cut_off ? ", where spikes are cut off at the edge" : "");
+    if (grey)
+      caption += fmt::format(" Grey: near velocity reversals{}.", cut_off ? ", where spikes are cut off at the edge" : "");
     if (rows.count < p.rows()) {
       caption += fmt::format(" Shown are the {} with the largest residual of {}.", format_duration(t(t.size() - 1) - t(0)),
                              format_duration(p.t_s(p.rows() - 1) - p.t_s(0)));
@@ -183,11 +190,16 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
       try {
         const PowerSpectrum spectrum = welch_spectrum(residual, log.row_rate_hz);
         // The first bin has lost its mean; beyond the low pass there is nothing left to see.
-        const double end = validation.processing.filter ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio * validation.processing.cutoff_hz
-                                                        : std::numeric_limits<double>::infinity();
+        const double end = validation.processing.filter
+                               ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio * validation.processing.cutoff_hz
+                               : std::numeric_limits<double>::infinity();
         const Index bins = std::max<Index>(2, (spectrum.frequency_hz.array() <= end).count() - 1);
-        spec.series.push_back({validation.logs.size() > 1 ? short_name(log.file) : "", spectrum.frequency_hz.segment(1, bins),
-                               spectrum.density.segment(1, bins), SeriesStyle::line, {}, kColors[l]});
+        spec.series.push_back({validation.logs.size() > 1 ? short_name(log.file) : "",
+                               spectrum.frequency_hz.segment(1, bins),
+                               spectrum.density.segment(1, bins),
+                               SeriesStyle::line,
+                               {},
+                               kColors[l]});
       } catch (const Error&) {
         continue;  // too short a log, or no stretch without repaired samples: nothing to draw
       }
@@ -202,7 +214,8 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
     return;
   }
   report.plot(panels,
-              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low pass; what stands "
+              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low pass; "
+              "what stands "
               "out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
 }
 
@@ -227,24 +240,32 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
       const Index step = std::max<Index>(1, (X.size() + kPointsShown - 1) / kPointsShown), points = (X.size() + step - 1) / step;
       PlotSpec spec;
       spec.title = fmt::format("Drive {}", j + 1);
-      spec.x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j)) : fmt::format("position [{}]", position_unit_of(robot, j));
+      spec.x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
+                              : fmt::format("position [{}]", position_unit_of(robot, j));
       spec.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
       spec.height = 180;
-      spec.series.push_back({"one row", X(Eigen::seqN(0, points, step)), E(Eigen::seqN(0, points, step)), SeriesStyle::points, {}, PlotColor::grey});
+      spec.series.push_back({"one row",
+                             X(Eigen::seqN(0, points, step)),
+                             E(Eigen::seqN(0, points, step)),
+                             SeriesStyle::points,
+                             {},
+                             PlotColor::grey});
       spec.series.push_back(interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation));
       spec.horizontal_markers.push_back({0.0, ""});
       panels.push_back(std::move(spec));
     }
     if (panels.empty()) continue;
-    report.plot(panels, fmt::format("Residual over {}, {}; rows near velocity reversals left out. {}", velocity ? "velocity" : "position",
-                                    name_of_group(group),
-                                    velocity ? "Means that leave zero show friction that Coulomb and viscous friction do not describe."
-                                             : "Means that leave zero show springs, cables, unbalance, gear ripple or wrong lengths."));
+    report.plot(panels,
+                fmt::format("Residual over {}, {}; rows near velocity reversals left out. {}", velocity ? "velocity" : "position",
+                            name_of_group(group),
+                            velocity ? "Means that leave zero show friction that Coulomb and viscous friction do not describe."
+                                     : "Means that leave zero show springs, cables, unbalance, gear ripple or wrong lengths."));
   }
 }
 
 void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure>& residual) {
-  Table table({{"drive", Align::left}, {"velocity"}, {"position"}, {"acceleration"}, {"memory [rows]"}, {"reading", Align::left}});
+  Table table(
+      {{"drive", Align::left}, {"velocity"}, {"position"}, {"acceleration"}, {"memory [rows]"}, {"reading", Align::left}});
   const auto cell = [](const DependenceOnMotion& d) {
     return d.p_value > kRareByChance ? std::string("by chance") : fmt::format("{:.0f} %", 100 * d.share);
   };
@@ -253,18 +274,25 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
     DependenceOnMotion found;
     const std::string coordinate = worst_dependence(r, found);
     const bool memory = r.correlation > kNoticeableMemory;
-    const std::string reading = !coordinate.empty() ? meaning_of_dependence(coordinate) : memory ? "slow waves, not of this drive's motion" : "like noise";
+    const std::string reading = !coordinate.empty() ? meaning_of_dependence(coordinate)
+                                : memory            ? "slow waves, not of this drive's motion"
+                                                    : "like noise";
     table.row({drive_name(static_cast<int>(j)), cell(r.on_velocity), cell(r.on_position), cell(r.on_acceleration),
                fmt::format("{:.1f}", r.correlation), reading},
               coordinate.empty() && !memory ? Tone::plain : Tone::caution);
   }
   report.table(table,
-               "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: rows that tell "
+               "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
+               "rows that tell "
                "as much as one of white noise.");
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({{"drive", Align::left}, {"position"}, {"largest velocity"}, {"largest acceleration"}, {fmt::format("largest {}", effort_of(robot, 0))}});
+  Table table({{"drive", Align::left},
+               {"position"},
+               {"largest velocity"},
+               {"largest acceleration"},
+               {fmt::format("largest {}", effort_of(robot, 0))}});
   for (int j = 0; j < robot.drives(); ++j) {
     double low = std::numeric_limits<double>::infinity(), high = -low, velocity = 0, acceleration = 0, torque = 0;
     for (const ValidatedLog& log : validation.logs) {
@@ -277,7 +305,8 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
       torque = std::max(torque, p.tau.col(j).cwiseAbs().maxCoeff());
     }
     table.row({drive_name(j), fmt::format("{:.3f} … {:.3f} {}", low, high, position_unit_of(robot, j)),
-               format_number(velocity, velocity_unit_of(robot, j), 3), format_number(acceleration, acceleration_unit_of(robot, j), 3),
+               format_number(velocity, velocity_unit_of(robot, j), 3),
+               format_number(acceleration, acceleration_unit_of(robot, j), 3),
                format_number(torque, torque_unit_of(robot, j), 3)});
   }
   report.table(table, "Where the logs went. Beyond these values the model is an extrapolation.");
@@ -287,7 +316,13 @@ void add_check_table(HtmlReport& report, const Assessment& assessment) {
   Table table({{"", Align::center}, {"question", Align::left}, {"finding", Align::left}, {"meaning", Align::left}});
   for (const Check& check : assessment.checks) {
     const bool good = check.verdict == Verdict::good, bad = check.verdict == Verdict::bad;
-    table.row({good ? "✓" : bad ? "✗" : "!", check.subject, check.figure, check.meaning}, good ? Tone::plain : bad ? Tone::bad : Tone::caution);
+    table.row({good  ? "✓"
+               : bad ? "✗"
+                     : "!",
+               check.subject, check.figure, check.meaning},
+              good  ? Tone::plain
+              : bad ? Tone::bad
+                    : Tone::caution);
   }
   report.table(table);
 }
@@ -306,9 +341,9 @@ std::vector<std::pair<std::string, std::string>> processing_facts(const Validati
     }
   }
   for (const ValidatedLog& log : validation.logs) {
-    facts.emplace_back(short_name(log.file),
-                       fmt::format("{} samples at {}, {} rows at {}", format_count(log.samples), format_number(log.rate_hz, "Hz", 4),
-                                   format_count(log.prediction.rows()), format_number(log.row_rate_hz, "Hz", 3)));
+    facts.emplace_back(short_name(log.file), fmt::format("{} samples at {}, {} rows at {}", format_count(log.samples),
+                                                         format_number(log.rate_hz, "Hz", 4), format_count(log.prediction.rows()),
+                                                         format_number(log.row_rate_hz, "Hz", 3)));
   }
   return facts;
 }

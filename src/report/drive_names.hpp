@@ -7,7 +7,9 @@
 namespace deltadyn {
 
 /// "drive 2", as people count, with a space that does not break.
-inline std::string drive_name(int drive) { return "drive\u00A0" + std::to_string(drive + 1); }
+inline std::string drive_name(int drive) {
+  return "drive\u00A0" + std::to_string(drive + 1);
+}
 
 /// The text with spaces that do not break.
 inline std::string unbroken(const std::string& text) {
@@ -33,13 +35,25 @@ inline std::string owner_in_words(const std::string& owner) {
   return digit < owner.size() ? name + "\u00A0" + owner.substr(digit) : name;
 }
 
-inline bool turns(const Robot& robot, int drive) { return robot.description().kind_of_drive(drive) == DriveKind::revolute; }
-inline const char* torque_unit_of(const Robot& robot, int drive) { return turns(robot, drive) ? "N m" : "N"; }
-inline const char* position_unit_of(const Robot& robot, int drive) { return turns(robot, drive) ? "rad" : "m"; }
-inline const char* velocity_unit_of(const Robot& robot, int drive) { return turns(robot, drive) ? "rad/s" : "m/s"; }
-inline const char* acceleration_unit_of(const Robot& robot, int drive) { return turns(robot, drive) ? "rad/s²" : "m/s²"; }
+inline bool turns(const Robot& robot, int drive) {
+  return robot.description().kind_of_drive(drive) == DriveKind::revolute;
+}
+inline const char* torque_unit_of(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "N m" : "N";
+}
+inline const char* position_unit_of(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "rad" : "m";
+}
+inline const char* velocity_unit_of(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "rad/s" : "m/s";
+}
+inline const char* acceleration_unit_of(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "rad/s²" : "m/s²";
+}
 /// "torque", or "force" of a drive that slides.
-inline const char* effort_of(const Robot& robot, int drive) { return turns(robot, drive) ? "torque" : "force"; }
+inline const char* effort_of(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "torque" : "force";
+}
 
 /// Unit of a mass matrix over the limbs' drives.
 inline const char* inertia_unit_of(const Robot& robot) {

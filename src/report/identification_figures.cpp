@@ -27,16 +27,19 @@ void add_cutoff_figure(HtmlReport& report, const Identification& identification)
   spec.height = 220;
   spec.series.push_back({"", cutoff, score, SeriesStyle::line, {}, PlotColor::blue});
   spec.series.push_back({"", cutoff, score, SeriesStyle::points, {}, PlotColor::blue});
-  spec.vertical_markers.push_back({identification.processing.cutoff_hz, fmt::format("chosen: {}", format_number(identification.processing.cutoff_hz, "Hz", 3))});
+  spec.vertical_markers.push_back({identification.processing.cutoff_hz,
+                                   fmt::format("chosen: {}", format_number(identification.processing.cutoff_hz, "Hz", 3))});
   report.plot(spec,
-              "Residual over the cut-off, geometric mean of the drives: too low a cut-off bends the accelerations, too high a one lets encoder noise "
+              "Residual over the cut-off, geometric mean of the drives: too low a cut-off bends the accelerations, too high a "
+              "one lets encoder noise "
               "through.");
 }
 
 void add_regularization_figure(HtmlReport& report, const ConsistentFitSummary& fit) {
   constexpr std::size_t kFewestPoints = 3;  // a curve needs more than two points
   if (!fit.lambda_from_data || fit.l_curve.size() < kFewestPoints) {
-    report.note(fmt::format("Weight of the prior λ = {}, {}.", format_number(fit.lambda, 3), fit.lambda_from_data ? "chosen from the data" : "as given"));
+    report.note(fmt::format("Weight of the prior λ = {}, {}.", format_number(fit.lambda, 3),
+                            fit.lambda_from_data ? "chosen from the data" : "as given"));
     return;
   }
   const auto count = static_cast<Index>(fit.l_curve.size());
@@ -61,12 +64,16 @@ void add_regularization_figure(HtmlReport& report, const ConsistentFitSummary& f
     spec.series.push_back({"", lambda, y, SeriesStyle::points, {}, color});
     return spec;
   };
-  std::vector<PlotSpec> panels = {panel("rise of χ²", rise, PlotColor::blue), panel("distance from prior", distance, PlotColor::orange)};
+  std::vector<PlotSpec> panels = {panel("rise of χ²", rise, PlotColor::blue),
+                                  panel("distance from prior", distance, PlotColor::orange)};
   panels[0].vertical_markers.push_back({fit.lambda, fmt::format("chosen: λ = {}", format_number(fit.lambda, 3))});
   panels[1].vertical_markers.push_back({fit.lambda, ""});
-  report.plot(panels, fmt::format("Choice of the regularisation: the largest weight of the prior that the data do not feel. At the chosen one χ² is {} "
-                                  "above its minimum on the physically consistent set.",
-                                  format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
+  report.plot(
+      panels,
+      fmt::format(
+          "Choice of the regularisation: the largest weight of the prior that the data do not feel. At the chosen one χ² is {} "
+          "above its minimum on the physically consistent set.",
+          format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
 }
 
 void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSurvey& survey) {
@@ -76,11 +83,13 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
     report.paragraph(fmt::format("Moving inertia of the axis: {}.", format_number(survey.max_eigenvalue, unit)));
     return;
   }
-  report.paragraph(fmt::format(
-      "{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. Smallest eigenvalue at x {:.3f}, y {:.3f}, "
-      "z {:.3f} m.",
-      survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses, format_number(survey.min_eigenvalue, 3),
-      format_number(survey.max_eigenvalue, unit, 3), format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
+  report.paragraph(
+      fmt::format("{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. Smallest "
+                  "eigenvalue at x {:.3f}, y {:.3f}, "
+                  "z {:.3f} m.",
+                  survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
+                  format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
+                  format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
   constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
   constexpr Index kPointsShown = 700;  // of each eigenvalue; a point takes 80 bytes
   const Index points = std::min(survey.task.rows(), kPointsShown);
@@ -91,7 +100,11 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
   spec.height = 300;
   for (Index i = 0; i < survey.eigenvalues.cols(); ++i) {
     const char* label = i == 0 ? "smallest" : i + 1 == survey.eigenvalues.cols() ? "largest" : "";
-    spec.series.push_back({label, survey.task.col(2).head(points), survey.eigenvalues.col(i).head(points), SeriesStyle::points, {},
+    spec.series.push_back({label,
+                           survey.task.col(2).head(points),
+                           survey.eigenvalues.col(i).head(points),
+                           SeriesStyle::points,
+                           {},
                            kColors[static_cast<std::size_t>(i) % std::size(kColors)]});
   }
   if (!spec.log_y) spec.horizontal_markers.push_back({0.0, ""});

@@ -15,15 +15,19 @@
 namespace deltadyn {
 namespace {
 
-Tone tone_of(Verdict verdict) { return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad; }
+Tone tone_of(Verdict verdict) {
+  return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
+}
 
 std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey) {
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
     const double relative = drive.rms_torque > 0 ? drive.rms / drive.rms_torque : 0.0;
-    figures.push_back({"residual, " + drive_name(static_cast<int>(j)), format_number(drive.rms, torque_unit_of(robot, static_cast<int>(j)), 3),
-                       fmt::format("{} of the {}", format_percent(relative, 2), effort_of(robot, static_cast<int>(j))), tone_of(grade_residual(relative))});
+    figures.push_back({"residual, " + drive_name(static_cast<int>(j)),
+                       format_number(drive.rms, torque_unit_of(robot, static_cast<int>(j)), 3),
+                       fmt::format("{} of the {}", format_percent(relative, 2), effort_of(robot, static_cast<int>(j))),
+                       tone_of(grade_residual(relative))});
   }
   int fitted = 0, from_prior = 0;
   for (std::size_t i = 0; i < identification.fit.names.size(); ++i) {
@@ -35,11 +39,11 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
                      fmt::format("condition {}", format_number(identification.base_estimate.condition_number, 3)),
                      identification.base_estimate.condition_number > kHighCondition ? Tone::caution : Tone::plain});
   figures.push_back({"left to the prior", fmt::format("{} of {}", from_prior, fitted), "fitted parameters", Tone::plain});
-  figures.push_back({robot.description().parts.empty() ? "moving inertia" : "min. eigenvalue of M",
-                     format_number(survey.min_eigenvalue, 3),
-                     robot.description().parts.empty() ? inertia_unit_of(robot)
-                                                       : fmt::format("{}, {} poses", inertia_unit_of(robot), format_count(survey.states)),
-                     survey.positive_definite() ? Tone::good : Tone::bad});
+  figures.push_back(
+      {robot.description().parts.empty() ? "moving inertia" : "min. eigenvalue of M", format_number(survey.min_eigenvalue, 3),
+       robot.description().parts.empty() ? inertia_unit_of(robot)
+                                         : fmt::format("{}, {} poses", inertia_unit_of(robot), format_count(survey.states)),
+       survey.positive_definite() ? Tone::good : Tone::bad});
   figures.push_back({"time to identify", format_duration(identification.total_time_s),
                      fmt::format("{} samples", format_count(identification.samples)), Tone::plain});
   return figures;
@@ -55,14 +59,15 @@ void add_settings(HtmlReport& report, const Robot& robot, const Identification& 
   facts.insert(facts.end(), processing.begin(), processing.end());
   const ConsistentFitSummary& fit = identification.fit;
   facts.emplace_back("Free variables of the fit", fmt::format("{} of {} parameters", fit.variables, robot.parameters()));
-  facts.emplace_back("Weight of the prior λ",
-                     fmt::format("{}, {}", format_number(fit.lambda, 3), fit.lambda_from_data ? "chosen from the data" : "as given"));
-  facts.emplace_back("Solver", fmt::format("{} interior-point and {} Ceres steps, {}", fit.interior_point_iterations, fit.iterations,
-                                           format_duration(fit.solve_time_s)));
+  facts.emplace_back("Weight of the prior λ", fmt::format("{}, {}", format_number(fit.lambda, 3),
+                                                          fit.lambda_from_data ? "chosen from the data" : "as given"));
+  facts.emplace_back("Solver", fmt::format("{} interior-point and {} Ceres steps, {}", fit.interior_point_iterations,
+                                           fit.iterations, format_duration(fit.solve_time_s)));
   if (fit.certificate.available) {
-    facts.emplace_back("Certificate", fmt::format("duality gap {} in χ² ({}), smallest dual eigenvalue {} ({})", format_number(fit.certificate.gap, 2),
-                                                  fit.certificate.passed ? "passed" : "not passed",
-                                                  format_number(fit.certificate.min_dual_eigenvalue, 2), fit.certificate.min_dual_name));
+    facts.emplace_back("Certificate",
+                       fmt::format("duality gap {} in χ² ({}), smallest dual eigenvalue {} ({})",
+                                   format_number(fit.certificate.gap, 2), fit.certificate.passed ? "passed" : "not passed",
+                                   format_number(fit.certificate.min_dual_eigenvalue, 2), fit.certificate.min_dual_name));
   }
   facts.emplace_back("Time", fmt::format("{} in all, {} of it to fold the logs", format_duration(identification.total_time_s),
                                          format_duration(identification.fold_time_s)));
@@ -79,15 +84,16 @@ std::string identification_report(const Robot& robot, const Identification& iden
   const auto drives = static_cast<std::size_t>(robot.drives());
   if (identification.drives.size() != drives || training.drives.size() != drives ||
       identification.fit.p.size() != robot.parameters() || survey.z_min.size() != robot.drives()) {
-    throw Error("identification, prediction and survey are not those of this robot", robot.description().name, "make them with the same robot",
-                ExitCode::usage);
+    throw Error("identification, prediction and survey are not those of this robot", robot.description().name,
+                "make them with the same robot", ExitCode::usage);
   }
   const IdentificationEvidence evidence = gather_evidence(robot, identification, training);
   const Assessment assessment = assess_identification(robot, identification, survey, evidence);
   const RobotDescription& description = robot.description();
-  HtmlReport report("Identification of " + description.name,
-                    fmt::format("{}, {} {}, {} {}", description.type, description.drives(), description.drives() == 1 ? "drive" : "drives",
-                                training.logs.size(), training.logs.size() == 1 ? "log" : "logs"));
+  HtmlReport report(
+      "Identification of " + description.name,
+      fmt::format("{}, {} {}, {} {}", description.type, description.drives(), description.drives() == 1 ? "drive" : "drives",
+                  training.logs.size(), training.logs.size() == 1 ? "log" : "logs"));
   report.verdict(assessment.verdict, assessment.headline, assessment.lines);
   report.key_figures(key_figures(robot, identification, survey));
 

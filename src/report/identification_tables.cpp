@@ -41,7 +41,12 @@ std::string unbroken_items(std::vector<std::string> items) {
 }  // namespace
 
 void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({{"drive", Align::left}, {"rms residual"}, {fmt::format("of the rms {}", effort_of(robot, 0))}, {"free base parameters"}, {"rows"}, {"left out near reversals"},
+  Table table({{"drive", Align::left},
+               {"rms residual"},
+               {fmt::format("of the rms {}", effort_of(robot, 0))},
+               {"free base parameters"},
+               {"rows"},
+               {"left out near reversals"},
                {"residual there / elsewhere"}});
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
@@ -51,13 +56,19 @@ void add_fit_table(HtmlReport& report, const Robot& robot, const Identification&
                format_count(drive.rows), format_count(drive.masked_rows), fmt::format("{:.2f}", drive.reversal_ratio)});
   }
   report.table(table,
-               "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing can undercut.");
+               "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing "
+               "can undercut.");
 }
 
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
   const ConsistentFitSummary& fit = identification.fit;
   const std::vector<Visibility> visibility = parameter_visibility(identification.base);
-  Table table({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"estimate ± 95 %"}, {"data share"}, {"decided by", Align::left},
+  Table table({{"parameter", Align::left},
+               {"unit", Align::left},
+               {"prior"},
+               {"estimate ± 95 %"},
+               {"data share"},
+               {"decided by", Align::left},
                {"shows in the torque", Align::left}});
   Table others({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
   bool any_neither = false;
@@ -73,25 +84,34 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
     any_neither |= neither;
     table.row({fit.names[i], unit, format_number(fit.prior(k)),
                neither ? format_number(fit.p(k), 2) + " (?)" : format_with_uncertainty(fit.p(k), kInterval95 * fit.std(k)),
-               fmt::format("{:.0f} %", 100 * fit.data_share(k)), neither ? "neither" : words_for(source), unbroken(words_for(visibility[i]))},
-              source != Source::prior ? Tone::plain : visibility[i] == Visibility::hidden ? Tone::muted : Tone::caution);
+               fmt::format("{:.0f} %", 100 * fit.data_share(k)), neither ? "neither" : words_for(source),
+               unbroken(words_for(visibility[i]))},
+              source != Source::prior               ? Tone::plain
+              : visibility[i] == Visibility::hidden ? Tone::muted
+                                                    : Tone::caution);
   }
-  report.table(table,
-               fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took away; marked rows (below "
-                           "{:.0f} %) are the prior, hardly touched; grey ones do not act on the drives at all.",
-                           100 * kPriorDecides));
+  report.table(
+      table,
+      fmt::format(
+          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away; marked rows (below "
+          "{:.0f} %) are the prior, hardly touched; grey ones do not act on the drives at all.",
+          100 * kPriorDecides));
   report.note(
-      "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base parameters below say, and "
-      "with them the torque; the single value leans on the prior and carries its uncertainty. It matters if you use the body on its own.");
+      "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
+      "parameters below say, and "
+      "with them the torque; the single value leans on the prior and carries its uncertainty. It matters if you use the body on "
+      "its own.");
   if (any_neither) {
     report.note(
-        "(?): the data hardly show the value and the chosen weight of the prior is too small to hold it; take it as unknown. It acts too little on "
+        "(?): the data hardly show the value and the chosen weight of the prior is too small to hold it; take it as unknown. It "
+        "acts too little on "
         "the torque to matter there.");
   }
   if (!others.empty()) {
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
-          "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do not feel "
+          "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do "
+          "not feel "
           "follow the prior.");
       inside.table(others);
     });
@@ -103,15 +123,19 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
     report.paragraph("Nothing: the data decided every fitted parameter at least in part.");
     return;
   }
-  Table table({{"body or joint", Align::left}, {"from the prior (data share)", Align::left}, {"what would replace it", Align::left}});
+  Table table(
+      {{"body or joint", Align::left}, {"from the prior (data share)", Align::left}, {"what would replace it", Align::left}});
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion) continue;
-      table.row({gap.owner, unbroken_items(gap.parameters), gap.advice}, by_motion ? Tone::caution : gap.negligible ? Tone::muted : Tone::plain);
+      table.row({gap.owner, unbroken_items(gap.parameters), gap.advice}, by_motion        ? Tone::caution
+                                                                         : gap.negligible ? Tone::muted
+                                                                                          : Tone::plain);
     }
   }
   report.table(table,
-               "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on their own: one value "
+               "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on "
+               "their own: one value "
                "measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
 }
 
@@ -121,7 +145,12 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   const Eigen::VectorXd std = estimate.std();
   const Index count = base.count();
   Eigen::VectorXd index(count), deviation(count);
-  Table table({{"", Align::right}, {"base parameter", Align::left}, {"unit", Align::left}, {"least squares ± std"}, {"rel. std"}, {"consistent fit"},
+  Table table({{"", Align::right},
+               {"base parameter", Align::left},
+               {"unit", Align::left},
+               {"least squares ± std"},
+               {"rel. std"},
+               {"consistent fit"},
                {"deviation [std]"}});
   Index poor = 0, far = 0;
   for (Index k = 0; k < count; ++k) {
@@ -132,12 +161,14 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
     const bool hardly = relative > kPoorlySeen;
     poor += hardly ? 1 : 0;
     far += std::abs(deviation(k)) > kRemarkableDeviation ? 1 : 0;
-    table.row({fmt::format("{}", k + 1), base.expressions[i], pretty_unit(base.units[i]), format_with_uncertainty(estimate.value(k), std(k)),
-               relative < 10 ? format_percent(relative, 2) : "> 1000 %", format_number(identification.base_from_fit(k)), fmt::format("{:+.2f}", deviation(k))},
+    table.row({fmt::format("{}", k + 1), base.expressions[i], pretty_unit(base.units[i]),
+               format_with_uncertainty(estimate.value(k), std(k)), relative < 10 ? format_percent(relative, 2) : "> 1000 %",
+               format_number(identification.base_from_fit(k)), fmt::format("{:+.2f}", deviation(k))},
               hardly ? Tone::caution : Tone::plain);
   }
   report.paragraph(fmt::format(
-      "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above {:.0f} %, marked); "
+      "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above "
+      "{:.0f} %, marked); "
       "condition number {}.",
       count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
   PlotSpec spec;
@@ -148,10 +179,11 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   spec.series.push_back({"", index, deviation, SeriesStyle::points, {}, PlotColor::blue});
   spec.horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}};
   spec.x_range = PlotRange{0.0, static_cast<double>(count + 1)};
-  report.plot(spec, fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
-                                far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
-                                         : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.", far,
-                                                       far == 1 ? "differs" : "differ", kRemarkableDeviation)));
+  report.plot(spec,
+              fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
+                          far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
+                                   : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.",
+                                                 far, far == 1 ? "differs" : "differ", kRemarkableDeviation)));
   report.details(fmt::format("The {} base parameters", count), [&](HtmlReport& inside) {
     inside.table(table, "Base parameters. Rows are marked where the data hardly tell the value from zero.");
   });

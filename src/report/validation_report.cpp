@@ -13,28 +13,40 @@
 namespace deltadyn {
 namespace {
 
-Tone tone_of(Verdict verdict) { return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad; }
+Tone tone_of(Verdict verdict) {
+  return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
+}
 
 void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({{"drive", Align::left}, {"rms residual"}, {fmt::format("of the rms {}", effort_of(robot, 0))}, {"largest residual"}, {"rms with reversals"}, {"rows"},
+  Table table({{"drive", Align::left},
+               {"rms residual"},
+               {fmt::format("of the rms {}", effort_of(robot, 0))},
+               {"largest residual"},
+               {"rms with reversals"},
+               {"rows"},
                {"left out near reversals"}});
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];
     const char* unit = torque_unit_of(robot, static_cast<int>(j));
     const Verdict verdict = grade_residual(drive.relative_residual);
-    table.row({drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3), format_percent(drive.relative_residual),
-               format_number(drive.max_residual, unit, 3), format_number(drive.rms_with_reversals, unit, 3), format_count(drive.rows),
-               format_count(drive.reversal_rows)},
+    table.row({drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3),
+               format_percent(drive.relative_residual), format_number(drive.max_residual, unit, 3),
+               format_number(drive.rms_with_reversals, unit, 3), format_count(drive.rows), format_count(drive.reversal_rows)},
               verdict == Verdict::good ? Tone::plain : tone_of(verdict));
   }
   report.table(table, "Residual of each drive over all logs.");
   if (validation.logs.size() < 2) return;
-  Table by_log({{"log", Align::left}, {"drive", Align::left}, {"rms residual"}, {fmt::format("of the rms {}", effort_of(robot, 0))}, {"rms with reversals"}});
+  Table by_log({{"log", Align::left},
+                {"drive", Align::left},
+                {"rms residual"},
+                {fmt::format("of the rms {}", effort_of(robot, 0))},
+                {"rms with reversals"}});
   for (const ValidatedLog& log : validation.logs) {
     for (int j = 0; j < robot.drives(); ++j) {
       const double rms = log.prediction.rms_residual(j, false), torque = log.prediction.rms_torque(j, false);
       by_log.row({j == 0 ? short_name(log.file) : "", drive_name(j), format_number(rms, torque_unit_of(robot, j), 3),
-                  torque > 0 ? format_percent(rms / torque) : "–", format_number(log.prediction.rms_residual(j, true), torque_unit_of(robot, j), 3)});
+                  torque > 0 ? format_percent(rms / torque) : "–",
+                  format_number(log.prediction.rms_residual(j, true), torque_unit_of(robot, j), 3)});
     }
   }
   report.table(by_log, "The same log by log.");
@@ -42,24 +54,27 @@ void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& v
 
 }  // namespace
 
-std::string validation_report(const Robot& robot, const Validation& validation, const Eigen::VectorXd& p, const ReportContext& context) {
+std::string validation_report(const Robot& robot, const Validation& validation, const Eigen::VectorXd& p,
+                              const ReportContext& context) {
   if (validation.drives.size() != static_cast<std::size_t>(robot.drives()) || p.size() != robot.parameters()) {
-    throw Error("validation and parameters are not those of this robot", robot.description().name, "validate with the same robot file",
-                ExitCode::usage);
+    throw Error("validation and parameters are not those of this robot", robot.description().name,
+                "validate with the same robot file", ExitCode::usage);
   }
   const std::vector<ResidualStructure> residual = residual_structure(validation);
   const Assessment assessment = assess_validation(robot, validation, residual);
   const RobotDescription& description = robot.description();
-  HtmlReport report("Validation of " + description.name, fmt::format("{}, {} drives, {} {}", description.type, description.drives(),
-                                                                     validation.logs.size(), validation.logs.size() == 1 ? "log" : "logs"));
+  HtmlReport report("Validation of " + description.name,
+                    fmt::format("{}, {} drives, {} {}", description.type, description.drives(), validation.logs.size(),
+                                validation.logs.size() == 1 ? "log" : "logs"));
   report.verdict(assessment.verdict, assessment.headline, assessment.lines);
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];
-    figures.push_back({"residual, " + drive_name(static_cast<int>(j)),
-                       format_number(drive.rms_residual, torque_unit_of(robot, static_cast<int>(j)), 3),
-                       fmt::format("{} of the {}", format_percent(drive.relative_residual, 2), effort_of(robot, static_cast<int>(j))),
-                       tone_of(grade_residual(drive.relative_residual))});
+    figures.push_back(
+        {"residual, " + drive_name(static_cast<int>(j)),
+         format_number(drive.rms_residual, torque_unit_of(robot, static_cast<int>(j)), 3),
+         fmt::format("{} of the {}", format_percent(drive.relative_residual, 2), effort_of(robot, static_cast<int>(j))),
+         tone_of(grade_residual(drive.relative_residual))});
   }
   report.key_figures(figures);
 
@@ -75,7 +90,8 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   add_residual_spectra(report, robot, validation);
   report.heading("Data and settings");
   add_motion_table(report, robot, validation);
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}, {"Parameters", context.parameter_file}};
+  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file},
+                                                            {"Parameters", context.parameter_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
   const auto processing = processing_facts(validation);
   facts.insert(facts.end(), processing.begin(), processing.end());

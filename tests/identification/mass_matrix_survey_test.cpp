@@ -15,7 +15,9 @@ std::unique_ptr<Robot> robot_of(const std::string& name) {
   return make_robot(read_robot_file(std::string(DELTADYN_SOURCE_DIR) + "/data/robots/" + name + ".urdf"));
 }
 
-Eigen::VectorXd nominal(const Robot& robot) { return nominal_parameters(robot, PartShapes(robot.description())).value; }
+Eigen::VectorXd nominal(const Robot& robot) {
+  return nominal_parameters(robot, PartShapes(robot.description())).value;
+}
 
 Eigen::Index index_of(const Robot& robot, const std::string& name) {
   const auto& names = robot.parameter_names();
@@ -77,7 +79,8 @@ TEST(MassMatrixSurvey, FindsPosesWithoutInertia) {
 TEST(MassMatrixSurvey, SameSeedSameResult) {
   const auto robot = robot_of("delta3");
   const Eigen::VectorXd p = nominal(*robot);
-  const MassMatrixSurvey a = survey_mass_matrix(*robot, p, 40, 7), b = survey_mass_matrix(*robot, p, 40, 7), c = survey_mass_matrix(*robot, p, 40, 8);
+  const MassMatrixSurvey a = survey_mass_matrix(*robot, p, 40, 7), b = survey_mass_matrix(*robot, p, 40, 7),
+                         c = survey_mass_matrix(*robot, p, 40, 8);
   EXPECT_EQ(a.eigenvalues, b.eigenvalues);
   EXPECT_NE(a.eigenvalues, c.eigenvalues);
 }

@@ -65,7 +65,8 @@ TEST(TorqueUncertainty, RefusesWhatDoesNotFit) {
   Axis axis;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Zero(1, 1), covariance = Eigen::MatrixXd::Identity(3, 3);
   EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, Eigen::MatrixXd::Identity(2, 2), axis.p, one, one, one), Error);
-  EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, one, one, Eigen::MatrixXd::Zero(2, 1)), Error);
+  EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, one, one, Eigen::MatrixXd::Zero(2, 1)),
+               Error);
   const Eigen::MatrixXd none(0, 1);
   EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, none, none, none), Error);
 }

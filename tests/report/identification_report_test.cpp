@@ -29,7 +29,8 @@ std::string page_of(const SyntheticRun& run) {
 }
 
 Assessment assess(const SyntheticRun& run) {
-  return assess_identification(*run.robot, run.identification, run.survey, gather_evidence(*run.robot, run.identification, run.training));
+  return assess_identification(*run.robot, run.identification, run.survey,
+                               gather_evidence(*run.robot, run.identification, run.training));
 }
 
 std::string all_text(const Assessment& assessment) {
@@ -178,17 +179,20 @@ TEST_P(IdentificationReportOf, GivesAWholePage) {
   EXPECT_THAT(texts(page, "h1"), ::testing::ElementsAre("Identification of " + run.robot->description().name));
   EXPECT_THAT(texts(page, "h2"), ::testing::IsSupersetOf({"Checks", "Parameters", "Base parameters", "What to measure next"}));
   const std::vector<std::string> cells = texts(page, "td");
-  for (const std::string& name : run.robot->parameter_names()) EXPECT_THAT(cells, Contains(name)) << "every parameter is in some table";
+  for (const std::string& name : run.robot->parameter_names())
+    EXPECT_THAT(cells, Contains(name)) << "every parameter is in some table";
   for (const std::string& expression : run.identification.base.expressions) EXPECT_THAT(cells, Contains(expression));
   const bool slides = run.robot->description().drive_kind == DriveKind::prismatic;
   EXPECT_THAT(page, HasSubstr(slides ? "force [N]" : "torque [N m]"));
   EXPECT_THAT(page, HasSubstr(slides ? "residual [N]" : "residual [N m]"));
   EXPECT_THAT(page, HasSubstr("delta-identify robot.urdf made_up.csv"));
   const bool axis = run.robot->description().parts.empty();
-  EXPECT_THAT(page, axis ? Not(HasSubstr("height of the plate")) : ::testing::Matcher<const std::string&>(HasSubstr("height of the plate")));
+  EXPECT_THAT(page, axis ? Not(HasSubstr("height of the plate"))
+                         : ::testing::Matcher<const std::string&>(HasSubstr("height of the plate")));
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryType, IdentificationReportOf, ::testing::Values("delta3", "linear_delta3", "mujoco_delta4", "emps"));
+INSTANTIATE_TEST_SUITE_P(EveryType, IdentificationReportOf,
+                         ::testing::Values("delta3", "linear_delta3", "mujoco_delta4", "emps"));
 
 TEST(IdentificationReport, MarksThePriorAndFoldsAwayWhatWasNotFitted) {
   SyntheticRun run = copy_of(good_run());

@@ -30,8 +30,8 @@ inline std::unique_ptr<Robot> shipped_robot(const std::string& name) {
 
 /// A motion with five sines a coordinate inside the reach, sampled at 200 Hz, with the torque of p plus noise.
 /// \param noise  standard deviation as a share of each drive's rms torque
-inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, double noise, const HiddenTorque& hidden = {}, std::uint64_t seed = 1,
-                         double seconds = 6) {
+inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, double noise, const HiddenTorque& hidden = {},
+                         std::uint64_t seed = 1, double seconds = 6) {
   const auto samples = static_cast<Eigen::Index>(200 * seconds);
   const int n = robot.drives();
   const bool axis = robot.description().parts.empty();

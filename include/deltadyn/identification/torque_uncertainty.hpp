@@ -26,8 +26,9 @@ struct TorqueUncertainty {
 /// \param covariance  of the base parameters
 /// \param p           parameters in the robot's layout
 /// Throws deltadyn::Error for sizes that do not fit, and if no state is left.
-[[nodiscard]] TorqueUncertainty torque_uncertainty(const Robot& robot, const BaseParameters& base, const Eigen::MatrixXd& covariance,
-                                                   const Eigen::VectorXd& p, const Eigen::MatrixXd& q, const Eigen::MatrixXd& qd,
+[[nodiscard]] TorqueUncertainty torque_uncertainty(const Robot& robot, const BaseParameters& base,
+                                                   const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p,
+                                                   const Eigen::MatrixXd& q, const Eigen::MatrixXd& qd,
                                                    const Eigen::MatrixXd& qdd);
 
 /// On the rows of logs, at most `states` of them, evenly spread.
@@ -42,6 +43,7 @@ struct TorqueUncertainty {
 
 /// How much each parameter does: the rms torque that its value makes on random fast motions over the workspace, as a share of the
 /// drive's rms torque, largest over the drives. One value a parameter.
-[[nodiscard]] Eigen::VectorXd parameter_effect(const Robot& robot, const Eigen::VectorXd& p, int states = 1000, std::uint64_t seed = 1);
+[[nodiscard]] Eigen::VectorXd parameter_effect(const Robot& robot, const Eigen::VectorXd& p, int states = 1000,
+                                               std::uint64_t seed = 1);
 
 }  // namespace deltadyn

@@ -18,10 +18,10 @@ namespace deltadyn {
 
 /// One question put to the result.
 struct Check {
-  std::string subject;   ///< e.g. "Size of the residual"
-  std::string figure;    ///< what was found, e.g. "1.2 % of the torque (drive 4)"
+  std::string subject;  ///< e.g. "Size of the residual"
+  std::string figure;   ///< what was found, e.g. "1.2 % of the torque (drive 4)"
   Verdict verdict = Verdict::good;
-  std::string meaning;   ///< what it means for the user, and what to do about it if it is not good; one or two sentences
+  std::string meaning;  ///< what it means for the user, and what to do about it if it is not good; one or two sentences
 };
 
 struct Assessment {
@@ -54,11 +54,12 @@ struct PriorGap {
   std::string advice;                   ///< "weigh the tool"
 };
 
-/// All of them, in the order of the parameters; parameter_effect() as below. Parameters that do not show in the torques are left out.
+/// All of them, in the order of the parameters; those that do not show in the torques are left out.
+/// \param parameter_effect  as of parameter_effect(), one value a parameter
 [[nodiscard]] std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base,
                                                const Eigen::VectorXd& parameter_effect);
 
-/// False if the estimate of a parameter lies so far from its prior that the prior cannot have decided it, whatever the data share.
+/// False if the estimate of a parameter lies so far from its prior that the prior cannot have decided it.
 [[nodiscard]] bool held_by_prior(const ConsistentFitSummary& fit, Eigen::Index parameter);
 
 /// What the judgement on an identification rests on besides the fit.
@@ -71,8 +72,8 @@ struct IdentificationEvidence {
 [[nodiscard]] IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification,
                                                      const Validation& training);
 
-[[nodiscard]] Assessment assess_identification(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey,
-                                               const IdentificationEvidence& evidence);
+[[nodiscard]] Assessment assess_identification(const Robot& robot, const Identification& identification,
+                                               const MassMatrixSurvey& survey, const IdentificationEvidence& evidence);
 
 [[nodiscard]] Assessment assess_validation(const Robot& robot, const Validation& validation,
                                            const std::vector<ResidualStructure>& residual);

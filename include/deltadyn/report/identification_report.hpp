@@ -16,7 +16,8 @@ namespace deltadyn {
 /// \param survey    of the final parameters
 /// \return the page as HTML
 /// Throws deltadyn::Error if the parts do not belong to the robot, or gnuplot cannot draw.
-[[nodiscard]] std::string identification_report(const Robot& robot, const Identification& identification, const Validation& training,
-                                                const MassMatrixSurvey& survey, const ReportContext& context);
+[[nodiscard]] std::string identification_report(const Robot& robot, const Identification& identification,
+                                                const Validation& training, const MassMatrixSurvey& survey,
+                                                const ReportContext& context);
 
 }  // namespace deltadyn
