@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/report/identification_report.hpp"
+#include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "processing_flags.hpp"
@@ -49,7 +49,7 @@ class Identify {
     app.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
     app.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
     app.add_option("--rotor-inertia", rotor_inertia_, "drives with a rotor inertia of their own, e.g. 4 or 1,2,3")->delimiter(',');
-    app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
+    offset_flag_ = app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
     app.add_option("--reversals", reversals_, "rows near velocity reversals: auto leaves them out if they fit three times worse")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
         ->capture_default_str();
@@ -109,7 +109,8 @@ class Identify {
       }
     }
     options.rotor_inertia = rotor_inertia_;
-    options.offset = offset_.value_or(robot.type == Axis::kName);  // a drive on its test bench has its amplifier's offset
+    // A drive on its test bench has its amplifier's offset.
+    options.offset = offset_flag_->count() > 0 ? offset_ : robot.type == Axis::kName;
     return options;
   }
 
@@ -232,7 +233,8 @@ class Identify {
   std::vector<std::string> log_files_;
   std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto";
   bool individual_limbs_ = false, without_tool_ = false, robust_ = false;
-  std::optional<bool> offset_;
+  bool offset_ = false;
+  CLI::Option* offset_flag_ = nullptr;
   std::vector<int> rotor_inertia_;
   tools::ProcessingFlags processing_;
 };
