@@ -60,7 +60,9 @@ class Identify {
 
  private:
   ExitCode execute(ToolRun& run) {
-    for (const std::string& file : {output_, base_file_, report_file_}) refuse_outputs(file);
+    std::vector<std::string> inputs = log_files_;
+    inputs.insert(inputs.end(), {robot_file_, prior_file_});
+    run.check_files({output_, base_file_, report_file_}, inputs);
     if (!report_file_.empty() && !gnuplot_available()) {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     }
@@ -73,7 +75,7 @@ class Identify {
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
-    const Identification result = identify(*robot, logs, prior, prior_std, with_progress);
+    const Identification result = identify_from(*robot, logs, prior, prior_std, with_progress);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
 
     write_parameters(output_, parameter_table(*robot, result));
@@ -90,24 +92,22 @@ class Identify {
     return tell(*robot, result, survey, run);
   }
 
-  void refuse_outputs(const std::string& file) const {
-    if (file.empty()) return;
-    std::vector<std::string> inputs = log_files_;
-    inputs.push_back(robot_file_);
-    if (!prior_file_.empty()) inputs.push_back(prior_file_);
-    refuse_overwrite(file, inputs);
+  /// The fit knows that a prior is impossible, but not the file that it came from.
+  Identification identify_from(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
+                               const Eigen::VectorXd& prior_std, const IdentificationOptions& options) const {
+    const std::string mark = "prior, ";
+    try {
+      return identify(robot, logs, prior, prior_std, options);
+    } catch (const Error& e) {
+      if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
+      throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
+    }
   }
 
   ParameterOptions parameter_options(const RobotDescription& robot) const {
     ParameterOptions options;
     options.individual_limbs = individual_limbs_;
     options.tool = !without_tool_;
-    for (const int drive : rotor_inertia_) {
-      if (drive < 1 || drive > robot.drives()) {
-        throw Error(fmt::format("--rotor-inertia names drive {}", drive), "", fmt::format("the robot has drives 1 to {}", robot.drives()),
-                    ExitCode::usage);
-      }
-    }
     options.rotor_inertia = rotor_inertia_;
     // A drive on its test bench has its amplifier's offset.
     options.offset = offset_flag_->count() > 0 ? offset_ : robot.type == Axis::kName;

@@ -234,14 +234,18 @@ InertialVector<double> complete_body(const Block& block, const ConsistentFitProb
   return fitted;
 }
 
-/// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width.
+/// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width. A prior that the data moved by
+/// more than its width claimed too much; it then counts with that distance as its width.
 void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOptions& options, const Layout& layout,
                      const Eigen::MatrixXd& A, ConsistentFitSummary& summary) {
   const int n = layout.fitted;
   summary.std = problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
   summary.data_share = Eigen::VectorXd::Zero(layout.parameters);
   Eigen::VectorXd prior_std(n);
-  for (int i = 0; i < n; ++i) prior_std(i) = summary.std(layout.y_to_p[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n; ++i) {
+    const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
+    prior_std(i) = std::max(summary.std(parameter), std::abs(summary.p(parameter) - problem.prior(parameter)));
+  }
   // in units of the prior's width: covariance = (A^T A + I)^{-1}, share = 1 - its diagonal
   Eigen::MatrixXd stacked(A.rows() + n, n);
   stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);

@@ -7,6 +7,12 @@ namespace deltadyn {
 
 std::unique_ptr<Robot> make_robot(const RobotDescription& description, const ParameterOptions& options) {
   description.validate(description.name);
+  for (const int drive : options.rotor_inertia) {
+    if (drive < 1 || drive > description.drives()) {
+      throw Error("rotor inertia of drive " + std::to_string(drive) + " asked for", description.name,
+                  "the robot has drives 1 to " + std::to_string(description.drives()), ExitCode::usage);
+    }
+  }
   const bool prismatic = description.drive_kind == DriveKind::prismatic;
   if (description.type == Delta3::kName) return detail::make_robot_of<Delta3>(description, options);
   if (description.type == LinearDelta3::kName) return detail::make_robot_of<LinearDelta3>(description, options);

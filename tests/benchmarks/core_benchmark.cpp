@@ -1,0 +1,111 @@
+/// \file
+/// Time of the core's calls for one state of a delta4, in float and double: mean, and the worst of the repetitions beside it.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/mass_matrix.hpp"
+
+namespace {
+
+using namespace deltadyn;
+using Layout = ParameterLayout<Delta4, Limbs::shared>;
+
+template <class T>
+Geometry<T, Delta4> geometry() {
+  Geometry<T, Delta4> g;
+  for (int i = 0; i < 3; ++i) {
+    LimbGeometry<T>& limb = g.limbs[i];
+    limb.azimuth = static_cast<T>(2.0943951023931953 * i);
+    const Vector3<T> radial(std::cos(limb.azimuth), std::sin(limb.azimuth), T(0));
+    limb.p_WD = T(0.2) * radial;
+    limb.p_DE_0 = Vector3<T>(T(0.525), T(0), T(0));
+    limb.strut = T(1.106);
+    limb.p_BA = T(0.05) * radial;
+  }
+  return g;
+}
+
+/// A motion whose inputs the compiler does not know.
+template <class T>
+struct State {
+  Vector<T, 4> q{T(0.1), T(-0.2), T(0.3), T(1)}, qd{T(1), T(-2), T(3), T(10)}, qdd{T(10), T(20), T(-30), T(100)};
+  Vector<T, Layout::kColumns> p = Vector<T, Layout::kColumns>::Constant(T(0.1));
+  State() { benchmark::DoNotOptimize(q.data()); }
+};
+
+template <class T>
+void motion(benchmark::State& state) {
+  const auto g = geometry<T>();
+  State<T> s;
+  Motion<T, Delta4> m;
+  for (auto _ : state) {
+    benchmark::ClobberMemory();
+    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
+    benchmark::DoNotOptimize(status);
+    benchmark::DoNotOptimize(&m);
+  }
+}
+
+template <class T>
+void torque(benchmark::State& state) {
+  const auto g = geometry<T>();
+  State<T> s;
+  Motion<T, Delta4> m;
+  for (auto _ : state) {
+    benchmark::ClobberMemory();
+    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
+    benchmark::DoNotOptimize(status);
+    Vector<T, 4> tau = inverse_dynamics<Layout>(g, m, s.p);
+    benchmark::DoNotOptimize(tau.data());
+  }
+}
+
+template <class T>
+void full_regressor(benchmark::State& state) {
+  const auto g = geometry<T>();
+  State<T> s;
+  Motion<T, Delta4> m;
+  Matrix<T, 4, Layout::kColumns> Y;
+  for (auto _ : state) {
+    benchmark::ClobberMemory();
+    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
+    benchmark::DoNotOptimize(status);
+    regressor<Layout>(g, m, Y);
+    benchmark::DoNotOptimize(Y.data());
+  }
+}
+
+template <class T>
+void inertia(benchmark::State& state) {
+  const auto g = geometry<T>();
+  State<T> s;
+  Posture<T, Delta4> posture;
+  for (auto _ : state) {
+    benchmark::ClobberMemory();
+    const Status status = posture_from_drives(g, s.q, posture);
+    benchmark::DoNotOptimize(status);
+    Matrix<T, 4, 4> M = mass_matrix<Layout>(g, posture, s.p);
+    benchmark::DoNotOptimize(M.data());
+  }
+}
+
+double worst(const std::vector<double>& times) { return *std::max_element(times.begin(), times.end()); }
+
+#define DELTADYN_BENCHMARK(name) \
+  BENCHMARK(name)->Repetitions(20)->ReportAggregatesOnly()->ComputeStatistics("worst", worst)->Unit(benchmark::kMicrosecond)
+
+DELTADYN_BENCHMARK(motion<double>);
+DELTADYN_BENCHMARK(motion<float>);
+DELTADYN_BENCHMARK(torque<double>);
+DELTADYN_BENCHMARK(torque<float>);
+DELTADYN_BENCHMARK(full_regressor<double>);
+DELTADYN_BENCHMARK(full_regressor<float>);
+DELTADYN_BENCHMARK(inertia<double>);
+DELTADYN_BENCHMARK(inertia<float>);
+
+}  // namespace
