@@ -63,7 +63,7 @@ TEST(Identify, HuberWeightsResistOutliers) {
   const auto robot = make_robot(delta_description("delta3"));
   const Eigen::VectorXd truth = delta_truth(*robot);
   std::vector<Log> logs;
-  for (Log& log : recorded(*robot, 25.0)) logs.push_back(log);
+  for (Log& log : recorded(*robot, 300.0)) logs.push_back(log);
   IdentificationOptions options;
   options.choose_cutoff = false;
   const Identification plain = identify(*robot, logs, 0.8 * truth, {}, options);
