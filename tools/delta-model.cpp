@@ -120,6 +120,7 @@ class Create {
     for (const Flag& f : flags_)
       if (f.option->count() > 0 && (" " + f.types + " ").find(" " + type_ + " ") == std::string::npos)
         refuse_usage(fmt::format("{} does not belong to a {}", f.name, type_), "leave it out; it is for " + f.types);
+    run.check_files({output_}, {});
     RobotDescription robot;
     robot.type = type_;
     robot.name = name_.empty() ? type_ : name_;
@@ -277,7 +278,7 @@ class Info {
 
  private:
   void execute(ToolRun& run) {
-    refuse_overwrite(plot_, {robot_file_});
+    run.check_files({plot_}, {robot_file_});
     const RobotDescription description = read_robot_file(robot_file_);
     ParameterOptions options;
     options.tool = !without_tool_;
@@ -456,7 +457,7 @@ class Prior {
 
  private:
   void execute(ToolRun& run) {
-    refuse_overwrite(output_, {robot_file_});
+    run.check_files({output_}, {robot_file_});
     const RobotDescription description = read_robot_file(robot_file_);
     ParameterOptions options;
     options.tool = !without_tool_;

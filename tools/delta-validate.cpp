@@ -11,6 +11,7 @@
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/plot.hpp"
 #include "deltadyn/report/validation_report.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log_columns.hpp"
@@ -58,9 +59,7 @@ class Validate {
   void execute(ToolRun& run) {
     std::vector<std::string> inputs = log_files_;
     inputs.insert(inputs.end(), {robot_file_, parameter_file_});
-    for (const std::string& file : {output_, report_file_}) {
-      if (!file.empty()) refuse_overwrite(file, inputs);
-    }
+    run.check_files({output_, report_file_}, inputs);
     if (!report_file_.empty() && !gnuplot_available()) {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     }
@@ -83,7 +82,7 @@ class Validate {
       context.log_files = log_files_;
       context.parameter_file = parameter_file_;
       context.command_line = command_line_;
-      write_file(report_file_, validation_report(*robot, result, context));
+      write_file(report_file_, validation_report(*robot, result, match.value, context));
     }
     tell(description, result, run);
   }

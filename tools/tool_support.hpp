@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <sstream>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/summary.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/threads.hpp"
@@ -53,7 +55,32 @@ class ToolRun {
     });
   }
 
+  /// Refuses, before any work is done, outputs (the summary is one more) that would overwrite an input or one another, or whose
+  /// folder cannot be written to. Empty names do not count. Throws Error(usage) or Error(bad_input).
+  void check_files(std::vector<std::string> outputs, const std::vector<std::string>& inputs) const {
+    outputs.push_back(summary_file_);
+    std::vector<std::string> taken;
+    for (const std::string& output : outputs) {
+      if (output.empty()) continue;
+      refuse_overwrite(output, inputs);
+      try {
+        refuse_overwrite(output, taken);
+      } catch (const Error& e) {
+        if (is_device(output)) continue;  // two results may go to /dev/null
+        throw Error("two outputs have the same name", output, e.mend(), ExitCode::usage);
+      }
+      taken.push_back(output);
+      if (!is_device(output)) const OutputFile can_be_written(output);  // not committed, so nothing changes
+    }
+  }
+
  private:
+  static bool is_device(const std::string& path) {
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status);
+  }
+
   friend int run_tool(int, char**, const ToolText&, const std::function<void(CLI::App&, ToolRun&)>&);
   std::function<ExitCode()> work_;
   std::string summary_file_;
@@ -83,6 +110,7 @@ inline int run_tool(int argc, char** argv, const ToolText& text, const std::func
     app.add_option("--threads", run.threads_, "number of threads, 0: as many as the machine has")
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
+    app.allow_config_extras(CLI::config_extras_mode::error);  // a misspelt key must not go unseen
     set_example(app, text.example);
     app.fallthrough();  // subcommands take these flags, too
     setup(app, run);
@@ -96,8 +124,8 @@ inline int run_tool(int argc, char** argv, const ToolText& text, const std::func
   } catch (const CLI::FileError& e) {
     return fail("error", e.what(), ExitCode::bad_input);
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);  // prints the help, the version or what is wrong
-    return static_cast<int>(code == 0 ? ExitCode::done : ExitCode::usage);
+    if (e.get_exit_code() == 0) return app.exit(e);  // prints the help or the version
+    return fail("error", std::string(e.what()) + "\n  mend: " + text.name + " --help shows the flags", ExitCode::usage);
   } catch (const Error& e) {
     return fail("error", e.what(), e.code());
   } catch (const std::bad_alloc&) {
