@@ -227,21 +227,9 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
                 check_solver(identification.fit),
                 check_excitation(identification),
                 check_reversals(drives)};
-  out.verdict = worst_of(out.checks);
-  const auto first =
-      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
-  switch (out.verdict) {
-    case Verdict::good:
-      out.headline = fmt::format("The model can be trusted on motions like the recorded ones: the residual is {}.", size.figure);
-      break;
-    case Verdict::caution: out.headline = headline_of("Usable with care", *first); break;
-    case Verdict::bad: out.headline = headline_of("Do not use this model yet", *first); break;
-  }
-  for (const Verdict level : {Verdict::bad, Verdict::caution}) {
-    for (const Check& check : out.checks) {
-      if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
-    }
-  }
+  conclude({fmt::format("The model can be trusted on motions like the recorded ones: the residual is {}.", size.figure),
+            "Usable with care", "Do not use this model yet"},
+           out);
   if (out.verdict != Verdict::bad) {
     const std::string trusted = trusted_values(identification.fit);
     if (!trusted.empty()) out.lines.push_back("Measured by these logs: " + trusted + ".");

@@ -42,21 +42,9 @@ Assessment assess_validation(const Robot& robot, const Validation& validation, c
   out.checks.push_back(size);
   out.checks.push_back(shape);
   out.checks.push_back(check_reversals(drives));
-  out.verdict = worst_of(out.checks);
-  const auto first =
-      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
-  switch (out.verdict) {
-    case Verdict::good:
-      out.headline = fmt::format("The model predicts these logs: the residual is at most {}.", size.figure);
-      break;
-    case Verdict::caution: out.headline = headline_of("The model predicts these logs with reservations", *first); break;
-    case Verdict::bad: out.headline = headline_of("The model does not predict these logs", *first); break;
-  }
-  for (const Verdict level : {Verdict::bad, Verdict::caution}) {
-    for (const Check& check : out.checks) {
-      if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
-    }
-  }
+  conclude({fmt::format("The model predicts these logs: the residual is at most {}.", size.figure),
+            "The model predicts these logs with reservations", "The model does not predict these logs"},
+           out);
   if (shape.verdict == Verdict::good) {
     out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
                                                         : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));

@@ -244,4 +244,20 @@ Verdict worst_of(const std::vector<Check>& checks) {
   return worst;
 }
 
+void conclude(const Headlines& headlines, Assessment& out) {
+  out.verdict = worst_of(out.checks);
+  const auto first =
+      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
+  switch (out.verdict) {
+    case Verdict::good: out.headline = headlines.good; break;
+    case Verdict::caution: out.headline = headline_of(headlines.caution, *first); break;
+    case Verdict::bad: out.headline = headline_of(headlines.bad, *first); break;
+  }
+  for (const Verdict level : {Verdict::bad, Verdict::caution}) {
+    for (const Check& check : out.checks) {
+      if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
+    }
+  }
+}
+
 }  // namespace deltadyn

@@ -27,6 +27,14 @@ struct DriveFigures {
 /// "Usable with care", check -> "Usable with care: size of the residual (7 % of ...)."
 [[nodiscard]] std::string headline_of(const std::string& opening, const Check& check);
 [[nodiscard]] Verdict worst_of(const std::vector<Check>& checks);
+/// How a headline begins.
+struct Headlines {
+  std::string good;     ///< the whole of it
+  std::string caution;  ///< the check that asks for care follows
+  std::string bad;      ///< the check that failed follows
+};
+/// Verdict, headline and a line for every check that is not good, from the checks in `out`.
+void conclude(const Headlines& headlines, Assessment& out);
 
 /// Coordinate that the residual follows most, empty if none.
 [[nodiscard]] std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found);
