@@ -38,8 +38,9 @@ struct State {
   State() { benchmark::DoNotOptimize(q.data()); }
 };
 
-template <class T>
-void motion(benchmark::State& state) {
+/// Calls `work(geometry, state, motion)` once an iteration, after the posture and rates of the state.
+template <class T, class Work>
+void after_motion(benchmark::State& state, Work work) {
   const auto g = geometry<T>();
   State<T> s;
   Motion<T, Delta4> m;
@@ -47,51 +48,33 @@ void motion(benchmark::State& state) {
     benchmark::ClobberMemory();
     const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
     benchmark::DoNotOptimize(status);
-    benchmark::DoNotOptimize(&m);
+    auto result = work(g, s, m);
+    benchmark::DoNotOptimize(result);
   }
+}
+
+template <class T>
+void motion(benchmark::State& state) {
+  after_motion<T>(state, [](const auto&, const auto&, const auto& m) { return m.zdd; });
 }
 
 template <class T>
 void torque(benchmark::State& state) {
-  const auto g = geometry<T>();
-  State<T> s;
-  Motion<T, Delta4> m;
-  for (auto _ : state) {
-    benchmark::ClobberMemory();
-    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
-    benchmark::DoNotOptimize(status);
-    Vector<T, 4> tau = inverse_dynamics<Layout>(g, m, s.p);
-    benchmark::DoNotOptimize(tau.data());
-  }
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return inverse_dynamics<Layout>(g, m, s.p); });
 }
 
 template <class T>
 void full_regressor(benchmark::State& state) {
-  const auto g = geometry<T>();
-  State<T> s;
-  Motion<T, Delta4> m;
-  Matrix<T, 4, Layout::kColumns> Y;
-  for (auto _ : state) {
-    benchmark::ClobberMemory();
-    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
-    benchmark::DoNotOptimize(status);
+  after_motion<T>(state, [](const auto& g, const auto&, const auto& m) {
+    Matrix<T, 4, Layout::kColumns> Y;
     regressor<Layout>(g, m, Y);
-    benchmark::DoNotOptimize(Y.data());
-  }
+    return Y;
+  });
 }
 
 template <class T>
 void inertia(benchmark::State& state) {
-  const auto g = geometry<T>();
-  State<T> s;
-  Posture<T, Delta4> posture;
-  for (auto _ : state) {
-    benchmark::ClobberMemory();
-    const Status status = posture_from_drives(g, s.q, posture);
-    benchmark::DoNotOptimize(status);
-    Matrix<T, 4, 4> M = mass_matrix<Layout>(g, posture, s.p);
-    benchmark::DoNotOptimize(M.data());
-  }
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return mass_matrix<Layout>(g, m.posture, s.p); });
 }
 
 double worst(const std::vector<double>& times) { return *std::max_element(times.begin(), times.end()); }
