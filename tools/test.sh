@@ -9,6 +9,11 @@ jobs="${DELTADYN_JOBS:-$(nproc)}"
 
 "$root/tools/install-packages.sh"
 
+# Tests against measured and published data, which cannot travel with the product, run where such a folder lies beside the tree.
+if [ -z "${DELTADYN_SHARED_DATA:-}" ] && [ -d "$root/../shared/data" ]; then
+  export DELTADYN_SHARED_DATA="$root/../shared/data"
+fi
+
 cd "$root"
 cmake --preset release -DDELTADYN_WARNINGS_AS_ERRORS=ON
 cmake --build --preset release --parallel "$jobs"
