@@ -11,18 +11,19 @@ namespace deltadyn::testing_support {
 
 template <class Robot>
 oracles::Mechanism oracle_of(const Geometry<double, Robot>& geometry) {
+  using oracles::Real;  // wider than double: every step up is written out
   const auto real = [](const Vector3<double>& v) { return oracles::Vec3<oracles::Real>(v.cast<oracles::Real>()); };
   oracles::Mechanism m;
   m.prismatic = Robot::kDrive == DriveKind::prismatic;
   m.turning_plate = Robot::kPlateTurns;
   m.has_bar = Robot::kTelescope;
   for (const LimbGeometry<double>& limb : geometry.limbs) {
-    m.limbs.push_back({limb.azimuth, real(limb.p_WD), real(limb.axis_L), real(limb.p_DE_0), limb.strut, limb.strut_spacing,
-                       real(limb.p_BA), limb.part});
+    m.limbs.push_back({Real(limb.azimuth), real(limb.p_WD), real(limb.axis_L), real(limb.p_DE_0), Real(limb.strut),
+                       Real(limb.strut_spacing), real(limb.p_BA), limb.part});
   }
   for (int k = 0; k < Robot::kPlateParts; ++k) {
     const PlatePart<double>& part = geometry.parts[k];
-    m.parts.push_back({real(part.c), real(part.a), real(part.b), part.kappa});
+    m.parts.push_back({real(part.c), real(part.a), real(part.b), Real(part.kappa)});
   }
   m.bar_top = real(geometry.telescope.p_WU);
   m.bar_bottom = real(geometry.telescope.p_BV);
@@ -37,7 +38,7 @@ oracles::Load load_of(const Vector<double, Layout::kColumns>& p) {
   const auto add = [&](Body kind, int index) {
     oracles::Ten ten{};
     for (int k = 0; k < kInertialParameters; ++k) {
-      ten[static_cast<std::size_t>(k)] = p(kInertialParameters * Layout::body(kind, index) + k);
+      ten[static_cast<std::size_t>(k)] = oracles::Real(p(kInertialParameters * Layout::body(kind, index) + k));
     }
     load.bodies.push_back(ten);
   };
@@ -52,12 +53,12 @@ oracles::Load load_of(const Vector<double, Layout::kColumns>& p) {
     add(Body::telescope_lower, 0);
   }
   for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
-    load.viscous.push_back(p(Layout::viscous(joint)));
-    load.coulomb.push_back(p(Layout::coulomb(joint)));
+    load.viscous.push_back(oracles::Real(p(Layout::viscous(joint))));
+    load.coulomb.push_back(oracles::Real(p(Layout::coulomb(joint))));
   }
   for (int drive = 0; drive < Robot::kDrives; ++drive) {
-    load.rotor_inertia.push_back(p(Layout::kRotorInertia + drive));
-    load.offset.push_back(p(Layout::kOffset + drive));
+    load.rotor_inertia.push_back(oracles::Real(p(Layout::kRotorInertia + drive)));
+    load.offset.push_back(oracles::Real(p(Layout::kOffset + drive)));
   }
   return load;
 }
