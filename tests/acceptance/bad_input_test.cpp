@@ -1,0 +1,485 @@
+// Every way to feed the tools files they cannot use: each has its message, its exit code, and leaves nothing behind.
+
+#include "acceptance/bad_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace deltadyn::acceptance {
+namespace {
+
+using W = Workshop;
+
+// Columns of the log: 0 t_s, 1 to 4 the positions, 5 to 8 the torques.
+
+void each_row(Lines& lines, const std::function<void(std::size_t, std::vector<std::string>&)>& change) {
+  for (std::size_t k = 2; k <= lines.size(); ++k) {
+    auto fields = fields_of(lines[k - 1]);
+    change(k, fields);
+    lines[k - 1] = join(fields);
+  }
+}
+
+/// A row of exact states at rest: what --no-filter takes. Columns t_s, q, qd, qdd, tau of `drives` drives.
+Lines states(int drives, const std::vector<double>& q, int rows = 200) {
+  Lines lines(1, "t_s");
+  for (const auto& [name, unit] : {std::pair{"q", "rad"}, {"qd", "rad_s"}, {"qdd", "rad_s2"}, {"tau", "Nm"}}) {
+    for (int j = 1; j <= drives; ++j) lines[0] += fmt::format(",{}{}_{}", name, j, unit);
+  }
+  for (int k = 0; k < rows; ++k) {
+    std::string line = fmt::format("{}", 0.001 * k);
+    for (int j = 0; j < drives; ++j) line += fmt::format(",{}", q[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < 3 * drives; ++j) line += fmt::format(",{}", j < 2 * drives ? 0.0 : 1.0);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::string without(const Lines& lines, const std::string& from, const std::string& to) {
+  std::string text;
+  bool inside = false, found = false;
+  for (const std::string& line : lines) {
+    if (line.find(from) != std::string::npos) inside = found = true;
+    if (!inside) text += line + "\n";
+    if (line.find(to) != std::string::npos) inside = false;
+  }
+  if (!found) throw std::runtime_error("no " + from);
+  return text;
+}
+
+constexpr const char* kSerialArm = R"(<?xml version="1.0"?>
+<robot name="arm">
+  <link name="base"/><link name="one"/><link name="two"/>
+  <joint name="drive1" type="revolute"><parent link="base"/><child link="one"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="drive2" type="revolute"><parent link="one"/><child link="two"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+)";
+
+std::vector<Row> files() {
+  return {
+      {"MissingLog",
+       [](const W& w) { return w.identify(w.path("no.csv")); },
+       3,
+       {"no\\.csv", "cannot open", "mend: check the path"}},
+      {"MissingRobot", [](const W& w) { return w.identify("", w.path("no.urdf")); }, 3, {"no\\.urdf", "mend:"}},
+      {"MissingPrior", [](const W& w) { return w.identify("", "", w.path("no.csv")); }, 3, {"no\\.csv", "cannot open", "mend:"}},
+      {"MissingParameters",
+       [](const W& w) { return w.validate("", "", w.path("no.csv")); },
+       3,
+       {"no\\.csv", "cannot open", "mend:"}},
+      {"FolderAsLog", [](const W& w) { return w.identify(w.folder()); }, 3, {"folder, not a file", "mend:"}},
+      {"FolderAsRobot", [](const W& w) { return w.info(w.folder()); }, 3, {"folder|directory", "mend:"}},
+      {"EmptyLog", [](const W& w) { return w.identify(w.write("bad.csv", "")); }, 3, {"bad\\.csv", "the file is empty", "mend:"}},
+      {"EmptyRobot",
+       [](const W& w) { return w.identify("", w.write("bad.urdf", "")); },
+       3,
+       {"bad\\.urdf", "the file is empty", "mend:"}},
+      {"EmptyPrior",
+       [](const W& w) { return w.identify("", "", w.write("bad.csv", "")); },
+       3,
+       {"bad\\.csv", "the file is empty", "mend:"}},
+      {"LogOfHeaderOnly",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l.resize(1); })); },
+       3,
+       {"bad\\.csv", "a header but no data rows", "mend:"}},
+      {"PriorOfHeaderOnly",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { l.resize(1); })); },
+       3,
+       {"bad\\.csv", "a header but no data rows", "mend:"}},
+      {"NoHeader",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l.erase(l.begin()); })); },
+       3,
+       {"bad\\.csv, line 1", "header line is missing", "mend: .*column names"}},
+      {"WrongHeaderPosition",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q2_rad", "q2"); })); },
+       3,
+       {"bad\\.csv", "column q2_rad is missing; the file has q2", "mend: name the column q2_rad or q2_deg"}},
+      {"WrongHeaderTime",
+       [](const W& w) { return w.validate(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "t_s", "time_ms"); })); },
+       3,
+       {"bad\\.csv", "column t_s is missing; the file has time_ms", "mend:"}},
+      {"WrongHeaderTorque",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "tau3_Nm", "current3_A"); })); },
+       3,
+       {"bad\\.csv", "column tau3_Nm is missing", "mend:"}},
+      {"WrongHeaderPrismatic",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q1_rad", "q1_m"); })); },
+       3,
+       {"bad\\.csv", "q1_m, which is for a prismatic drive", "mend:"}},
+      {"ColumnTwice",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q2_rad", "q1_rad"); })); },
+       3,
+       {"bad\\.csv, line 1", "q1_rad occurs twice", "mend:"}},
+      {"WrongHeaderPrior",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { l[0] = "parameter,value,unit"; })); },
+       3,
+       {"bad\\.csv", "column name is missing", "mend:"}},
+      {"TooFewFields",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[39] = l[39].substr(0, l[39].rfind(',')); })); },
+       3,
+       {"bad\\.csv, line 40", "8 fields where the header has 9", "mend:"}},
+      {"TooManyFields",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[39] += ",1"; })); },
+       3,
+       {"bad\\.csv, line 40", "10 fields where the header has 9", "mend:"}},
+      {"DecimalComma",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           for (std::size_t k = 1; k < l.size(); ++k) std::replace(l[k].begin(), l[k].end(), '.', ',');
+         }));
+       },
+       3,
+       {"bad\\.csv, line 2", "fields where the header has 9", "mend:"}},
+      {"TextInNumber",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { set_field(l, 51, 7, "1.2Nm"); })); },
+       3,
+       {"bad\\.csv, line 51, column tau3_Nm", "'1\\.2Nm' is not a number", "mend:"}},
+      {"TextInPrior",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { set_field(l, 5, 1, "about 1"); })); },
+       3,
+       {"bad\\.csv, line 5, column value", "'about 1' is not a number", "mend:"}},
+      {"NanInPrior",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { set_field(l, 5, 1, "nan"); })); },
+       3,
+       {"bad\\.csv, line 5, column value", "not a finite number", "mend:"}},
+      {"BinaryLog",
+       [](const W& w) { return w.identify(w.write("bad.csv", std::string("MATLAB\0\1\2,a\n1,2\n", 17))); },
+       3,
+       {"bad\\.csv", "zero bytes", "mend:"}},
+      {"BadSecondLog",
+       [](const W& w) {
+         Words words = w.identify();
+         words.insert(words.begin() + 3, w.log("second.csv", [](Lines& l) { set_field(l, 51, 2, "x"); }));
+         return words;
+       },
+       3,
+       {"second\\.csv, line 51, column q2_rad", "mend:"}},
+      {"LogOfSmallerRobot",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           for (std::string& line : l) {
+             auto f = fields_of(line);
+             f.erase(f.begin() + 8);
+             f.erase(f.begin() + 4);
+             line = join(f);
+           }
+         }));
+       },
+       3,
+       {"bad\\.csv", "column q4_rad is missing", "mend: .*robot file that fits"}},
+  };
+}
+
+std::vector<Row> times() {
+  return {
+      {"NanRun",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           for (std::size_t k = 300; k < 310; ++k) set_field(l, k, 6, "nan");
+         }));
+       },
+       3,
+       {"bad\\.csv, line 300, column tau2_Nm", "10 samples in a row without a number", "mend:"}},
+      {"NanTime",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { set_field(l, 300, 0, "nan"); })); },
+       3,
+       {"bad\\.csv, line 300, column t_s", "not finite", "mend:"}},
+      {"NanEverywhere",
+       [](const W& w) {
+         return w.validate(w.log("bad.csv", [](Lines& l) { each_row(l, [](std::size_t, auto& f) { f[3] = "nan"; }); }));
+       },
+       3,
+       {"bad\\.csv, line 2, column q3_rad", "missing or not finite", "mend:"}},
+      {"Infinite",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { set_field(l, 2, 1, "1e999"); })); },
+       3,
+       {"bad\\.csv, line 2, column q1_rad", "missing or not finite", "mend:"}},
+      {"RepeatedTime",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { set_field(l, 200, 0, fields_of(l[198])[0]); })); },
+       3,
+       {"bad\\.csv, line 200, column t_s", "repeated, with other values", "mend:"}},
+      {"DecreasingTime",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           each_row(l, [](std::size_t k, auto& f) {
+             if (k >= 700) f[0] = fmt::format("{:.4f}", 0.001 * static_cast<double>(k - 700));
+           });
+         }));
+       },
+       3,
+       {"bad\\.csv, line 700, column t_s", "time stamps decrease", "mend: .*own file"}},
+      {"Gap",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l.erase(l.begin() + 500, l.begin() + 600); })); },
+       3,
+       {"bad\\.csv, line 501, column t_s", "gap of 0\\.101 s", "mend: cut the log"}},
+      {"TimeInMilliseconds",
+       [](const W& w) {
+         return w.identify(
+             w.log("bad.csv", [](Lines& l) { each_row(l, [](std::size_t k, auto& f) { f[0] = std::to_string(k); }); }));
+       },
+       3,
+       {"bad\\.csv, line 2, column t_s", "samples are 1 s apart", "mend: give the time in seconds"}},
+      {"UnevenTime",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           std::mt19937_64 random(5);
+           double t = 0;
+           each_row(l, [&](std::size_t, auto& f) {
+             t += 0.0002 + 0.0016 * static_cast<double>(random() >> 11U) * 0x1.0p-53;
+             f[0] = fmt::format("{:.7f}", t);
+           });
+         }));
+       },
+       3,
+       {"bad\\.csv, line [0-9]+, column t_s", "time stamps are uneven", "mend: record at a fixed rate"}},
+      {"ManyMissing",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           for (std::size_t k = 100; k < 1400; k += 20) set_field(l, k, 5, "nan");
+         }));
+       },
+       3,
+       {"bad\\.csv, line 100", "% of the samples are missing", "mend:"}},
+  };
+}
+
+std::vector<Row> motions() {
+  return {
+      {"StuckEncoder",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           for (std::size_t k = 401; k < 700; ++k) set_field(l, k, 2, fields_of(l[399])[2]);
+         }));
+       },
+       3,
+       {"bad\\.csv, line 40[01], column q2_rad", "stuck encoder", "mend: check the encoder"}},
+      {"DegreesForRadians",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           each_row(l, [](std::size_t, auto& f) {
+             for (std::size_t j = 1; j <= 4; ++j) f[j] = fmt::format("{}", std::stod(f[j]) * 57.29577951308232);
+           });
+         }));
+       },
+       3,
+       {"bad\\.csv, line [0-9]+, column q1_rad", "degrees", "mend: name the column q1_deg"}},
+      {"WrappedAngle",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           each_row(l, [](std::size_t k, auto& f) {
+             if (k >= 600) f[4] = fmt::format("{}", std::stod(f[4]) + 6.283185307179586);
+           });
+         }));
+       },
+       3,
+       {"bad\\.csv, line [56][0-9][0-9], column q4_rad", "position jumps", "mend: unwrap"}},
+      {"TooShort",
+       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l.resize(31); })); },
+       3,
+       {"bad\\.csv", "too short: 30 samples", "mend: record at least"}},
+      {"TooShortForFilter",
+       [](const W& w) {
+         Words words = w.identify(w.log("bad.csv", [](Lines& l) { l.resize(601); }));
+         words.back() = "4";
+         return words;
+       },
+       3,
+       {"bad\\.csv", "too short for a cut-off of 4 Hz", "mend:.*(cut-off|record)"}},
+      {"NothingMoves",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           const auto first = fields_of(l[1]);
+           each_row(l, [&](std::size_t, auto& f) { std::copy(first.begin() + 1, first.begin() + 5, f.begin() + 1); });
+         }));
+       },
+       3,
+       {"bad\\.csv", "nothing moves", "mend: record a motion"}},
+      {"OneDriveMoves",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           const auto first = fields_of(l[1]);
+           each_row(l, [&](std::size_t, auto& f) { std::copy(first.begin() + 1, first.begin() + 4, f.begin() + 1); });
+         }));
+       },
+       5,
+       {"does not excite every base parameter", "says nothing about .*[a-z_]+[0-9]*\\.[A-Za-z]+", "mend: record a motion"}},
+      {"TorqueNotRecorded",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) { each_row(l, [](std::size_t, auto& f) { f[7] = "0"; }); }));
+       },
+       3,
+       {"bad\\.csv, line 2, column tau3_Nm", "torque is always 0", "mend:"}},
+      {"TorqueCutOff",
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) {
+           each_row(l, [](std::size_t, auto& f) { f[5] = fmt::format("{}", std::clamp(std::stod(f[5]), -3.0, 3.0)); });
+         }));
+       },
+       3,
+       {"bad\\.csv, line [0-9]+, column tau1_Nm", "cut off", "mend:"}},
+      {"OutOfReach",
+       [](const W& w) {
+         succeed(create_delta3(w.path("small.urdf"), 0.2, 0.05, 0.525, 0.55));
+         return w.validate("", w.path("small.urdf"));
+       },
+       3,
+       {"log\\.csv, line [0-9]+", "out of reach at drive positions", "mend: check that the robot file belongs"}},
+      {"OutOfReachWithoutFilter",
+       [](const W& w) {
+         succeed(create_delta3(w.path("small.urdf"), 0.2, 0.05, 0.525, 0.55));
+         return w.validate(w.write("bad.csv", states(3, {0.1, 0.05, 0})), w.path("small.urdf")) + Words{"--no-filter"};
+       },
+       3,
+       {"bad\\.csv, line 2", "out of reach", "mend:"}},
+      {"SingularPose",
+       [](const W& w) {
+         succeed(create_delta3(w.path("flat.urdf"), 0.2, 0.05, 0.525, 0.675 + 1e-14));
+         return w.validate(w.write("bad.csv", states(3, {0, 0, 0})), w.path("flat.urdf")) + Words{"--no-filter"};
+       },
+       3,
+       {"bad\\.csv, line 2", "singular", "mend:"}},
+      {"NoVelocities",
+       [](const W& w) { return w.validate() + Words{"--no-filter"}; },
+       3,
+       {"log\\.csv", "column qd1_rad_s is missing", "mend:"}},
+  };
+}
+
+std::vector<Row> priors() {
+  return {
+      {"NegativeMass",
+       [](const W& w) { return w.identify("", "", w.prior_with("bad.csv", "upper_arm.m", "-1.1")); },
+       3,
+       {"bad\\.csv", "upper_arm", "mass -1\\.1 kg is negative", "mend:"}},
+      {"NegativeMassOfPoint",
+       [](const W& w) { return w.identify("", "", w.prior_with("bad.csv", "platform.m", "-0.2")); },
+       3,
+       {"bad\\.csv", "platform", "mass -0\\.2 kg is (negative|not positive)", "mend:"}},
+      {"BrokenTriangle",
+       [](const W& w) { return w.identify("", "", w.prior_with("bad.csv", "telescope_upper.Izz", "5")); },
+       3,
+       {"bad\\.csv", "telescope_upper", "triangle inequality", "mend:"}},
+      {"MomentTooLarge",
+       [](const W& w) { return w.identify("", "", w.prior_with("bad.csv", "upper_arm.mcx", "3")); },
+       3,
+       {"bad\\.csv", "upper_arm", "first moments are too large", "mend:"}},
+      {"NegativeFriction",
+       [](const W& w) { return w.identify("", "", w.prior_with("bad.csv", "drive2.coulomb", "-2")); },
+       3,
+       {"bad\\.csv", "drive2\\.coulomb", "negative", "mend:"}},
+      {"UnitMismatch",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { set_field(l, 2, 2, "g"); })); },
+       3,
+       {"bad\\.csv, line 2, column unit", "unit 'g' does not fit upper_arm\\.m", "mend: give the value in kg"}},
+      {"UnitOfOtherDrive",
+       [](const W& w) {
+         return w.validate("", "", w.prior("bad.csv", [](Lines& l) {
+           for (std::string& line : l) {
+             if (line.rfind("drive1.coulomb", 0) == 0) line = "drive1.coulomb,1,N";
+           }
+         }));
+       },
+       3,
+       {"bad\\.csv, line [0-9]+, column unit", "unit 'N' does not fit drive1\\.coulomb", "mend:"}},
+      {"ParameterTwice",
+       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { l.push_back(l[3]); })); },
+       3,
+       {"bad\\.csv, line [0-9]+, column name", "already given in line 4", "mend:"}},
+      {"NegativeStd",
+       [](const W& w) {
+         return w.identify("", "", w.prior("bad.csv", [](Lines& l) {
+           for (std::string& line : l) line += ",-1";
+           l[0] = "name,value,unit,std";
+         }));
+       },
+       3,
+       {"bad\\.csv, line 2, column std", "negative", "mend:"}},
+      {"LogAsPrior",
+       [](const W& w) { return w.identify("", "", w.path("log.csv")); },
+       3,
+       {"log\\.csv", "column name is missing", "mend:"}},
+      {"ForeignNames",
+       [](const W& w) { return w.validate("", "", w.write("bad.csv", "name,value,unit\nmass,1,kg\n")); },
+       3,
+       {"bad\\.csv", "none of the robot's parameters is in the file", "mend:"}},
+  };
+}
+
+std::vector<Row> robots() {
+  return {
+      {"NotXml",
+       [](const W& w) { return w.identify("", w.path("prior.csv")); },
+       3,
+       {"prior\\.csv, line [0-9]+", "not well-formed XML", "mend:"}},
+      {"NotUrdf",
+       [](const W& w) { return w.info(w.write("bad.urdf", "<html><body/></html>\n")); },
+       3,
+       {"bad\\.urdf", "root element is <html>", "mend:"}},
+      {"TornXml",
+       [](const W& w) { return w.info(w.write("bad.urdf", to_text(W::robot()).substr(0, 5000))); },
+       3,
+       {"bad\\.urdf, line [0-9]+", "not well-formed XML", "mend:"}},
+      {"SerialArm", [](const W& w) { return w.identify("", w.write("bad.urdf", kSerialArm)); }, 3, {"bad\\.urdf", "mend:"}},
+      {"MissingLoop",
+       [](const W& w) {
+         return w.identify("", w.write("bad.urdf", without(W::robot(), "<loop name=\"strut2a_end\"", "</loop>")));
+       },
+       3,
+       {"bad\\.urdf", "strut2a", "missing loop", "mend: add a spherical <loop>"}},
+      {"MissingToolLoop",
+       [](const W& w) { return w.info(w.write("bad.urdf", without(W::robot(), "<loop name=\"tool_axis\"", "</loop>"))); },
+       3,
+       {"bad\\.urdf", "missing loop: the tool", "mend:"}},
+      {"UnequalStruts",
+       [](const W& w) {
+         const std::string text = to_text(W::robot());
+         const auto loop = text.find("<loop name=\"strut3b_end\"");
+         const auto length = text.find("1.106", loop);
+         return w.info(w.write("bad.urdf", text.substr(0, length) + "1.206" + text.substr(length + 5)));
+       },
+       3,
+       {"bad\\.urdf", "unequal struts of limb 3", "1\\.206", "mend:"}},
+      {"UnknownLink",
+       [](const W& w) {
+         return w.info(w.write("bad.urdf", replaced(to_text(W::robot()), "<child link=\"strut2b\"/>", "<child link=\"rod\"/>")));
+       },
+       3,
+       {"bad\\.urdf, line [0-9]+", "unknown child link 'rod'", "mend:"}},
+      {"TextInLength",
+       [](const W& w) {
+         return w.info(w.write("bad.urdf", replaced(to_text(W::robot()), "xyz=\"0.2 0 0\"", "xyz=\"0.2m 0 0\"")));
+       },
+       3,
+       {"bad\\.urdf", "mend:"}},
+      {"LimitsCrossed",
+       [](const W& w) {
+         return w.info(
+             w.write("bad.urdf", replaced(to_text(W::robot()), "lower=\"-0.9\" upper=\"1.6\"", "lower=\"1.6\" upper=\"-0.9\"")));
+       },
+       3,
+       {"bad\\.urdf", "drive", "mend:"}},
+      {"LengthsThatDoNotClose",
+       [](const W& w) { return create_delta3(w.path("out.urdf"), 0.9, 0.05, 0.1, 0.3); },
+       2,
+       {"mend: check the lengths"}},
+  };
+}
+
+class BadInput : public ::testing::TestWithParam<Row> {};
+
+TEST_P(BadInput, IsRefusedWithAMessageAndLeavesNothingBehind) {
+  expect_refused(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadInput, ::testing::ValuesIn(files()), name_of);
+INSTANTIATE_TEST_SUITE_P(Times, BadInput, ::testing::ValuesIn(times()), name_of);
+INSTANTIATE_TEST_SUITE_P(Motions, BadInput, ::testing::ValuesIn(motions()), name_of);
+INSTANTIATE_TEST_SUITE_P(Priors, BadInput, ::testing::ValuesIn(priors()), name_of);
+INSTANTIATE_TEST_SUITE_P(Robots, BadInput, ::testing::ValuesIn(robots()), name_of);
+
+}  // namespace
+}  // namespace deltadyn::acceptance
