@@ -32,7 +32,7 @@ class PostureOf : public ::testing::Test {
   /// q with a unit slope in drive i.
   std::vector<Dual<Real>> seeded(int i) const {
     std::vector<Dual<Real>> out;
-    for (int k = 0; k < kDrives; ++k) out.push_back(Dual<Real>(posture.q(k), k == i ? 1.0L : 0.0L));
+    for (int k = 0; k < kDrives; ++k) out.push_back(Dual<Real>(Real(posture.q(k)), k == i ? 1.0L : 0.0L));
     return out;
   }
 
