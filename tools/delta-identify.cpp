@@ -224,8 +224,8 @@ class Identify {
     const bool proven = result.fit.certificate.passed || !result.fit.certificate.available;
     const bool trusted = proven && survey.min_eigenvalue > 0;
     out.add("verdict", trusted ? "trusted" : "not-trusted");
-    if (!proven) fmt::print("warning: the fit is not proven to be the best one (gap {:.3g} of chi^2)\n", result.fit.certificate.gap);
-    if (!(survey.min_eigenvalue > 0)) fmt::print("warning: the mass matrix is not positive definite everywhere\n");
+    if (!proven) fmt::print(stderr, "warning: the fit is not proven to be the best one (gap {:.3g} of chi^2)\n", result.fit.certificate.gap);
+    if (!(survey.min_eigenvalue > 0)) fmt::print(stderr, "warning: the mass matrix is not positive definite everywhere\n");
     return trusted ? ExitCode::done : ExitCode::not_trusted;
   }
 

@@ -167,7 +167,7 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
   const FitMetric metric = options.metric;
   const double highest =
       1 / (options.prior_relative_std * options.prior_relative_std);  // the prior is not trusted beyond its word
-  const double lowest = 1e-6 * highest;
+  double lowest = 1e-6 * highest;
   const Eigen::VectorXd start = fit::convex_start(layout);
   auto solve = [&](FitMetric solved_metric, double lambda) -> Eigen::VectorXd {
     const ConvexProblem::Result result = convex.minimise(solved_metric, lambda, start);
@@ -182,8 +182,20 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
     summary.l_curve.push_back({lambda, convex.data_cost(y), convex.regularization_cost(metric, y)});
     return summary.l_curve.back().data_cost;
   };
+  // Short logs leave directions that neither data nor prior hold at the smallest lambda: then begin at a larger one.
+  for (bool found = false; !found;) {
+    try {
+      summary.data_cost_min = visit(lowest);
+      found = true;
+    } catch (const Error&) {
+      lowest *= 10;
+      if (lowest >= highest) throw;
+    }
+  }
+  if (summary.l_curve.front().lambda > 2e-6 * highest) {
+    summary.notes.emplace_back("the logs hold some parameters so weakly that the prior must hold them");
+  }
   // the minimum of chi^2 on the cones does not depend on the metric: take it where the problem is convex
-  summary.data_cost_min = visit(lowest);
   if (metric == FitMetric::riemannian) summary.data_cost_min = convex.data_cost(solve(FitMetric::relative, lowest));
   const double limit = summary.data_cost_min + options.data_misfit_rise;
   double low = std::log(lowest), high = std::log(highest);
