@@ -35,7 +35,7 @@ run() {
 
 run delta-model info "$robot"
 run delta-model prior "$robot" -o "$out/prior.csv"
-run delta-identify "$robot" "$data/logs/mujoco_delta4/identification_fast.csv" "$data/logs/identification_slow.csv" \
+run delta-identify "$robot" "$data/logs/mujoco_delta4/identification_fast.csv" "$data/logs/mujoco_delta4/identification_slow.csv" \
   --prior "$out/prior.csv" -o "$out/params.csv" --base "$out/base.csv" \
   --summary "$out/identify_summary.csv" --report "$out/identification.html"
 run delta-validate "$robot" --params "$out/params.csv" "$data/logs/mujoco_delta4/verification.csv" -o "$out/residuals.csv" \
