@@ -13,6 +13,7 @@
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/identification_report.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
@@ -80,8 +81,9 @@ class Identify {
 
     write_parameters(output_, parameter_table(*robot, result));
     if (!base_file_.empty()) write_base(result);
+    const Validation training = validate(*robot, logs, result.fit.p, result.processing);
+    const Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     if (!report_file_.empty()) {
-      const Validation training = validate(*robot, logs, result.fit.p, result.processing);
       ReportContext context;
       context.robot_file = robot_file_;
       context.log_files = log_files_;
@@ -89,7 +91,7 @@ class Identify {
       context.command_line = command_line_;
       write_file(report_file_, identification_report(*robot, result, training, survey, context));
     }
-    return tell(*robot, result, survey, run);
+    return tell(*robot, result, survey, assessment, run);
   }
 
   /// The fit knows that a prior is impossible, but not the file that it came from.
@@ -99,6 +101,12 @@ class Identify {
     try {
       return identify(robot, logs, prior, prior_std, options);
     } catch (const Error& e) {
+      if (e.code() == ExitCode::no_convergence) {
+        throw Error(e.problem(), e.where(),
+                    "the logs may not belong to this robot: check sign, unit and order of the drives and the lengths in the robot file; "
+                    "else give --regularization a larger value",
+                    e.code());
+      }
       if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
       throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
     }
@@ -123,7 +131,12 @@ class Identify {
     options.base.seed = run.seed;
     options.fit.set = set_ == "full" ? ParameterSet::full : ParameterSet::reduced;
     options.fit.metric = metric_ == "bregman" ? FitMetric::bregman : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
-    if (regularization_ != "auto") options.fit.regularization = tools::number_of(regularization_, "--regularization", "auto");
+    if (regularization_ != "auto") {
+      options.fit.regularization = tools::number_of(regularization_, "--regularization", "auto");
+      if (!(*options.fit.regularization > 0)) {
+        throw Error("--regularization must be above 0", "", "give a weight such as 0.01, or auto", ExitCode::usage);
+      }
+    }
     return options;
   }
 
@@ -178,7 +191,8 @@ class Identify {
     file.commit();
   }
 
-  ExitCode tell(const Robot& robot, const Identification& result, const MassMatrixSurvey& survey, ToolRun& run) const {
+  ExitCode tell(const Robot& robot, const Identification& result, const MassMatrixSurvey& survey, const Assessment& assessment,
+                ToolRun& run) const {
     const int columns = robot.parameters();
     Summary& out = run.summary;
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
@@ -221,12 +235,9 @@ class Identify {
       throw Error("the consistent fit did not converge: " + result.fit.message, "", "look at the report; try --regularization with a larger value",
                   ExitCode::no_convergence);
     }
-    const bool proven = result.fit.certificate.passed || !result.fit.certificate.available;
-    const bool trusted = proven && survey.min_eigenvalue > 0;
-    out.add("verdict", trusted ? "trusted" : "not-trusted");
-    if (!proven) fmt::print(stderr, "warning: the fit is not proven to be the best one (gap {:.3g} of chi^2)\n", result.fit.certificate.gap);
-    if (!(survey.min_eigenvalue > 0)) fmt::print(stderr, "warning: the mass matrix is not positive definite everywhere\n");
-    return trusted ? ExitCode::done : ExitCode::not_trusted;
+    out.add("verdict", tools::verdict_word(assessment.verdict));
+    tools::print_assessment(assessment);
+    return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }
 
   std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_;

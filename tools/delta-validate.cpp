@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <vector>
 
+#include "deltadyn/identification/residual_structure.hpp"
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -57,6 +59,7 @@ class Validate {
 
  private:
   void execute(ToolRun& run) {
+    const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> inputs = log_files_;
     inputs.insert(inputs.end(), {robot_file_, parameter_file_});
     run.check_files({output_, report_file_}, inputs);
@@ -84,7 +87,11 @@ class Validate {
       context.command_line = command_line_;
       write_file(report_file_, validation_report(*robot, result, match.value, context));
     }
+    const Assessment assessment = assess_validation(*robot, result, residual_structure(result));
     tell(description, result, run);
+    run.summary.add("verdict", tools::verdict_word(assessment.verdict));
+    run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
+    tools::print_assessment(assessment);
   }
 
   void write_residuals(const RobotDescription& robot, const Validation& result) const {

@@ -10,6 +10,7 @@
 
 #include "deltadyn/identification/cutoff_scan.hpp"
 #include "deltadyn/io/log_file.hpp"
+#include "deltadyn/report/assessment.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -59,12 +60,20 @@ class ProcessingFlags {
     std::vector<Log> logs;
     for (const std::string& path : paths) {
       logs.push_back(read_log(path, robot, options));
+      if (!no_filter_ && !automatic_cutoff()) refuse_cutoff_beyond(0.4 / logs.back().sample_time_s(), path);
       for (const std::string& note : logs.back().notes) fmt::print("note: {}\n", note);
     }
     return logs;
   }
 
  private:
+  void refuse_cutoff_beyond(double highest_hz, const std::string& path) const {
+    if (number_of(cutoff_, "--cutoff-hz", "auto") > highest_hz) {
+      throw Error(fmt::format("--cutoff-hz {} is too high for the sampling rate of this log", cutoff_), path,
+                  fmt::format("give less than {:.4g} Hz, or auto", highest_hz), ExitCode::usage);
+    }
+  }
+
   bool no_filter_ = false;
   std::string cutoff_ = "auto";
   std::string period_ = "auto";
@@ -73,6 +82,17 @@ class ProcessingFlags {
 /// "N m" or "N", as the drive turns or slides.
 inline const char* torque_unit(const RobotDescription& robot, int drive) {
   return robot.kind_of_drive(drive) == DriveKind::revolute ? "N*m" : "N";
+}
+
+/// Word of a verdict in summaries.
+inline const char* verdict_word(Verdict verdict) {
+  return verdict == Verdict::good ? "trusted" : (verdict == Verdict::caution ? "with-care" : "not-trusted");
+}
+
+/// The verdict in plain words, on the terminal as on top of the report; warnings on standard error.
+inline void print_assessment(const Assessment& assessment) {
+  std::FILE* to = assessment.verdict == Verdict::good ? stdout : stderr;
+  fmt::print(to, "{}{}\n", assessment.verdict == Verdict::good ? "" : "warning: ", assessment.headline);
 }
 
 /// The whole command line, for reports.

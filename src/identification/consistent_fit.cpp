@@ -5,6 +5,7 @@
 #include <ceres/ceres.h>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
@@ -161,13 +162,16 @@ void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eige
   summary.message = result.message;
 }
 
+/// Where the search for lambda begins, as a share of the largest one.
+constexpr double kSmallestLambda = 1e-6;
+
 /// The largest lambda that costs the data no more than the admitted rise of chi^2.
 double choose_lambda(const Layout& layout, const ConvexProblem& convex, const ConsistentFitOptions& options,
                      ConsistentFitSummary& summary) {
   const FitMetric metric = options.metric;
   const double highest =
       1 / (options.prior_relative_std * options.prior_relative_std);  // the prior is not trusted beyond its word
-  double lowest = 1e-6 * highest;
+  double lowest = kSmallestLambda * highest;
   const Eigen::VectorXd start = fit::convex_start(layout);
   auto solve = [&](FitMetric solved_metric, double lambda) -> Eigen::VectorXd {
     const ConvexProblem::Result result = convex.minimise(solved_metric, lambda, start);
@@ -182,30 +186,39 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
     summary.l_curve.push_back({lambda, convex.data_cost(y), convex.regularization_cost(metric, y)});
     return summary.l_curve.back().data_cost;
   };
-  // Short logs leave directions that neither data nor prior hold at the smallest lambda: then begin at a larger one.
-  for (bool found = false; !found;) {
+  const auto try_visit = [&](double lambda) -> std::optional<double> {
     try {
-      summary.data_cost_min = visit(lowest);
-      found = true;
+      return visit(lambda);
     } catch (const Error&) {
-      lowest *= 10;
-      if (lowest >= highest) throw;
+      return std::nullopt;
     }
-  }
-  if (summary.l_curve.front().lambda > 2e-6 * highest) {
+  };
+  // Short logs leave directions that neither data nor prior hold at the smallest lambda: then begin at a larger one.
+  std::optional<double> smallest = try_visit(lowest);
+  for (; !smallest && 10 * lowest < highest; smallest = try_visit(lowest)) lowest *= 10;
+  if (!smallest) smallest = visit(highest);  // throws with its reason
+  summary.data_cost_min = *smallest;
+  if (lowest > 2 * kSmallestLambda * highest) {
     summary.notes.emplace_back("the logs hold some parameters so weakly that the prior must hold them");
   }
   // the minimum of chi^2 on the cones does not depend on the metric: take it where the problem is convex
   if (metric == FitMetric::riemannian) summary.data_cost_min = convex.data_cost(solve(FitMetric::relative, lowest));
   const double limit = summary.data_cost_min + options.data_misfit_rise;
   double low = std::log(lowest), high = std::log(highest);
-  if (visit(highest) <= limit) low = high;
+  double chosen = low;
+  if (visit(highest) <= limit) chosen = low = high;
   while (high - low > 0.1) {
     const double middle = 0.5 * (low + high);
-    (visit(std::exp(middle)) <= limit ? low : high) = middle;
+    const std::optional<double> cost = try_visit(std::exp(middle));
+    if (cost && *cost > limit) {
+      high = middle;
+    } else {
+      low = middle;
+      if (cost) chosen = middle;  // without convergence, look further up
+    }
   }
   std::sort(summary.l_curve.begin(), summary.l_curve.end(), [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
-  return std::exp(low);
+  return std::exp(chosen);
 }
 
 /// The better of two proofs. Where bodies end on the boundary, the dual point of the centred solution bounds the optimum more
@@ -247,17 +260,31 @@ InertialVector<double> complete_body(const Block& block, const ConsistentFitProb
 }
 
 /// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width. A prior that the data moved by
-/// more than its width claimed too much; it then counts with that distance as its width.
+/// more than its width claimed too much: all its masses and inertias then count with a width larger by the root mean square of
+/// these moves, and no parameter with less than its own.
 void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOptions& options, const Layout& layout,
                      const Eigen::MatrixXd& A, ConsistentFitSummary& summary) {
   const int n = layout.fitted;
   summary.std = problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
   summary.data_share = Eigen::VectorXd::Zero(layout.parameters);
   Eigen::VectorXd prior_std(n);
+  const Eigen::VectorXd move = (summary.p - problem.prior).cwiseAbs();
+  double square = 0, inertial = 0;
+  const auto is_inertial = [&problem](Eigen::Index parameter) {
+    const std::string& name = problem.names[static_cast<std::size_t>(parameter)];
+    return name.rfind("drive", 0) != 0 && name.rfind("telescope.", 0) != 0;
+  };
   for (int i = 0; i < n; ++i) {
     const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
-    prior_std(i) = std::max(summary.std(parameter), std::abs(summary.p(parameter) - problem.prior(parameter)));
+    if (!is_inertial(parameter)) continue;
+    square += std::pow(move(parameter) / summary.std(parameter), 2);
+    inertial += 1;
   }
+  const double widening = inertial > 0 ? std::max(1.0, std::sqrt(square / inertial)) : 1.0;
+  for (Eigen::Index k = 0; k < summary.std.size(); ++k) {
+    summary.std(k) = std::max(summary.std(k) * (is_inertial(k) ? widening : 1.0), move(k));
+  }
+  for (int i = 0; i < n; ++i) prior_std(i) = summary.std(layout.y_to_p[static_cast<std::size_t>(i)]);
   // in units of the prior's width: covariance = (A^T A + I)^{-1}, share = 1 - its diagonal
   Eigen::MatrixXd stacked(A.rows() + n, n);
   stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);

@@ -40,7 +40,7 @@ Check check_solver(const ConsistentFitSummary& fit) {
         "noise).",
         format_number(std::max(fit.certificate.gap, 0.0), 2));
   } else {
-    check.verdict = Verdict::caution;
+    check.verdict = fit.certificate.gap < kNoiseInChiSquare ? Verdict::caution : Verdict::bad;
     check.figure = "not proven";
     check.meaning = fmt::format(
         "Parameters that fit better by up to {} in χ² may exist (weakest at {}). Try the full parameter set or another prior.",

@@ -56,4 +56,7 @@ inline constexpr double kOtherLaw = 3.0;
 /// Largest deviation of a base parameter between the consistent fit and least squares that goes without remark [std].
 inline constexpr double kRemarkableDeviation = 3.0;
 
+/// A fit that is proven to within this in chi^2 is as good as the best one for all that the noise lets us know.
+inline constexpr double kNoiseInChiSquare = 1.0;
+
 }  // namespace deltadyn

@@ -14,7 +14,7 @@ using std::numbers::pi;
 
 constexpr double kKaiserBeta = 7.857;       // 80 dB stop band
 constexpr double kTransitionWidth = 5.017;  // (80 - 7.95) / 14.36: transition band times length
-constexpr double kTransitionShare = 0.5;    // transition band as a share of the cut-off
+constexpr double kTransitionShare = 1.0;    // transition band as a share of the cut-off
 
 /// Modified Bessel function of the first kind, order 0, by its series.
 double bessel_i0(double x) {

@@ -301,17 +301,17 @@ TEST(Identification, OtherPriorsAndMethodsPredictAsWell) {
   }
 }
 
-TEST(Identification, AVeryShortLogStillGivesAConsistentModelAndSaysThatThePriorHoldsIt) {
+TEST(Identification, AVeryShortLogGivesAConsistentModelThatIsNotTrusted) {
   const testing::TemporaryFolder folder;
   const std::string text = read_text(log("identification_fast.csv"));
   std::size_t end = 0;
   for (int line = 0; line < 700; ++line) end = text.find('\n', end) + 1;
   const std::string part = folder.write("short.csv", text.substr(0, end));
-  const ToolResult result = succeed({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz", "50",
-                                     "-o", folder.path("params.csv"), "--summary", folder.path("summary.csv")});
-  EXPECT_NE(result.out.find("the prior must hold them"), std::string::npos) << result.out;
+  const ToolResult result = run({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz", "50", "-o",
+                                 folder.path("params.csv"), "--summary", folder.path("summary.csv")});
+  ASSERT_TRUE(result.code == 0 || result.code == 5) << result.err;
   const auto summary = read_summary(folder.path("summary.csv"));
-  EXPECT_EQ(summary.at("verdict"), "trusted");
+  EXPECT_NE(summary.at("verdict"), "trusted") << "0.7 s do not make a trusted model";
   EXPECT_GT(number(summary, "mass_matrix_min_eigenvalue"), 0);
 }
 

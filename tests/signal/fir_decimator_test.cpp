@@ -21,8 +21,8 @@ TEST(FirDecimator, IsSymmetricFlatAndQuietWhereItShould) {
     EXPECT_NEAR(taps.sum(), 1.0, 1e-14);
     EXPECT_NEAR(filter.gain(0), 1.0, 1e-14);
     EXPECT_NEAR(filter.gain(cutoff), 0.5, 1e-3);
-    for (double f = 0; f <= 0.75 * cutoff; f += 0.05 * cutoff) EXPECT_NEAR(filter.gain(f), 1.0, 1e-3) << f;
-    for (double f = 1.25 * cutoff; f < 500; f += 0.05 * cutoff) EXPECT_LT(std::abs(filter.gain(f)), 1e-3) << f;
+    for (double f = 0; f <= 0.5 * cutoff; f += 0.05 * cutoff) EXPECT_NEAR(filter.gain(f), 1.0, 1e-3) << f;
+    for (double f = 1.5 * cutoff; f < 500; f += 0.05 * cutoff) EXPECT_LT(std::abs(filter.gain(f)), 1e-3) << f;
   }
 }
 

@@ -7,14 +7,15 @@
 
 namespace deltadyn {
 
-/// Windowed-sinc low pass (Kaiser window) with symmetric taps and unit gain at zero frequency: flat to 0.1 % up to 0.75 cut-off,
-/// below 0.1 % from 1.25 cut-off on, half way (-6 dB) at the cut-off.
+/// Windowed-sinc low pass (Kaiser window) with symmetric taps and unit gain at zero frequency: flat to 0.1 % up to half the cut-off,
+/// below 0.1 % from 1.5 cut-off on, half way (-6 dB) at the cut-off. The wide transition keeps the support short, so that few rows
+/// feel a velocity reversal.
 /// No lag. Output k belongs to input sample first_sample() + k * factor() and needs half_width() samples on either side: a log of
 /// any length can be processed block by block and in parallel, with the same result.
 class FirDecimator {
  public:
   /// \param sample_rate_hz  of the input
-  /// \param cutoff_hz       -6 dB point; 0.4 sample_rate_hz/factor keeps aliases out, half of it is the most that is accepted
+  /// \param cutoff_hz       -6 dB point; 0.33 sample_rate_hz/factor keeps aliases out, half of it is the most that is accepted
   /// \param factor          every factor-th filtered sample is kept, at least 1
   /// Throws Error(usage) if an argument is out of range or the cut-off is above half the output rate.
   FirDecimator(double sample_rate_hz, double cutoff_hz, int factor);
