@@ -163,7 +163,7 @@ void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eige
 }
 
 /// Where the search for lambda begins, as a share of the largest one.
-constexpr double kSmallestLambda = 1e-6;
+constexpr double kSmallestLambda = 1e-9;
 
 /// The largest lambda that costs the data no more than the admitted rise of chi^2.
 double choose_lambda(const Layout& layout, const ConvexProblem& convex, const ConsistentFitOptions& options,
