@@ -153,8 +153,10 @@ class Create {
   }
 
   static double required(const std::optional<double>& value, const std::string& name) {
+    constexpr double kLargest_m = 10;  // no Delta is that large; such a number is in millimetres
     if (!value) refuse_usage(fmt::format("{} is needed for this type", name), "give it in metres");
     if (!(std::isfinite(*value) && *value >= 0)) refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
+    if (*value > kLargest_m) refuse_usage(fmt::format("{} {} looks like millimetres", name, *value), "give it in metres");
     return *value;
   }
 
