@@ -1,9 +1,8 @@
 /// \file
 /// delta-identify: base parameters and the physically consistent set from drive logs.
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
+
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -35,8 +35,11 @@ class Identify {
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     app.add_option("logs", log_files_, "logs of this robot (CSV t_s, q1_rad.., tau1_Nm..)")->required()->type_name("LOG");
-    app.add_option("-o,--output", output_, "parameters name,value,unit,std,prior,data_share (CSV)")->required()->type_name("FILE");
-    app.add_option("--base", base_file_, "base parameters index,expression,value,unit,std,relative_std_percent (CSV)")->type_name("FILE");
+    app.add_option("-o,--output", output_, "parameters name,value,unit,std,prior,data_share (CSV)")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--base", base_file_, "base parameters index,expression,value,unit,std,relative_std_percent (CSV)")
+        ->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
     app.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
         ->type_name("FILE");
@@ -46,10 +49,12 @@ class Identify {
     app.add_option("--metric", metric_, "distance to the prior: relative (15), bregman or riemannian (frame-invariant)")
         ->check(CLI::IsMember({"relative", "bregman", "riemannian"}))
         ->capture_default_str();
-    app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")->capture_default_str();
+    app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")
+        ->capture_default_str();
     app.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
     app.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
-    app.add_option("--rotor-inertia", rotor_inertia_, "drives with a rotor inertia of their own, e.g. 4 or 1,2,3")->delimiter(',');
+    app.add_option("--rotor-inertia", rotor_inertia_, "drives with a rotor inertia of their own, e.g. 4 or 1,2,3")
+        ->delimiter(',');
     offset_flag_ = app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
     app.add_option("--reversals", reversals_, "rows near velocity reversals: auto leaves them out if they fit three times worse")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
@@ -102,10 +107,11 @@ class Identify {
       return identify(robot, logs, prior, prior_std, options);
     } catch (const Error& e) {
       if (e.code() == ExitCode::no_convergence) {
-        throw Error(e.problem(), e.where(),
-                    "the logs may not belong to this robot: check sign, unit and order of the drives and the lengths in the robot file; "
-                    "else give --regularization a larger value",
-                    e.code());
+        throw Error(
+            e.problem(), e.where(),
+            "the logs may not belong to this robot: check sign, unit and order of the drives and the lengths in the robot file; "
+            "else give --regularization a larger value",
+            e.code());
       }
       if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
       throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
@@ -130,7 +136,8 @@ class Identify {
     options.robust = robust_;
     options.base.seed = run.seed;
     options.fit.set = set_ == "full" ? ParameterSet::full : ParameterSet::reduced;
-    options.fit.metric = metric_ == "bregman" ? FitMetric::bregman : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
+    options.fit.metric =
+        metric_ == "bregman" ? FitMetric::bregman : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
     if (regularization_ != "auto") {
       options.fit.regularization = tools::number_of(regularization_, "--regularization", "auto");
       if (!(*options.fit.regularization > 0)) {
@@ -154,7 +161,8 @@ class Identify {
       const double std = match.std(k);
       const double share = nominal.value(k) != 0 ? nominal.std(k) / std::abs(nominal.value(k)) : 0.0;
       // The file's own trust in its values; without it the nominal one, carried over as a share of the value.
-      prior_std(k) = std::isfinite(std) && std > 0 ? std : (share > 0 && prior(k) != 0 ? share * std::abs(prior(k)) : nominal.std(k));
+      prior_std(k) =
+          std::isfinite(std) && std > 0 ? std : (share > 0 && prior(k) != 0 ? share * std::abs(prior(k)) : nominal.std(k));
     }
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     if (!match.missing.empty()) {
@@ -197,10 +205,11 @@ class Identify {
     Summary& out = run.summary;
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
     for (const std::string& note : result.fit.notes) fmt::print("note: {}\n", note);
-    fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n", result.samples,
-               result.base.count(), columns, result.base_estimate.condition_number);
+    fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n",
+               result.samples, result.base.count(), columns, result.base_estimate.condition_number);
     if (result.processing.filter) {
-      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz, result.cutoffs.empty() ? "" : ", chosen from the logs");
+      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz,
+                 result.cutoffs.empty() ? "" : ", chosen from the logs");
     }
     out.add("samples", result.samples);
     out.add("columns", columns);
@@ -213,8 +222,10 @@ class Identify {
       const DriveReport& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot.description(), j);
       const double relative = drive.rms / std::max(drive.rms_torque, 1e-300);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}            {:>6.1f} %\n", j + 1, drive.rms, unit, 100 * relative,
-                 drive.rms_base, unit, 100.0 * static_cast<double>(drive.masked_rows) / static_cast<double>(std::max<Eigen::Index>(1, drive.rows + drive.masked_rows)));
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}            {:>6.1f} %\n", j + 1, drive.rms, unit,
+                 100 * relative, drive.rms_base, unit,
+                 100.0 * static_cast<double>(drive.masked_rows) /
+                     static_cast<double>(std::max<Eigen::Index>(1, drive.rows + drive.masked_rows)));
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms, unit);
       out.add(fmt::format("relative_residual_drive{}", j + 1), relative);
       out.add(fmt::format("rms_residual_base_drive{}", j + 1), drive.rms_base, unit);
@@ -223,17 +234,20 @@ class Identify {
     out.add("variables", result.fit.variables);
     out.add("regularization", result.fit.lambda);
     out.add("chi_square_rise", result.fit.data_cost - result.fit.data_cost_min);
-    out.add("certificate_passed", result.fit.certificate.passed ? "yes" : (result.fit.certificate.available ? "no" : "not available"));
+    out.add("certificate_passed",
+            result.fit.certificate.passed ? "yes" : (result.fit.certificate.available ? "no" : "not available"));
     out.add("certificate_gap", result.fit.certificate.gap);
-    out.add("mass_matrix_min_eigenvalue", survey.min_eigenvalue, robot.drives() > 0 && robot.description().kind_of_drive(0) == DriveKind::revolute ? "kg*m^2" : "kg");
+    out.add("mass_matrix_min_eigenvalue", survey.min_eigenvalue,
+            robot.drives() > 0 && robot.description().kind_of_drive(0) == DriveKind::revolute ? "kg*m^2" : "kg");
     out.add("fold_time_s", result.fold_time_s, "s");
     out.add("solve_time_s", result.fit.solve_time_s, "s");
     out.add("total_time_s", result.total_time_s, "s");
     fmt::print("smallest eigenvalue of the mass matrix over {} poses: {:.4g}\n", survey.states, survey.min_eigenvalue);
-    fmt::print("wrote {}{}{}\n", output_, base_file_.empty() ? "" : ", " + base_file_, report_file_.empty() ? "" : ", " + report_file_);
+    fmt::print("wrote {}{}{}\n", output_, base_file_.empty() ? "" : ", " + base_file_,
+               report_file_.empty() ? "" : ", " + report_file_);
     if (!result.fit.converged) {
-      throw Error("the consistent fit did not converge: " + result.fit.message, "", "look at the report; try --regularization with a larger value",
-                  ExitCode::no_convergence);
+      throw Error("the consistent fit did not converge: " + result.fit.message, "",
+                  "look at the report; try --regularization with a larger value", ExitCode::no_convergence);
     }
     out.add("verdict", tools::verdict_word(assessment.verdict));
     tools::print_assessment(assessment);
@@ -254,10 +268,11 @@ class Identify {
 
 int main(int argc, char** argv) {
   Identify identify(argc, argv);
-  return tools::run_tool(argc, argv,
-                         {"delta-identify",
-                          "Identify the dynamic parameters of a Delta-like robot from drive logs: base parameters by weighted least squares "
-                          "and a complete, physically consistent set.",
-                          "delta-identify robot.urdf fast.csv slow.csv --prior prior.csv -o params.csv --base base.csv --report report.html"},
-                         [&](CLI::App& app, ToolRun& run) { identify.add_to(app, run); });
+  return tools::run_tool(
+      argc, argv,
+      {"delta-identify",
+       "Identify the dynamic parameters of a Delta-like robot from drive logs: base parameters by weighted least squares "
+       "and a complete, physically consistent set.",
+       "delta-identify robot.urdf fast.csv slow.csv --prior prior.csv -o params.csv --base base.csv --report report.html"},
+      [&](CLI::App& app, ToolRun& run) { identify.add_to(app, run); });
 }

@@ -1,10 +1,9 @@
 /// \file
 /// delta-validate: how well parameters predict the torque of logs that took no part in the fit.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "deltadyn/report/validation_report.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log_columns.hpp"
+
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -31,7 +31,8 @@ ParameterOptions layout_of(const ParameterTable& table, const RobotDescription& 
   for (const ParameterEntry& entry : table.entries) {
     for (const char* body : {"upper_arm", "strut"}) {
       const std::string prefix = body;
-      if (entry.name.compare(0, prefix.size(), prefix) == 0 && entry.name.size() > prefix.size() && std::isdigit(entry.name[prefix.size()])) {
+      if (entry.name.compare(0, prefix.size(), prefix) == 0 && entry.name.size() > prefix.size() &&
+          std::isdigit(entry.name[prefix.size()])) {
         options.individual_limbs = true;
       }
     }
@@ -51,7 +52,8 @@ class Validate {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV)")->required()->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
-    app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")->type_name("FILE");
+    app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")
+        ->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
     processing_.add_to(app);
     run.on(app, [this, &run] { execute(run); });
@@ -101,7 +103,8 @@ class Validate {
     for (int j = 0; j < n; ++j) {
       const DriveColumns names = drive_columns(robot, j);
       const std::string unit = names.tau.substr(names.tau.find('_'));
-      header += fmt::format(",{0},model{1}{2},residual{1}{2},{3},{4},{5},reversal{1}", names.tau, j + 1, unit, names.q, names.qd, names.qdd);
+      header += fmt::format(",{0},model{1}{2},residual{1}{2},{3},{4},{5},reversal{1}", names.tau, j + 1, unit, names.q, names.qd,
+                            names.qdd);
     }
     file.write(header + "\n");
     for (std::size_t k = 0; k < result.logs.size(); ++k) {
@@ -111,8 +114,8 @@ class Validate {
         if (result.logs.size() > 1) file.print("{},", k + 1);
         file.print("{}", p.t_s(row));
         for (int j = 0; j < n; ++j) {
-          file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j), p.q(row, j), p.qd(row, j),
-                     p.qdd(row, j), p.use(row, j) == RowUse::reversal ? 1 : 0);
+          file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j), p.q(row, j),
+                     p.qd(row, j), p.qdd(row, j), p.use(row, j) == RowUse::reversal ? 1 : 0);
         }
         file.write("\n");
       }
@@ -138,8 +141,8 @@ class Validate {
     for (int j = 0; j < robot.drives(); ++j) {
       const ValidatedDrive& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot, j);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {}\n", j + 1, drive.rms_residual, unit, 100 * drive.relative_residual,
-                 drive.max_residual, drive.rms_with_reversals, unit);
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {}\n", j + 1, drive.rms_residual, unit,
+                 100 * drive.relative_residual, drive.max_residual, drive.rms_with_reversals, unit);
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms_residual, unit);
       out.add(fmt::format("relative_residual_drive{}", j + 1), drive.relative_residual);
       out.add(fmt::format("max_residual_drive{}", j + 1), drive.max_residual, unit);
@@ -158,8 +161,9 @@ class Validate {
 
 int main(int argc, char** argv) {
   Validate validate(argc, argv);
-  return tools::run_tool(argc, argv,
-                         {"delta-validate", "Predict the torque of logs that took no part in the fit, and show where model and measurement differ.",
-                          "delta-validate robot.urdf --params params.csv verification.csv -o residuals.csv --report validation.html"},
-                         [&](CLI::App& app, ToolRun& run) { validate.add_to(app, run); });
+  return tools::run_tool(
+      argc, argv,
+      {"delta-validate", "Predict the torque of logs that took no part in the fit, and show where model and measurement differ.",
+       "delta-validate robot.urdf --params params.csv verification.csv -o residuals.csv --report validation.html"},
+      [&](CLI::App& app, ToolRun& run) { validate.add_to(app, run); });
 }

@@ -4,13 +4,13 @@
 /// Flags of the tools that read logs: how logs are filtered, and the files they come from.
 
 #include <fmt/format.h>
-
 #include <string>
 #include <vector>
 
 #include "deltadyn/identification/cutoff_scan.hpp"
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/report/assessment.hpp"
+
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -31,7 +31,8 @@ class ProcessingFlags {
  public:
   void add_to(CLI::App& app) {
     app.add_flag("--no-filter", no_filter_, "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
-    app.add_option("--cutoff-hz", cutoff_, "-3 dB of the zero-phase filter of the motion [Hz], or auto: from the logs")->capture_default_str();
+    app.add_option("--cutoff-hz", cutoff_, "-3 dB of the zero-phase filter of the motion [Hz], or auto: from the logs")
+        ->capture_default_str();
     app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
         ->capture_default_str();
   }

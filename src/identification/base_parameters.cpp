@@ -1,11 +1,10 @@
 #include "deltadyn/identification/base_parameters.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/workspace.hpp"
@@ -49,10 +48,10 @@ std::string expression(const Eigen::RowVectorXd& b, int independent, const std::
 
 BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptions& options) {
   if (options.states * robot.drives() < 2 * robot.parameters() || !(options.tolerance > 0 && options.tolerance < 1)) {
-    throw Error("options for the base parameters are out of range", "states, tolerance",
-                fmt::format("use at least {} states and a tolerance between 0 and 1",
-                            2 * robot.parameters() / robot.drives() + 1),
-                ExitCode::usage);
+    throw Error(
+        "options for the base parameters are out of range", "states, tolerance",
+        fmt::format("use at least {} states and a tolerance between 0 and 1", 2 * robot.parameters() / robot.drives() + 1),
+        ExitCode::usage);
   }
   Eigen::MatrixXd W = random_regressor(robot, options);
   const Eigen::Index P = W.cols();
@@ -69,8 +68,8 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
   BaseParameters base;
   base.rank_gap = rank < P ? diagonal(rank - 1) / std::max(diagonal(rank), 1e-300) : 1.0 / options.tolerance;
   if (base.rank_gap < 1e3) {
-    throw Error(fmt::format("the number of base parameters cannot be told: the diagonal of R falls only {:.1f}-fold at {}", base.rank_gap,
-                            rank),
+    throw Error(fmt::format("the number of base parameters cannot be told: the diagonal of R falls only {:.1f}-fold at {}",
+                            base.rank_gap, rank),
                 robot.description().name, "check the lengths of the robot; an almost singular design has no clear rank",
                 ExitCode::not_trusted);
   }

@@ -5,8 +5,8 @@
 #include <ceres/ceres.h>
 #include <chrono>
 #include <cmath>
-#include <optional>
 #include <fmt/format.h>
+#include <optional>
 
 #include "deltadyn/runtime/error.hpp"
 

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRatio = 1.26;      // a third of an octave
-constexpr Index kRowsOfLog = 1000;   // enough to tell cut-offs apart
+constexpr double kRatio = 1.26;     // a third of an octave
+constexpr Index kRowsOfLog = 1000;  // enough to tell cut-offs apart
 constexpr double kClearlyRisen = 1.5;
 
 /// Root mean square of what no p explains, for one drive on its own.
@@ -25,12 +25,14 @@ double unexplained_rms(const DriveFold& fold) {
   return std::sqrt(((fold.R * qr.solve(fold.d) - fold.d).squaredNorm() + fold.remainder) / freedom);
 }
 
-bool lower_score(const CutoffPoint& a, const CutoffPoint& b) { return a.score < b.score; }
+bool lower_score(const CutoffPoint& a, const CutoffPoint& b) {
+  return a.score < b.score;
+}
 
 }  // namespace
 
-std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& processing, int threads,
-                                      const std::function<void(double)>& progress) {
+std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& processing,
+                                      int threads, const std::function<void(double)>& progress) {
   double rate_hz = 1e300;
   double shortest_s = 1e300;
   for (const Log& log : logs) {

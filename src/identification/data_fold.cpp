@@ -1,11 +1,10 @@
 #include "deltadyn/identification/data_fold.hpp"
 
-#include <omp.h>
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <omp.h>
 
 namespace deltadyn {
 
@@ -68,7 +67,9 @@ void DriveFold::add(const DriveFold& other) {
   rows += other.rows;
 }
 
-double DriveFold::square_error(const Eigen::Ref<const Eigen::VectorXd>& p) const { return (R * p - d).squaredNorm() + remainder; }
+double DriveFold::square_error(const Eigen::Ref<const Eigen::VectorXd>& p) const {
+  return (R * p - d).squaredNorm() + remainder;
+}
 
 double DriveFold::rms(const Eigen::Ref<const Eigen::VectorXd>& p) const {
   return rows > 0 ? std::sqrt(square_error(p) / static_cast<double>(rows)) : 0.0;

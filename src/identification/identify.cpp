@@ -1,10 +1,9 @@
 #include "deltadyn/identification/identify.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -16,12 +15,14 @@ namespace {
 using Eigen::Index;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kReversalRatio = 3.0;   // above it, rows near reversals follow another law than Coulomb's
-constexpr Index kFewestRows = 10;        // to judge them by
-constexpr double kHuber = 1.345;         // 95 % efficient for normal noise (Huber 1981)
-constexpr double kNoiseMemory_s = 0.2;   // time over which residual correlation is looked for
+constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than Coulomb's
+constexpr Index kFewestRows = 10;       // to judge them by
+constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
+constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads, const Eigen::VectorXd* p = nullptr,
                   const RowWeight& weight = {}) {
@@ -31,7 +32,8 @@ DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int 
 }
 
 /// Which drives keep their rows near reversals.
-std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice, std::vector<DriveReport>& drives) {
+std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice,
+                                 std::vector<DriveReport>& drives) {
   std::vector<bool> keep(drives.size(), choice == Reversals::keep);
   if (choice == Reversals::keep) return keep;
   const BaseEstimate estimate = estimate_base_parameters(base, fold.regular);
@@ -107,8 +109,8 @@ std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>&
 
 }  // namespace
 
-Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
-                        const IdentificationOptions& options) {
+Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
+                        const Eigen::VectorXd& prior_std, const IdentificationOptions& options) {
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   const auto start = Clock::now();
   const auto report = [&](double share) {

@@ -1,11 +1,10 @@
 #include "deltadyn/identification/least_squares.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
 
@@ -48,7 +47,8 @@ std::string weakest(const BaseParameters& base, const Eigen::VectorXd& direction
 
 }  // namespace
 
-Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta, Eigen::Index parameters) {
+Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta,
+                               Eigen::Index parameters) {
   Eigen::VectorXd p = Eigen::VectorXd::Zero(parameters);
   for (Index k = 0; k < beta.size(); ++k) p(base.independent[static_cast<std::size_t>(k)]) = beta(k);
   return p;
@@ -96,8 +96,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     const Eigen::VectorXd p = any_parameters(base, out.value, P);
     for (Index j = 0; j < drives; ++j) {
       const DriveFold& fold = folds[static_cast<std::size_t>(j)];
-      const double share = std::min(0.9, weight(j) * weight(j) *
-                                             (columns(fold.R, base.independent) * root).squaredNorm() /
+      const double share = std::min(0.9, weight(j) * weight(j) * (columns(fold.R, base.independent) * root).squaredNorm() /
                                              std::max<double>(1.0, static_cast<double>(fold.rows)));
       DriveNoise& noise = out.noise[static_cast<std::size_t>(j)];
       const double floor = 1e-9 * std::max(fold.tau_max, 1e-12);  // noise-free logs

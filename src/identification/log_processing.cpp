@@ -1,9 +1,8 @@
 #include "deltadyn/identification/log_processing.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 #include "deltadyn/runtime/error.hpp"
@@ -20,7 +19,7 @@ using Eigen::Index;
 constexpr Index kFewestRows = 20;
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
-constexpr double kBreakaway_s = 0.02;  // a joint needs about so long to slide again after a reversal
+constexpr double kBreakaway_s = 0.02;   // a joint needs about so long to slide again after a reversal
 
 std::string place(const PreparedLog& log, Index sample) {
   if (!log.line.empty() && log.line[static_cast<std::size_t>(sample)] > 0) {
@@ -52,14 +51,16 @@ Eigen::MatrixXd joint_rates(const Robot& robot, const PreparedLog& log) {
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
 /// the drives of the limbs (the bar's length does not depend on psi).
 /// \param grow  samples on either side that count, too
-void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, Index grow, PreparedLog& log) {
+void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, Index grow,
+                    PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
   std::vector<std::vector<char>> mask;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
     const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
-    mask.push_back(reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
+    mask.push_back(
+        reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
   }
   log.reversal.resize(log.t_s.size(), robot.drives());
   for (int j = 0; j < robot.drives(); ++j) {
@@ -83,8 +84,9 @@ Eigen::VectorXd velocity_noise(const Log& log, double cutoff_hz) {
 /// Copies what a log holds. The torque columns are needed from here on.
 PreparedLog copy_log(const Robot& robot, const Log& log) {
   if (log.q.cols() != robot.drives() || log.tau.cols() != robot.drives()) {
-    throw Error(fmt::format("the log has {} positions and {} torques, the robot {} drives", log.q.cols(), log.tau.cols(), robot.drives()),
-                log.file, "use the robot file of the machine that the log was recorded on");
+    throw Error(
+        fmt::format("the log has {} positions and {} torques, the robot {} drives", log.q.cols(), log.tau.cols(), robot.drives()),
+        log.file, "use the robot file of the machine that the log was recorded on");
   }
   PreparedLog out;
   out.file = log.file;
@@ -132,9 +134,10 @@ std::optional<double> period_of(const Log& log, const ProcessingOptions& options
   }
   const double per_period = period_s / log.sample_time_s();
   if (period_s * options.cutoff_hz > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {
-    notes.push_back(fmt::format("{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
-                                "{:.3g} s at this cut-off)",
-                                log.file, period_s, kMostHarmonics / options.cutoff_hz));
+    notes.push_back(
+        fmt::format("{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
+                    "{:.3g} s at this cut-off)",
+                    log.file, period_s, kMostHarmonics / options.cutoff_hz));
     return std::nullopt;
   }
   return period_s;
@@ -152,7 +155,8 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
   out.first = out.low_pass->half_width();
   out.rows = samples / out.stride;
   const Index length = samples + 2 * out.first;
-  out.t_s = Eigen::VectorXd::LinSpaced(length, -static_cast<double>(out.first), static_cast<double>(length - 1 - out.first)) / out.rate_hz;
+  out.t_s = Eigen::VectorXd::LinSpaced(length, -static_cast<double>(out.first), static_cast<double>(length - 1 - out.first)) /
+            out.rate_hz;
   out.q = mean.series.evaluate(out.t_s);
   out.qd = mean.series.evaluate(out.t_s, 1);
   out.qdd = mean.series.evaluate(out.t_s, 2);
@@ -190,7 +194,8 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
     (void)joint_rates(robot, out);  // refuses poses out of reach
     return out;
   }
-  if (const std::optional<double> period_s = period_of(log, options, out.notes)) return prepare_periodic(robot, log, *period_s, options);
+  if (const std::optional<double> period_s = period_of(log, options, out.notes))
+    return prepare_periodic(robot, log, *period_s, options);
 
   DriveMotion motion = differentiate_log(log, options.cutoff_hz);
   out.q = std::move(motion.q);
@@ -207,8 +212,8 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   const Index last = std::min(samples - reach, motion.last);
   out.rows = last > out.first ? (last - out.first + out.stride - 1) / out.stride : 0;
   if (out.rows < kFewestRows) {
-    throw Error(fmt::format("the log lasts {:.3g} s, too short for a cut-off of {:.3g} Hz", static_cast<double>(samples) / out.rate_hz,
-                            options.cutoff_hz),
+    throw Error(fmt::format("the log lasts {:.3g} s, too short for a cut-off of {:.3g} Hz",
+                            static_cast<double>(samples) / out.rate_hz, options.cutoff_hz),
                 log.file,
                 fmt::format("record at least {:.3g} s, or raise the cut-off",
                             static_cast<double>(2 * out.first + kFewestRows * out.stride) / out.rate_hz));

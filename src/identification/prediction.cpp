@@ -1,10 +1,9 @@
 #include "deltadyn/identification/prediction.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <omp.h>
 
 namespace deltadyn {
 

@@ -5,8 +5,8 @@
 
 namespace deltadyn {
 
-Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p, const ProcessingOptions& processing,
-                    int threads) {
+Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
+                    const ProcessingOptions& processing, int threads) {
   Validation out;
   out.processing = processing;
   out.drives.resize(static_cast<std::size_t>(robot.drives()));
@@ -38,7 +38,9 @@ Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eige
     }
     out.logs.push_back(std::move(one));
   }
-  const auto root_mean = [](double sum, Eigen::Index count) { return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0; };
+  const auto root_mean = [](double sum, Eigen::Index count) {
+    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+  };
   for (std::size_t j = 0; j < out.drives.size(); ++j) {
     ValidatedDrive& drive = out.drives[j];
     drive.rms_residual = root_mean(square[j], drive.rows);

@@ -1,6 +1,7 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "robot_of.hpp"
 
 namespace deltadyn {
@@ -18,7 +19,8 @@ std::unique_ptr<Robot> make_robot(const RobotDescription& description, const Par
   if (description.type == LinearDelta3::kName) return detail::make_robot_of<LinearDelta3>(description, options);
   if (description.type == Delta4::kName) return detail::make_robot_of<Delta4>(description, options);
   if (description.type == Axis::kName) {
-    return prismatic ? detail::make_robot_of<LinearAxis>(description, options) : detail::make_robot_of<Axis>(description, options);
+    return prismatic ? detail::make_robot_of<LinearAxis>(description, options)
+                     : detail::make_robot_of<Axis>(description, options);
   }
   throw Error("robot type '" + description.type + "' is not known", description.name,
               "use one of delta3, linear-delta3, delta4, axis");

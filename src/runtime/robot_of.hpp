@@ -70,10 +70,11 @@ class RobotOf final : public Robot {
       : description_(description), options_(options), geometry_(geometry_of<double, R>(description)) {
     const ColumnText text = column_text<R, kSharing>(description);
     for (int column = 0; column < Layout::kColumns; ++column) {
-      const bool tool = R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
+      const bool tool =
+          R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
       const bool rotor = column >= Layout::kRotorInertia && column < Layout::kOffset;
-      const bool wanted_rotor = std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(),
-                                           column - Layout::kRotorInertia + 1) > 0;
+      const bool wanted_rotor =
+          std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), column - Layout::kRotorInertia + 1) > 0;
       const bool offset = column >= Layout::kOffset;
       if ((tool && !options.tool) || (rotor && !wanted_rotor) || (offset && !options.offset)) continue;
       columns_.push_back(column);

@@ -1,9 +1,8 @@
 /// \file
 /// Time of the core's calls for one state of a delta4, in float and double: mean, and the worst of the repetitions beside it.
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
+#include <benchmark/benchmark.h>
 #include <cmath>
 #include <vector>
 
@@ -77,7 +76,9 @@ void inertia(benchmark::State& state) {
   after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return mass_matrix<Layout>(g, m.posture, s.p); });
 }
 
-double worst(const std::vector<double>& times) { return *std::max_element(times.begin(), times.end()); }
+double worst(const std::vector<double>& times) {
+  return *std::max_element(times.begin(), times.end());
+}
 
 #define DELTADYN_BENCHMARK(name) \
   BENCHMARK(name)->Repetitions(20)->ReportAggregatesOnly()->ComputeStatistics("worst", worst)->Unit(benchmark::kMicrosecond)

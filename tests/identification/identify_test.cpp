@@ -1,10 +1,10 @@
 #include "deltadyn/identification/identify.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "deltadyn/runtime/error.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -34,7 +34,8 @@ double friction_error(const Robot& robot, const Identification& result) {
   const Eigen::VectorXd truth = delta_truth(robot);
   double worst = 0;
   for (int k = 0; k < robot.parameters(); ++k) {
-    if (robot.parameter_names()[static_cast<std::size_t>(k)].find("drive") == 0) worst = std::max(worst, std::abs(result.fit.p(k) / truth(k) - 1));
+    if (robot.parameter_names()[static_cast<std::size_t>(k)].find("drive") == 0)
+      worst = std::max(worst, std::abs(result.fit.p(k) / truth(k) - 1));
   }
   return worst;
 }

@@ -5,12 +5,12 @@
 
 namespace deltadyn {
 
-enum class [[nodiscard]] Status {
-  ok,
-  unreachable,  ///< no posture of the robot reaches this point
-  singular,     ///< the drives and the plate are not related one to one here
-  no_convergence,
-  out_of_range,  ///< an input is not finite or outside its domain
+enum class [[nodiscard]] Status{
+    ok,
+    unreachable,  ///< no posture of the robot reaches this point
+    singular,     ///< the drives and the plate are not related one to one here
+    no_convergence,
+    out_of_range,  ///< an input is not finite or outside its domain
 };
 
 /// One line in plain words, for messages.

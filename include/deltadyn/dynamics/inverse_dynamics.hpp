@@ -29,8 +29,8 @@ Vector<T, Robot::kDrives> inverse_dynamics(const Geometry<T, Robot>& geometry, c
            f.J.transpose();
   }
   for (int drive = 0; drive < Robot::kDrives; ++drive) {
-    tau(drive) += p(Layout::kRotorInertia + drive) * rotor_inertia(motion.qdd(drive)) +
-                  p(Layout::kOffset + drive) * torque_offset<T>();
+    tau(drive) +=
+        p(Layout::kRotorInertia + drive) * rotor_inertia(motion.qdd(drive)) + p(Layout::kOffset + drive) * torque_offset<T>();
   }
   return tau;
 }

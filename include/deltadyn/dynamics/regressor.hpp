@@ -22,7 +22,8 @@ Matrix<T, 3, kInertialParameters> moment_regressor(const BodyMotion<T, N>& body)
 
 /// Y of a motion, drives x Layout::kColumns. Every entry is written.
 template <class Layout, class T, class Robot>
-void regressor(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, Matrix<T, Robot::kDrives, Layout::kColumns>& Y);
+void regressor(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+               Matrix<T, Robot::kDrives, Layout::kColumns>& Y);
 
 /// Rates of the joints with friction and their partial derivatives by qd: drives, then the telescope's prismatic joint.
 template <class T, class Robot>

@@ -13,9 +13,9 @@
 namespace deltadyn {
 
 struct BaseParameterOptions {
-  int states = 400;          ///< random task-space states; drives x states must be well above the number of columns
+  int states = 400;  ///< random task-space states; drives x states must be well above the number of columns
   std::uint64_t seed = 1;
-  double tolerance = 1e-9;   ///< a diagonal entry of R below tolerance x the largest counts as zero (columns have norm 1)
+  double tolerance = 1e-9;  ///< a diagonal entry of R below tolerance x the largest counts as zero (columns have norm 1)
 };
 
 /// beta = B p, with B the identity on the independent columns. Y p = Y_B beta for every state.
@@ -24,8 +24,8 @@ struct BaseParameters {
   Eigen::MatrixXd B;                     ///< count x parameters
   std::vector<std::string> expressions;  ///< "strut.Iyy + 0.61 platform.m - ...", one a base parameter
   std::vector<std::string> units;
-  double rank_gap = 0;                   ///< last kept over first dropped diagonal entry of R: large when the count is certain
-  double condition_number = 0;           ///< of Y_B over the random states, columns scaled to norm 1
+  double rank_gap = 0;          ///< last kept over first dropped diagonal entry of R: large when the count is certain
+  double condition_number = 0;  ///< of Y_B over the random states, columns scaled to norm 1
 
   [[nodiscard]] int count() const { return static_cast<int>(independent.size()); }
 };

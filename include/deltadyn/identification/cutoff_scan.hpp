@@ -23,8 +23,9 @@ struct CutoffPoint {
 /// \param processing  its cut-off is not used
 /// \param progress    called with the share done, 0 to 1; may be empty
 /// Throws deltadyn::Error if the sampling rate is too low or the logs are too short.
-[[nodiscard]] std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& processing,
-                                                    int threads = 0, const std::function<void(double)>& progress = {});
+[[nodiscard]] std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const std::vector<Log>& logs,
+                                                    const ProcessingOptions& processing, int threads = 0,
+                                                    const std::function<void(double)>& progress = {});
 
 /// The cut-off with the smallest score [Hz].
 [[nodiscard]] double best_cutoff_hz(const std::vector<CutoffPoint>& points);

@@ -15,11 +15,11 @@ namespace deltadyn {
 
 /// The folded rows of one drive.
 struct DriveFold {
-  Eigen::MatrixXd R;            ///< parameters x parameters, upper triangular
-  Eigen::VectorXd d;            ///< parameters
-  double remainder = 0;         ///< what no p can explain, [torque^2]
-  double tau_square = 0;        ///< sum of tau^2
-  double tau_max = 0;           ///< largest |tau|
+  Eigen::MatrixXd R;      ///< parameters x parameters, upper triangular
+  Eigen::VectorXd d;      ///< parameters
+  double remainder = 0;   ///< what no p can explain, [torque^2]
+  double tau_square = 0;  ///< sum of tau^2
+  double tau_max = 0;     ///< largest |tau|
   Eigen::Index rows = 0;
 
   explicit DriveFold(Eigen::Index parameters = 0);

@@ -24,22 +24,22 @@ enum class Reversals {
 };
 
 struct IdentificationOptions {
-  ProcessingOptions processing;        ///< cutoff_hz counts only if choose_cutoff is false
-  bool choose_cutoff = true;           ///< find the cut-off that leaves the smallest residual
+  ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false
+  bool choose_cutoff = true;     ///< find the cut-off that leaves the smallest residual
   Reversals reversals = Reversals::automatic;
-  bool robust = false;                 ///< Huber weights: single rows that stand out count less
+  bool robust = false;  ///< Huber weights: single rows that stand out count less
   BaseParameterOptions base;
   ConsistentFitOptions fit;
-  int threads = 0;                     ///< 0: all
+  int threads = 0;                       ///< 0: all
   std::function<void(double)> progress;  ///< called with the share done, 0 to 1; may be empty
 };
 
 struct DriveReport {
-  Eigen::Index rows = 0;            ///< used
-  Eigen::Index masked_rows = 0;     ///< left out near reversals
-  double reversal_ratio = 1;        ///< rms near reversals over rms elsewhere, of the fit without them
-  double rms_base = 0;              ///< residual of the base parameters [N m | N]
-  double rms = 0;                   ///< residual of the consistent parameters
+  Eigen::Index rows = 0;         ///< used
+  Eigen::Index masked_rows = 0;  ///< left out near reversals
+  double reversal_ratio = 1;     ///< rms near reversals over rms elsewhere, of the fit without them
+  double rms_base = 0;           ///< residual of the base parameters [N m | N]
+  double rms = 0;                ///< residual of the consistent parameters
   double rms_torque = 0;
   DriveNoise noise;
 };
@@ -47,11 +47,11 @@ struct DriveReport {
 struct Identification {
   BaseParameters base;
   BaseEstimate base_estimate;
-  Eigen::VectorXd base_from_fit;       ///< B p of the consistent parameters, to compare with base_estimate
+  Eigen::VectorXd base_from_fit;  ///< B p of the consistent parameters, to compare with base_estimate
   ConsistentFitSummary fit;
   std::vector<DriveReport> drives;
-  std::vector<CutoffPoint> cutoffs;    ///< empty if the cut-off was given
-  ProcessingOptions processing;        ///< as used
+  std::vector<CutoffPoint> cutoffs;  ///< empty if the cut-off was given
+  ProcessingOptions processing;      ///< as used
   Eigen::Index samples = 0;
   double fold_time_s = 0, total_time_s = 0;
   std::vector<std::string> notes;

@@ -22,8 +22,8 @@ struct BaseEstimate {
   Eigen::VectorXd value;       ///< one a base parameter
   Eigen::MatrixXd covariance;  ///< from the residual
   std::vector<DriveNoise> noise;
-  double condition_number = 0; ///< of the weighted Y_B with columns scaled to norm 1
-  double log_det = 0;          ///< of the information matrix Y_B^T W Y_B
+  double condition_number = 0;  ///< of the weighted Y_B with columns scaled to norm 1
+  double log_det = 0;           ///< of the information matrix Y_B^T W Y_B
   /// A p = b in units of the noise: A^T A is the information matrix of the full parameters. parameters x parameters.
   Eigen::MatrixXd A;
   Eigen::VectorXd b;
@@ -32,7 +32,8 @@ struct BaseEstimate {
 };
 
 /// Parameters of the full set that reproduce beta: the dependent ones 0. Not physical; Y p is what counts.
-[[nodiscard]] Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta, Eigen::Index parameters);
+[[nodiscard]] Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta,
+                                             Eigen::Index parameters);
 
 /// First pass weighted by W_tau = diag(tau_max)^-2 (paper IV.A), then by Sigma^-1 from the residual until it settles.
 /// \param folds        one a drive
@@ -44,7 +45,7 @@ struct BaseEstimate {
 /// Ratio of the variance of a mean to that of white noise with the same variance: 1 + 2 sum of the autocorrelations, with a
 /// Bartlett window over `lags` lags (Newey and West 1987).
 /// \param usable  samples to take, the others count as gaps
-[[nodiscard]] double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual, const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable,
-                                       Eigen::Index lags);
+[[nodiscard]] double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                       const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags);
 
 }  // namespace deltadyn

@@ -26,15 +26,15 @@ enum class Periods {
 };
 
 struct ProcessingOptions {
-  bool filter = true;                ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
-  double cutoff_hz = 50;             ///< of the motion; the -3 dB point of the two passes together
-  double torque_cutoff_ratio = 1.25; ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
-  Periods periods = Periods::detect; ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
-  double period_s = 0;               ///< used if periods is `given`
-  double reversal_sigmas = 4;        ///< a rate below this many standard deviations of its noise has no certain sign
-  double reversal_floor = 0.003;     ///< ... nor one below this share of the joint's largest rate
-  bool low_pass_torque = true;       ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
-  int stride = 0;                    ///< use every stride-th sample; 0: what the pass band asks for
+  bool filter = true;                 ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
+  double cutoff_hz = 50;              ///< of the motion; the -3 dB point of the two passes together
+  double torque_cutoff_ratio = 1.25;  ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
+  Periods periods = Periods::detect;  ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
+  double period_s = 0;                ///< used if periods is `given`
+  double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
+  double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
+  bool low_pass_torque = true;        ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
+  int stride = 0;                     ///< use every stride-th sample; 0: what the pass band asks for
 
   /// Throws deltadyn::Error naming the field.
   void validate() const;
@@ -45,13 +45,14 @@ struct PreparedLog {
   std::string file;
   double rate_hz = 0;
   Eigen::VectorXd t_s;
-  Eigen::MatrixXd q, qd, qdd, tau;            ///< N x drives, motion filtered, torque as recorded
+  Eigen::MatrixXd q, qd, qdd, tau;               ///< N x drives, motion filtered, torque as recorded
   std::shared_ptr<const FirDecimator> low_pass;  ///< null without filter
   Eigen::Index first = 0, rows = 0, stride = 1;
-  std::optional<double> period_s;                ///< of a periodic log, whose samples then are means over the periods
-  std::vector<long> line;                     ///< of each sample in the file; empty if unknown
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
-  std::vector<char> filled;                   ///< samples that the log reader repaired; empty: none
+  std::optional<double> period_s;  ///< of a periodic log, whose samples then are means over the periods
+  std::vector<long> line;          ///< of each sample in the file; empty if unknown
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
+      reversal;              ///< N x drives: the sign of a friction in this drive's torque is uncertain
+  std::vector<char> filled;  ///< samples that the log reader repaired; empty: none
   std::vector<std::string> notes;
 };
 
@@ -70,8 +71,8 @@ enum class RowUse : char {
 /// Consecutive rows of a prepared log.
 struct RowBlock {
   Eigen::Index first_row = 0;
-  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x parameters
-  Eigen::MatrixXd tau;             ///< rows x drives, filtered as Y
+  std::vector<Eigen::MatrixXd> Y;                            ///< for each drive: rows x parameters
+  Eigen::MatrixXd tau;                                       ///< rows x drives, filtered as Y
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
@@ -81,6 +82,8 @@ struct RowBlock {
 void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);
 
 /// Sample of a row in the log.
-[[nodiscard]] inline Eigen::Index sample_of_row(const PreparedLog& log, Eigen::Index row) { return log.first + row * log.stride; }
+[[nodiscard]] inline Eigen::Index sample_of_row(const PreparedLog& log, Eigen::Index row) {
+  return log.first + row * log.stride;
+}
 
 }  // namespace deltadyn

@@ -12,8 +12,8 @@ namespace deltadyn {
 /// Rows of a prepared log. All matrices rows x drives.
 struct Prediction {
   Eigen::VectorXd t_s;
-  Eigen::MatrixXd tau, model;     ///< measured and predicted torque, filtered alike [N m | N]
-  Eigen::MatrixXd q, qd, qdd;     ///< of the row's sample
+  Eigen::MatrixXd tau, model;  ///< measured and predicted torque, filtered alike [N m | N]
+  Eigen::MatrixXd q, qd, qdd;  ///< of the row's sample
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
 
   [[nodiscard]] Eigen::MatrixXd residual() const { return tau - model; }

@@ -13,8 +13,8 @@ namespace deltadyn {
 struct ValidatedLog {
   std::string file;
   Eigen::Index samples = 0;
-  double rate_hz = 0;             ///< of the log
-  double row_rate_hz = 0;         ///< of the rows
+  double rate_hz = 0;      ///< of the log
+  double row_rate_hz = 0;  ///< of the rows
   Prediction prediction;
   std::vector<std::string> notes;
 };
@@ -31,7 +31,7 @@ struct ValidatedDrive {
 struct Validation {
   std::vector<ValidatedLog> logs;
   std::vector<ValidatedDrive> drives;
-  ProcessingOptions processing;   ///< as used
+  ProcessingOptions processing;  ///< as used
 };
 
 /// Predicts every log with parameters p. Throws deltadyn::Error as prepare_log does.

@@ -14,9 +14,9 @@ namespace deltadyn {
 /// Rates of one body, all in the body's frame B.
 template <class T, int N>
 struct BodyMotion {
-  Vector3<T> a;       ///< acceleration of the origin minus gravity [m/s^2]
-  Vector3<T> w;       ///< angular velocity [rad/s]
-  Vector3<T> w_d;     ///< angular acceleration [rad/s^2]
+  Vector3<T> a;         ///< acceleration of the origin minus gravity [m/s^2]
+  Vector3<T> w;         ///< angular velocity [rad/s]
+  Vector3<T> w_d;       ///< angular acceleration [rad/s^2]
   Matrix<T, 3, N> J_v;  ///< partial velocity of the origin by qd
   Matrix<T, 3, N> J_w;  ///< partial angular velocity by qd
 };

@@ -32,8 +32,8 @@ struct Motion {
 
 /// Fills all rates of `motion` from its posture, qd and qdd. Cannot fail: the posture is regular.
 template <class T, class Robot>
-void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& qdd,
-                     Motion<T, Robot>& motion);
+void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& qd,
+                     const Vector<T, Robot::kDrives>& qdd, Motion<T, Robot>& motion);
 
 /// Motion of a drive state (q, qd, qdd).
 /// \return out_of_range if a number is not finite, else the status of the forward kinematics
@@ -56,8 +56,8 @@ Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& 
 /// Motion of a task-space state (z, zd, zdd).
 /// \return out_of_range if a number is not finite, else the status of the inverse kinematics or of drive_rates
 template <class T, class Robot>
-Status motion_from_task(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z, const Vector<T, Robot::kDrives>& zd,
-                        const Vector<T, Robot::kDrives>& zdd, Motion<T, Robot>& motion) {
+Status motion_from_task(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z,
+                        const Vector<T, Robot::kDrives>& zd, const Vector<T, Robot::kDrives>& zdd, Motion<T, Robot>& motion) {
   if (!zd.allFinite() || !zdd.allFinite()) return Status::out_of_range;
   Vector<T, Robot::kDrives> q, qd, qdd;
   Status status = inverse_kinematics(geometry, z, q);

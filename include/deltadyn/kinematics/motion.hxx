@@ -39,15 +39,14 @@ void set_telescope_rates(Motion<T, Robot>& motion) {
   rates.b_d = e_P_d.x() / bar.b.cos;
   rates.a_d = -(bar.a.cos * e_P_d.y() + bar.a.sin * e_P_d.z()) / bar.b.cos;
   rates.b_dd = (e_P_dd.x() + bar.b.sin * rates.b_d * rates.b_d) / bar.b.cos;
-  rates.a_dd =
-      (-(bar.a.cos * e_P_dd.y() + bar.a.sin * e_P_dd.z()) + T(2) * bar.b.sin * rates.a_d * rates.b_d) / bar.b.cos;
+  rates.a_dd = (-(bar.a.cos * e_P_dd.y() + bar.a.sin * e_P_dd.z()) + T(2) * bar.b.sin * rates.a_d * rates.b_d) / bar.b.cos;
 }
 
 }  // namespace detail
 
 template <class T, class Robot>
-void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& qdd,
-                     Motion<T, Robot>& motion) {
+void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& qd,
+                     const Vector<T, Robot::kDrives>& qdd, Motion<T, Robot>& motion) {
   const auto& posture = motion.posture;
   constexpr int P = kPlateCoordinates<Robot>;
   motion.qd = qd;
@@ -76,9 +75,9 @@ void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::
       rates.gamma_d = first.y() / limb.gamma.cos;
       rates.beta_d = -(limb.beta.sin * first.x() + limb.beta.cos * first.z()) / limb.gamma.cos;
       rates.gamma_dd = (second.y() + limb.gamma.sin * rates.gamma_d * rates.gamma_d) / limb.gamma.cos;
-      rates.beta_dd = (-(limb.beta.sin * second.x() + limb.beta.cos * second.z()) +
-                       T(2) * limb.gamma.sin * rates.beta_d * rates.gamma_d) /
-                      limb.gamma.cos;
+      rates.beta_dd =
+          (-(limb.beta.sin * second.x() + limb.beta.cos * second.z()) + T(2) * limb.gamma.sin * rates.beta_d * rates.gamma_d) /
+          limb.gamma.cos;
     }
     if constexpr (Robot::kTelescope) detail::set_telescope_rates(motion);
   }

@@ -63,8 +63,8 @@ Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robo
   if constexpr (kHasPlate<Robot>) {
     static_assert(Robot::kLimbs == P, "one limb for each coordinate of the plate");
     const T theta = Robot::kPlateTurns ? z(P - 1) : T(0);
-    Matrix<T, P, P> loops;      // rows u_i^T dA_i/dy
-    Vector<T, P> drive_gain;    // u_i^T dE_i/dq_i
+    Matrix<T, P, P> loops;    // rows u_i^T dA_i/dy
+    Vector<T, P> drive_gain;  // u_i^T dE_i/dq_i
     Matrix3<T> R_LW[Robot::kLimbs];
     for (int i = 0; i < Robot::kLimbs; ++i) {
       auto& limb = posture.limbs[i];

@@ -8,7 +8,9 @@ namespace deltadyn {
 enum class Body { upper_arm, strut, platform, tool, telescope_upper, telescope_lower };
 
 inline constexpr const char* kBodyNames[] = {"upper_arm", "strut", "platform", "tool", "telescope_upper", "telescope_lower"};
-constexpr const char* name(Body body) { return kBodyNames[static_cast<int>(body)]; }
+constexpr const char* name(Body body) {
+  return kBodyNames[static_cast<int>(body)];
+}
 
 /// Paper (4): mass [kg], first moments [kg m], inertia about the body frame's origin [kg m^2].
 inline constexpr int kInertialParameters = 10;

@@ -16,15 +16,16 @@ namespace deltadyn {
 /// One limb: a drive on the base, an upper arm or carriage, and a parallelogram of two struts.
 template <class T>
 struct LimbGeometry {
-  T azimuth = T(0);                                 ///< of the limb frame L about z of W [rad]
-  Vector3<T> p_WD = Vector3<T>::Zero();             ///< drive origin D from W, in W [m]
-  Vector3<T> axis_L = Vector3<T>::UnitY();          ///< unit axis of the drive in L; revolute drives: always +y
-  Vector3<T> p_DE_0 = Vector3<T>::Zero();           ///< elbow centre E from D at q = 0, in L [m]; revolute: (arm length, 0, 0)
-  T strut = T(1);                                   ///< strut length [m]
-  T strut_spacing = T(0.1);                         ///< distance of the two struts of the limb, along y of L [m]
-  Vector3<T> p_BA = Vector3<T>::Zero();             ///< attachment centre A from the origin B of the plate part, in W [m]
-  int part = 0;                                     ///< plate part that holds the attachment
-  T elbow = T(1);  ///< +1: posture with the elbow outwards (revolute) or the carriage behind the plate along -axis; -1: the other one
+  T azimuth = T(0);                         ///< of the limb frame L about z of W [rad]
+  Vector3<T> p_WD = Vector3<T>::Zero();     ///< drive origin D from W, in W [m]
+  Vector3<T> axis_L = Vector3<T>::UnitY();  ///< unit axis of the drive in L; revolute drives: always +y
+  Vector3<T> p_DE_0 = Vector3<T>::Zero();   ///< elbow centre E from D at q = 0, in L [m]; revolute: (arm length, 0, 0)
+  T strut = T(1);                           ///< strut length [m]
+  T strut_spacing = T(0.1);                 ///< distance of the two struts of the limb, along y of L [m]
+  Vector3<T> p_BA = Vector3<T>::Zero();     ///< attachment centre A from the origin B of the plate part, in W [m]
+  int part = 0;                             ///< plate part that holds the attachment
+  T elbow =
+      T(1);  ///< +1: posture with the elbow outwards (revolute) or the carriage behind the plate along -axis; -1: the other one
 };
 
 /// Pose of one part of the plate as a function of (r, theta): offset = c + Rz(theta) a + theta b, orientation Rz(kappa theta).

@@ -52,8 +52,7 @@ template <class T>
 template <class T>
 [[nodiscard]] InertialVector<T> from_pseudo_inertia(const PseudoInertia<T>& M) {
   InertialVector<T> p;
-  p << M(3, 3), M(0, 3), M(1, 3), M(2, 3), M(1, 1) + M(2, 2), M(0, 0) + M(2, 2), M(0, 0) + M(1, 1), -M(0, 1), -M(1, 2),
-      -M(0, 2);
+  p << M(3, 3), M(0, 3), M(1, 3), M(2, 3), M(1, 1) + M(2, 2), M(0, 0) + M(2, 2), M(0, 0) + M(1, 1), -M(0, 1), -M(1, 2), -M(0, 2);
   return p;
 }
 

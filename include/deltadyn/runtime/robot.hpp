@@ -16,10 +16,10 @@ namespace deltadyn {
 
 /// Which columns the parameter vector has.
 struct ParameterOptions {
-  bool individual_limbs = false;  ///< each limb has its own upper_armK and strutK
-  bool tool = true;               ///< the tool's ten parameters (delta4)
-  std::vector<int> rotor_inertia; ///< drives, from 1, that have a column driveK.rotor_inertia
-  bool offset = false;            ///< driveK.offset
+  bool individual_limbs = false;   ///< each limb has its own upper_armK and strutK
+  bool tool = true;                ///< the tool's ten parameters (delta4)
+  std::vector<int> rotor_inertia;  ///< drives, from 1, that have a column driveK.rotor_inertia
+  bool offset = false;             ///< driveK.offset
 };
 
 /// Kinematic and dynamic state of a robot in double precision; all vectors have one entry a drive (= task coordinate).
