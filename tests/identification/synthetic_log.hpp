@@ -12,27 +12,9 @@
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 #include "deltadyn/signal/log.hpp"
+#include "support/descriptions.hpp"
 
 namespace deltadyn::testing_support {
-
-inline RobotDescription delta_description(const std::string& type) {
-  RobotDescription robot;
-  robot.type = robot.name = type;
-  for (int i = 0; i < 3; ++i) {
-    LimbGeometry<double> limb;
-    limb.azimuth = 2 * std::numbers::pi / 3 * i;
-    const Eigen::Vector3d radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
-    limb.p_WD = 0.2 * radial;
-    limb.p_DE_0 = Eigen::Vector3d(0.525, 0, 0);
-    limb.strut = 1.106;
-    limb.p_BA = 0.05 * radial;
-    robot.limbs.push_back(limb);
-  }
-  robot.parts.resize(1);
-  robot.limits.resize(type == "delta4" ? 4 : 3);
-  if (type == "delta4") robot.telescope.emplace();
-  return robot;
-}
 
 /// Slender, consistent bodies of a real robot's size; friction of either kind in every joint.
 inline Eigen::VectorXd delta_truth(const Robot& robot) {
