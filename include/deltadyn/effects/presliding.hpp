@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cmath>
+
+namespace deltadyn {
+
+/// Presliding friction (Dahl 1968; the bristle state of LuGre without its Stribeck curve): after a reversal the friction does not jump but
+/// builds up over a displacement. State z in [-1, 1], the friction as a share of Coulomb's:
+///   dz/dt = (v - |v| z) / x_s,   F = Fc z,   Fc > 0 [N m | N]
+/// with the bristle displacement x_s > 0 [rad | m], 1e-5 to 0.1 rad. For a joint that has a Coulomb column already the effect is
+/// Fc (z - sign v). Valid between breakaway and gross sliding, any speed. Source: Canudas de Wit et al., IEEE TAC 40(3), 1995.
+template <class T>
+class Presliding {
+ public:
+  explicit Presliding(const T& displacement, const T& state = T(0)) : displacement_(displacement), state_(state) {}
+
+  /// Moves the joint by `step` [rad | m] (exact for any size of step) and returns z.
+  const T& move(const T& step) {
+    using std::abs;
+    using std::exp;
+    if (step == T(0)) return state_;
+    const T end = step > T(0) ? T(1) : T(-1);
+    state_ = end + (state_ - end) * exp(-abs(step) / displacement_);
+    return state_;
+  }
+  const T& state() const { return state_; }
+
+ private:
+  T displacement_, state_;
+};
+
+/// dz/dt, for integrators that carry the state themselves.
+template <class T>
+T presliding_rate(const T& rate, const T& state, const T& displacement) {
+  using std::abs;
+  return (rate - abs(rate) * state) / displacement;
+}
+
+}  // namespace deltadyn
