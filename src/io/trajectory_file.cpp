@@ -1,0 +1,164 @@
+#include "deltadyn/io/trajectory_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
+#include <vector>
+
+#include "deltadyn/io/csv.hpp"
+#include "deltadyn/io/log_file.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/differentiate.hpp"
+#include "deltadyn/signal/log_columns.hpp"
+#include "deltadyn/signal/time_grid.hpp"
+#include "deltadyn/trajectory/task_columns.hpp"
+
+namespace deltadyn {
+namespace {
+
+constexpr Eigen::Index kStencil = 7;     // points of a difference of sixth order
+constexpr double kLargestJitter = 0.02;  // of the stamps, share of the sample time, where differences still make sense
+
+/// The named columns if the file has all of them, else nothing.
+Eigen::MatrixXd read_block(const CsvTable& table, const std::vector<std::string>& names) {
+  if (!std::all_of(names.begin(), names.end(), [&](const std::string& name) { return table.find(name).has_value(); })) return {};
+  Eigen::MatrixXd block(static_cast<Eigen::Index>(table.rows()), static_cast<Eigen::Index>(names.size()));
+  for (std::size_t k = 0; k < names.size(); ++k) block.col(static_cast<Eigen::Index>(k)) = table.numbers(names[k]);
+  return block;
+}
+
+Eigen::VectorXd read_times(const CsvTable& table) {
+  const Eigen::VectorXd t = table.numbers("t_s");
+  for (Eigen::Index i = 1; i < t.size(); ++i) {
+    if (!(t(i) > t(i - 1)))
+      throw Error(fmt::format("the time {} s is not after {} s of the row before", t(i), t(i - 1)),
+                  place(table.path(), table.line(static_cast<std::size_t>(i)), "t_s"), "sort the rows by time");
+  }
+  return t;
+}
+
+/// Rates from positions, and accelerations with them, where the file does not hold them.
+void fill_derivatives(const std::string& path, const Eigen::VectorXd& t_s, const Eigen::MatrixXd& x, Eigen::MatrixXd& xd,
+                      Eigen::MatrixXd& xdd) {
+  if (xd.size() > 0 && xdd.size() > 0) return;
+  if (t_s.size() < kStencil)
+    throw Error(fmt::format("{} rows are too few to compute the missing rates and accelerations", t_s.size()), path,
+                fmt::format("give at least {} rows, or the columns of both derivatives", kStencil));
+  const TimeGrid grid = fit_time_grid(t_s);
+  if (grid.index.back() + 1 != t_s.size() || grid.jitter > kLargestJitter)
+    throw Error("the samples are not evenly spaced, so the missing rates and accelerations cannot be computed", path,
+                "give an evenly sampled trajectory, or the columns of both derivatives");
+  if (xd.size() == 0) {
+    xd = differentiate(x, grid.step_s, 1);
+    xdd = differentiate(x, grid.step_s, 2);
+  } else {
+    xdd = differentiate(xd, grid.step_s, 1);
+  }
+}
+
+bool has_drive_columns(const CsvTable& table) {
+  return std::any_of(table.columns().begin(), table.columns().end(),
+                     [](const std::string& name) { return name.rfind("q1_", 0) == 0; });
+}
+
+void require_finite(const TrajectorySamples& samples, const Log& log, const RobotDescription& robot) {
+  const auto check = [&](const Eigen::MatrixXd& block, const auto& column) {
+    for (Eigen::Index row = 0; row < block.rows(); ++row) {
+      for (Eigen::Index drive = 0; drive < block.cols(); ++drive) {
+        if (std::isfinite(block(row, drive))) continue;
+        throw Error("the number is missing or not finite",
+                    place(samples.file, log.line[static_cast<std::size_t>(row)], column(static_cast<int>(drive))),
+                    "fill in the number or remove the column");
+      }
+    }
+  };
+  check(samples.q, [&](int drive) { return drive_columns(robot, drive).q; });
+  check(samples.qd, [&](int drive) { return drive_columns(robot, drive).qd; });
+  check(samples.qdd, [&](int drive) { return drive_columns(robot, drive).qdd; });
+}
+
+}  // namespace
+
+TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
+  const RobotDescription& description = robot.description();
+  const CsvTable table = read_csv(path);
+  TrajectorySamples samples;
+  samples.file = path;
+  samples.t_s = read_times(table);
+
+  std::vector<std::string> z, zd, zdd;
+  for (const TaskColumns& column : task_columns(description)) {
+    z.push_back(column.z);
+    zd.push_back(column.zd);
+    zdd.push_back(column.zdd);
+  }
+  const bool has_task = !description.parts.empty() &&
+                        std::all_of(z.begin(), z.end(), [&](const std::string& name) { return table.find(name).has_value(); });
+  const bool has_drives = has_drive_columns(table);
+  if (!has_task && !has_drives) {
+    const std::string wanted = description.parts.empty() ? z.front() : fmt::format("{}", fmt::join(z, ", "));
+    throw Error(fmt::format("the file has neither the columns {} nor those of the drives; it has {}", wanted,
+                            fmt::join(table.columns(), ", ")),
+                path, "name the columns of the motion with their units, e.g. " + wanted);
+  }
+  if (has_task) {
+    samples.z = read_block(table, z);
+    samples.zd = read_block(table, zd);
+    samples.zdd = read_block(table, zdd);
+    fill_derivatives(path, samples.t_s, samples.z, samples.zd, samples.zdd);
+  }
+  if (has_drives) {
+    LogReadOptions options;
+    options.need_torque = false;
+    options.check = false;
+    const Log log = read_log(path, description, options);
+    samples.q = log.q;
+    samples.qd = log.qd;
+    samples.qdd = log.qdd;
+    require_finite(samples, log, description);
+    fill_derivatives(path, samples.t_s, samples.q, samples.qd, samples.qdd);
+  }
+  if (!has_drives) complete_drives(robot, samples);
+  if (!has_task) complete_task(robot, samples);
+  return samples;
+}
+
+void write_trajectory(const std::string& path, const TrajectorySamples& samples, const RobotDescription& robot,
+                      const std::string& note) {
+  std::string text = note.empty() ? "" : "# " + note + "\n";
+  text += "t_s";
+  std::vector<const Eigen::MatrixXd*> blocks;
+  if (!robot.parts.empty()) {
+    const auto columns = task_columns(robot);
+    for (const TaskColumns& column : columns) text += "," + column.z;
+    for (const TaskColumns& column : columns) text += "," + column.zd;
+    for (const TaskColumns& column : columns) text += "," + column.zdd;
+    blocks = {&samples.z, &samples.zd, &samples.zdd};
+  }
+  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).q;
+  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qd;
+  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qdd;
+  text += '\n';
+  blocks.insert(blocks.end(), {&samples.q, &samples.qd, &samples.qdd});
+
+  OutputFile file(path);
+  constexpr std::size_t kChunk = 1 << 16;
+  for (Eigen::Index row = 0; row < samples.samples(); ++row) {
+    fmt::format_to(std::back_inserter(text), "{}", samples.t_s(row));
+    for (const Eigen::MatrixXd* block : blocks) {
+      for (Eigen::Index k = 0; k < block->cols(); ++k) fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, k));
+    }
+    text += '\n';
+    if (text.size() >= kChunk) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace deltadyn
