@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
@@ -149,6 +150,18 @@ class RobotOf final : public Robot {
     Posture<double, R> posture;
     const Status status = posture_from_drives(geometry_, Drives(q), posture);
     if (status == Status::ok) M = deltadyn::mass_matrix<Layout>(geometry_, posture, all_columns(p));
+    return status;
+  }
+
+  Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau, const ConstRef& p,
+                          Eigen::Ref<Vector> qdd) const override {
+    Posture<double, R> posture;
+    Status status = posture_from_drives(geometry_, Drives(q), posture);
+    Drives out;
+    if (status == Status::ok) {
+      status = deltadyn::forward_dynamics<Layout, double, R>(geometry_, posture, Drives(qd), Drives(tau), all_columns(p), out);
+    }
+    if (status == Status::ok) qdd = out;
     return status;
   }
 

@@ -65,6 +65,9 @@ TEST(Robot, ForwardsToTheFixedSizeCore) {
   EXPECT_THAT((Y * p).eval(), IsNear(tau, 1e-9));
   ASSERT_EQ(robot->mass_matrix(q, p, M), Status::ok);
   EXPECT_THAT(M, IsNear(mass_matrix<Layout>(geometry, motion.posture, p), 1e-10));
+  Eigen::VectorXd qdd_again(4);
+  ASSERT_EQ(robot->forward_dynamics(q, qd, tau, p, qdd_again), Status::ok);
+  EXPECT_THAT(qdd_again, IsNear(qdd, 1e-9 * qdd.norm()));
   ASSERT_EQ(robot->friction_joint_rates(q, qd, rates), Status::ok);
   EXPECT_THAT(rates.head(4).eval(), IsNear(qd, 0));
   EXPECT_NEAR(rates(4), motion.telescope.length_d, 1e-10);
@@ -121,6 +124,7 @@ TEST(Robot, LeavesTheOutputAloneOnFailure) {
   EXPECT_EQ(robot->forward_kinematics(bad, out), Status::out_of_range);
   const Eigen::VectorXd p = Eigen::VectorXd::Ones(robot->parameters());
   EXPECT_EQ(robot->inverse_dynamics(bad, bad, bad, p, out), Status::out_of_range);
+  EXPECT_EQ(robot->forward_dynamics(bad, bad, bad, p, out), Status::out_of_range);
   EXPECT_EQ(out, Eigen::VectorXd::Constant(3, 42));
 }
 

@@ -24,27 +24,27 @@ struct PointCurve {
 /// Posture of one limb; vectors in the limb frame L.
 template <class T, int N>
 struct LimbPosture {
-  SinCos<T> azimuth;        ///< of R_WL
-  SinCos<T> q;              ///< of the drive angle (revolute drives)
-  PointCurve<T> p_DE;       ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
-  PointCurve<T> p_BA;       ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
-  Vector3<T> u;             ///< unit vector of the strut
-  SinCos<T> beta;           ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
-  SinCos<T> gamma;          ///< strut angle about its own z
-  RowVector<T, N> J_beta;   ///< d beta / dq
-  RowVector<T, N> J_gamma;  ///< d gamma / dq
+  SinCos<T> azimuth;                  ///< of R_WL
+  SinCos<T> q;                        ///< of the drive angle (revolute drives)
+  PointCurve<T> p_DE;                 ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
+  PointCurve<T> p_BA;                 ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  Vector3<T> u = Vector3<T>::Zero();  ///< unit vector of the strut
+  SinCos<T> beta;                     ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
+  SinCos<T> gamma;                    ///< strut angle about its own z
+  RowVector<T, N> J_beta = RowVector<T, N>::Zero();   ///< d beta / dq
+  RowVector<T, N> J_gamma = RowVector<T, N>::Zero();  ///< d gamma / dq
 };
 
 /// Posture of the telescope bar, R_WT = Rz(psi) Rx(a) Ry(b), z of T along the bar, pointing up.
 template <class T, int N>
 struct TelescopePosture {
   SinCos<T> psi, a, b;
-  T length = T(1);           ///< distance of the universal joints [m]
-  Vector3<T> e;              ///< unit vector along the bar from the lower to the upper joint, in W
-  Vector3<T> e_P;            ///< the same in the frame turned by psi
-  Matrix<T, 3, N> J_e;       ///< de/dq, in W
-  RowVector<T, N> J_length;  ///< d length / dq [m/rad]
-  RowVector<T, N> J_a, J_b;  ///< da/dq, db/dq
+  T length = T(1);                                     ///< distance of the universal joints [m]
+  Vector3<T> e = Vector3<T>::Zero();                   ///< unit vector along the bar from the lower to the upper joint, in W
+  Vector3<T> e_P = Vector3<T>::Zero();                 ///< the same in the frame turned by psi
+  Matrix<T, 3, N> J_e = Matrix<T, 3, N>::Zero();       ///< de/dq, in W
+  RowVector<T, N> J_length = RowVector<T, N>::Zero();  ///< d length / dq [m/rad]
+  RowVector<T, N> J_a = RowVector<T, N>::Zero(), J_b = RowVector<T, N>::Zero();  ///< da/dq, db/dq
 };
 
 template <class T, class Robot>

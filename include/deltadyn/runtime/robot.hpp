@@ -64,6 +64,10 @@ class Robot {
                                                 Eigen::Ref<Vector> tau) const = 0;
   /// M(q) of (1), drives x drives, symmetric.
   [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M) const = 0;
+  /// qdd of drive torques tau, (1) solved by Cholesky's factorisation of M [rad/s^2 | m/s^2]. At rest Coulomb friction gives no
+  /// torque (sign(0) = 0). out_of_range if M is not positive definite, i.e. p is not physically consistent.
+  [[nodiscard]] virtual Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau, const ConstRef& p,
+                                                Eigen::Ref<Vector> qdd) const = 0;
   /// Rates of the joints with friction: drives, then the telescope's prismatic joint if there is one [rad/s | m/s].
   [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const = 0;
   [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
