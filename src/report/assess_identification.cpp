@@ -236,14 +236,7 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
   }
   const std::vector<std::string> urgent = urgent_gaps(gaps);
   out.lines.insert(out.lines.end(), urgent.begin(), urgent.end());
-  if (shape.verdict == Verdict::good && size.verdict == Verdict::good) {
-    out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
-                                                        : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
-  }
-  const Check& reversals = out.checks.back();
-  if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {
-    out.lines.push_back(fmt::format("Near velocity reversals: {}. {}", reversals.figure, reversals.meaning));
-  }
+  remark_on_rest(shape, out.checks.back(), out);
   return out;
 }
 

@@ -45,14 +45,7 @@ Assessment assess_validation(const Robot& robot, const Validation& validation, c
   conclude({fmt::format("The model predicts these logs: the residual is at most {}.", size.figure),
             "The model predicts these logs with reservations", "The model does not predict these logs"},
            out);
-  if (shape.verdict == Verdict::good) {
-    out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
-                                                        : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
-  }
-  const Check& reversals = out.checks.back();
-  if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {
-    out.lines.push_back(fmt::format("Near velocity reversals: {}. {}", reversals.figure, reversals.meaning));
-  }
+  remark_on_rest(shape, out.checks.back(), out);
   return out;
 }
 

@@ -260,4 +260,14 @@ void conclude(const Headlines& headlines, Assessment& out) {
   }
 }
 
+void remark_on_rest(const Check& shape, const Check& reversals, Assessment& out) {
+  if (shape.verdict == Verdict::good) {
+    out.lines.emplace_back(shape.figure == "like noise" ? "What the model leaves over looks like measurement noise."
+                                                        : fmt::format("Residual: {}. {}", shape.figure, shape.meaning));
+  }
+  if (reversals.verdict == Verdict::good && reversals.figure.starts_with("residual there")) {
+    out.lines.push_back(fmt::format("Near velocity reversals: {}. {}", reversals.figure, reversals.meaning));
+  }
+}
+
 }  // namespace deltadyn

@@ -35,6 +35,8 @@ struct Headlines {
 };
 /// Verdict, headline and a line for every check that is not good, from the checks in `out`.
 void conclude(const Headlines& headlines, Assessment& out);
+/// The last lines: what the checks of the residual's shape and of the reversals found, where that is no cause for care.
+void remark_on_rest(const Check& shape, const Check& reversals, Assessment& out);
 
 /// Coordinate that the residual follows most, empty if none.
 [[nodiscard]] std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found);

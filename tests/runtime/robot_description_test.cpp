@@ -8,47 +8,16 @@
 
 #include "deltadyn/runtime/error.hpp"
 
+#include "support/descriptions.hpp"
+
 namespace deltadyn {
 namespace {
 
 using ::testing::HasSubstr;
+using testing_support::axis_description;
+using testing_support::delta_description;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-RobotDescription delta(const std::string& type) {
-  RobotDescription robot;
-  robot.name = type;
-  robot.type = type;
-  robot.drive_kind = type == "linear-delta3" ? DriveKind::prismatic : DriveKind::revolute;
-  for (int i = 0; i < 3; ++i) {
-    LimbGeometry<double> limb;
-    limb.azimuth = 2.0 * i;
-    limb.strut = 1;
-    if (robot.drive_kind == DriveKind::prismatic) {
-      limb.axis_L = -Vector3<double>::UnitZ();
-    } else {
-      limb.p_DE_0.x() = 0.4;
-    }
-    robot.limbs.push_back(limb);
-    robot.limits.emplace_back();
-  }
-  robot.parts.emplace_back();
-  if (type == "delta4") {
-    robot.telescope.emplace();
-    robot.limits.emplace_back();
-  }
-  return robot;
-}
-
-RobotDescription axis(DriveKind kind) {
-  RobotDescription robot;
-  robot.type = "axis";
-  robot.drive_kind = kind;
-  robot.limbs.emplace_back();
-  if (kind == DriveKind::prismatic) robot.limbs[0].axis_L = Vector3<double>::UnitX();
-  robot.limits.emplace_back();
-  return robot;
-}
 
 TEST(DriveLimits, AreUnlimitedUnlessGiven) {
   const DriveLimits limits;
@@ -61,16 +30,16 @@ TEST(DriveLimits, AreUnlimitedUnlessGiven) {
 }
 
 TEST(RobotDescription, GoodOnesPass) {
-  for (const char* type : {"delta3", "linear-delta3", "delta4"}) EXPECT_NO_THROW(delta(type).validate("r")) << type;
-  EXPECT_NO_THROW(axis(DriveKind::revolute).validate("r"));
-  EXPECT_NO_THROW(axis(DriveKind::prismatic).validate("r"));
+  for (const char* type : {"delta3", "linear-delta3", "delta4"}) EXPECT_NO_THROW(delta_description(type).validate("r")) << type;
+  EXPECT_NO_THROW(axis_description(DriveKind::revolute).validate("r"));
+  EXPECT_NO_THROW(axis_description(DriveKind::prismatic).validate("r"));
 }
 
 TEST(RobotDescription, CountsAndKindsOfDrives) {
-  const RobotDescription robot = delta("delta4");
+  const RobotDescription robot = delta_description("delta4");
   EXPECT_EQ(robot.drives(), 4);
   EXPECT_EQ(robot.kind_of_drive(3), DriveKind::revolute);
-  EXPECT_EQ(delta("linear-delta3").kind_of_drive(0), DriveKind::prismatic);
+  EXPECT_EQ(delta_description("linear-delta3").kind_of_drive(0), DriveKind::prismatic);
 }
 
 struct Fault {
@@ -84,7 +53,7 @@ struct Fault {
 class FaultyDescription : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(FaultyDescription, IsRefusedInPlainWords) {
-  RobotDescription robot = delta(GetParam().type);
+  RobotDescription robot = delta_description(GetParam().type);
   GetParam().spoil(robot);
   try {
     robot.validate("robot.urdf");
