@@ -25,25 +25,6 @@ namespace {
 using namespace deltadyn;
 using tools::ToolRun;
 
-/// The layout that a parameter file was written in: limbs of their own, rotor inertias, offsets.
-ParameterOptions layout_of(const ParameterTable& table, const RobotDescription& robot) {
-  ParameterOptions options;
-  for (const ParameterEntry& entry : table.entries) {
-    for (const char* body : {"upper_arm", "strut"}) {
-      const std::string prefix = body;
-      if (entry.name.compare(0, prefix.size(), prefix) == 0 && entry.name.size() > prefix.size() &&
-          std::isdigit(entry.name[prefix.size()])) {
-        options.individual_limbs = true;
-      }
-    }
-    for (int j = 1; j <= robot.drives(); ++j) {
-      if (entry.name == fmt::format("drive{}.rotor_inertia", j)) options.rotor_inertia.push_back(j);
-      if (entry.name == fmt::format("drive{}.offset", j)) options.offset = true;
-    }
-  }
-  return options;
-}
-
 class Validate {
  public:
   Validate(int argc, char** argv) : command_line_(tools::command_line(argc, argv)) {}
@@ -70,7 +51,7 @@ class Validate {
     }
     const RobotDescription description = read_robot_file(robot_file_);
     const ParameterTable table = read_parameters(parameter_file_);
-    const auto robot = make_robot(description, layout_of(table, description));
+    const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     const std::vector<Log> logs = processing_.read_logs(log_files_, description);

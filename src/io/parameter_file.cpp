@@ -214,6 +214,21 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
   return match;
 }
 
+ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot) {
+  const auto any = [&table](auto&& of_it) {
+    return std::any_of(table.entries.begin(), table.entries.end(),
+                       [&](const ParameterEntry& entry) { return of_it(entry.name); });
+  };
+  ParameterOptions options;
+  options.individual_limbs = any([](const std::string& name) { return !shared_name(name).empty(); });
+  options.tool = any([](const std::string& name) { return name.compare(0, 5, "tool.") == 0; });
+  for (int drive = 1; drive <= robot.drives(); ++drive) {
+    if (table.find(fmt::format("drive{}.rotor_inertia", drive)) != nullptr) options.rotor_inertia.push_back(drive);
+    options.offset = options.offset || table.find(fmt::format("drive{}.offset", drive)) != nullptr;
+  }
+  return options;
+}
+
 Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,
                        const std::vector<std::string>& units) {
   return match_parameters(table, names, units).value;

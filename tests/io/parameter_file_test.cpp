@@ -7,6 +7,7 @@
 #include "deltadyn/runtime/error.hpp"
 
 #include "io/temporary_folder.hpp"
+#include "support/descriptions.hpp"
 
 namespace deltadyn {
 namespace {
@@ -117,6 +118,20 @@ TEST(ParameterFile, WritesNothingWhenAValueIsNotFinite) {
   table.entries.push_back({"strut.m", std::nan(""), "kg"});
   EXPECT_THROW(write_parameters(folder.path("p.csv"), table), Error);
   EXPECT_EQ(folder.files(), 0);
+}
+
+// What is read by name must land in the columns that were written.
+TEST(ParameterOptionsOf, FindsTheColumnsThatAFileWasWrittenFor) {
+  const RobotDescription robot = testing_support::delta_description("delta4");
+  for (const bool individual : {false, true}) {
+    for (const bool tool : {false, true}) {
+      const ParameterOptions written{individual, tool, tool ? std::vector<int>{1, 4} : std::vector<int>{}, individual};
+      const auto columns_of = [&](const ParameterOptions& options) { return make_robot(robot, options)->parameter_names(); };
+      ParameterTable table;
+      for (const std::string& name : columns_of(written)) table.entries.push_back({name, 1.0, ""});
+      EXPECT_EQ(columns_of(parameter_options_of(table, robot)), columns_of(written));
+    }
+  }
 }
 
 }  // namespace

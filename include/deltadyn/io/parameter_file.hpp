@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/runtime/robot.hpp"
+
 namespace deltadyn {
 
 /// One row. std, prior and data_share are NaN where the file does not give them.
@@ -50,6 +52,9 @@ struct ParameterMatch {
 /// the shared one is wanted.
 [[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
                                               const std::vector<std::string>& units = {});
+
+/// The columns that a parameter file was written for: limbs of their own, the tool, rotor inertias, offsets.
+[[nodiscard]] ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot);
 
 /// match_parameters(table, names, units).value
 [[nodiscard]] Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,
