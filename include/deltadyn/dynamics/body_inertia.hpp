@@ -42,6 +42,26 @@ struct BodyInertia {
     return m * body.J_v.transpose().lazyProduct(body.J_v) - body.J_v.transpose().lazyProduct(coupling) -
            coupling.transpose().lazyProduct(body.J_v) + body.J_w.transpose().lazyProduct(rotation);
   }
+
+  /// The body's share of C(q, qd); N x N. With A = Jd_v and B = Jd_w the rates of the Jacobians it is
+  /// J_v^T (m A - mc x B - w x (mc x J_w)) + J_w^T (mc x A + I B + (P w) x J_w), P = tr(I)/2 - I the second moments of mass:
+  /// the integral of (dr/dq)^T d/dt(dr/dq) over the mass. These are the Christoffel symbols of the body's kinetic energy, so
+  /// that Mdot = C + C^T, Mdot - 2C is skew-symmetric, and d(C qd)/dqd = 2C.
+  template <int N>
+  Matrix<T, N, N> coriolis_matrix(const BodyState<T, N>& body) const {
+    const Matrix3<T> S = skew(mc);
+    const Vector3<T> P_w = T(0.5) * I.trace() * body.w - I.lazyProduct(body.w);
+    const Matrix<T, 3, N> force =
+        m * body.Jd_v - S.lazyProduct(body.Jd_w) - Matrix3<T>(skew(body.w).lazyProduct(S)).lazyProduct(body.J_w);
+    const Matrix<T, 3, N> moment = S.lazyProduct(body.Jd_v) + I.lazyProduct(body.Jd_w) + skew(P_w).lazyProduct(body.J_w);
+    return body.J_v.transpose().lazyProduct(force) + body.J_w.transpose().lazyProduct(moment);
+  }
+
+  /// The body's share of g(q), for gravity in the body's frame.
+  template <int N>
+  Vector<T, N> gravity_torque(const BodyMotion<T, N>& body, const Vector3<T>& gravity_B) const {
+    return -(body.J_v.transpose().lazyProduct(m * gravity_B) + body.J_w.transpose().lazyProduct(mc.cross(gravity_B)));
+  }
 };
 
 /// The inertia of a body in parameters p of a layout.

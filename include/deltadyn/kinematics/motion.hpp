@@ -76,6 +76,24 @@ Matrix<T, Robot::kDrives, Robot::kDrives> task_jacobian(const Posture<T, Robot>&
   return J;
 }
 
+/// dq/dz, N x N, the inverse of task_jacobian().
+/// \return singular where a drive cannot follow the plate
+template <class T, class Robot>
+Status drive_jacobian(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                      Matrix<T, Robot::kDrives, Robot::kDrives>& J) {
+  J.setIdentity();
+  if constexpr (kHasPlate<Robot>) {
+    for (int column = 0; column < Robot::kDrives; ++column) {
+      using Drives = Vector<T, Robot::kDrives>;
+      Drives qd, qdd;
+      const Status status = drive_rates<T, Robot>(geometry, posture, Drives::Unit(column), Drives::Zero(), qd, qdd);
+      if (status != Status::ok) return status;
+      J.col(column) = qd;
+    }
+  }
+  return Status::ok;
+}
+
 }  // namespace deltadyn
 
 #include "deltadyn/kinematics/motion.hxx"
