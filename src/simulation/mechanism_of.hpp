@@ -1,0 +1,133 @@
+#pragma once
+
+/// \file
+/// Mechanism for one compile-time type.
+
+#include <memory>
+
+#include "deltadyn/dynamics/forward_dynamics.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/simulation/mechanism.hpp"
+
+namespace deltadyn::detail {
+
+template <class R>
+class MechanismOf final : public Mechanism {
+ public:
+  using Layout = ParameterLayout<R, Limbs::individual>;
+  static constexpr int N = R::kDrives;
+  using Drives = Vector<double, N>;
+
+  MechanismOf(const RobotDescription& description, const Eigen::VectorXd& p, const MechanismOptions& options)
+      : geometry_(geometry_of<double, R>(description)), p_(p), passive_(options.passive_joints && kHasPlate<R>) {
+    for (int j = 0; j < Layout::kFrictionJoints; ++j) p_(Layout::viscous(j)) = p_(Layout::coulomb(j)) = 0;
+    for (int j = 0; j < N && options.home_offset.size() == N; ++j) home_offset_(j) = options.home_offset(j);
+    drives_ = N;
+    multiplicity_.assign(static_cast<std::size_t>(Layout::kFrictionJoints), 1.0);
+    if (R::kTelescope) telescope_ = N;
+    if (passive_) {
+      // As effects/passive_joint_friction.hpp counts them: two struts a limb with a ball at either end.
+      for (int i = 0; i < R::kLimbs; ++i) multiplicity_.insert(multiplicity_.end(), {2.0, 2.0, 4.0});
+      if (R::kTelescope) multiplicity_.insert(multiplicity_.end(), {2.0, 2.0});
+    }
+  }
+
+  Status evaluate(const DriveVector& q, const DriveVector& qd, MechanismTerms& terms) const override {
+    Motion<double, R> motion;
+    Drives true_q, rates;
+    for (int j = 0; j < N; ++j) {
+      true_q(j) = q(j) + home_offset_(j);
+      rates(j) = qd(j);
+    }
+    if (!rates.allFinite()) return Status::out_of_range;
+    if (const Status status = posture_from_drives(geometry_, true_q, motion.posture); status != Status::ok) return status;
+    set_drive_rates<double, R>(geometry_, rates, Drives::Zero(), motion);
+    Matrix<double, N, N> M;
+    Drives bias;
+    mass_and_bias<Layout, double, R>(geometry_, motion.posture, rates, p_, M, bias);
+    // Entry by entry: gcc 12 takes Eigen's copy of one number to dynamic size for a read past its end.
+    terms.M.resize(N, N);
+    terms.bias.resize(N);
+    for (int i = 0; i < N; ++i) {
+      terms.bias(i) = bias(i);
+      for (int j = 0; j < N; ++j) terms.M(i, j) = M(i, j);
+    }
+    set_joints(motion, terms);
+    if constexpr (kHasPlate<R>) {
+      terms.r = motion.posture.z.template head<3>();
+      terms.v = motion.zd.template head<3>();
+      terms.a_bias = motion.zdd.template head<3>();
+      terms.J_r = motion.posture.J_plate.template topRows<3>();
+      if constexpr (R::kTelescope) terms.bar = motion.posture.telescope.e;
+    }
+    return Status::ok;
+  }
+
+ private:
+  void set_joints(const Motion<double, R>& motion, MechanismTerms& terms) const {
+    const int count = joints();
+    if (terms.J.rows() != count || terms.J.cols() != N) {
+      terms.position = terms.rate = terms.bias_rate = JointVector::Zero(count);
+      terms.J.setZero(count, N);
+    }
+    terms.J.template topRows<N>().setIdentity();
+    terms.position.template head<N>() = motion.posture.q;
+    terms.rate.template head<N>() = motion.qd;
+    terms.bias_rate.template head<N>().setZero();
+    int row = N;
+    const auto add = [&](double position, double rate, double bias_rate, const RowVector<double, N>& J) {
+      terms.position(row) = position;
+      terms.rate(row) = rate;
+      terms.bias_rate(row) = bias_rate;
+      terms.J.row(row++) = J;
+    };
+    if constexpr (R::kTelescope) {
+      add(motion.posture.telescope.length, motion.telescope.length_d, motion.telescope.length_dd,
+          motion.posture.telescope.J_length);
+    }
+    if (!passive_) return;
+    if constexpr (kHasPlate<R>) {
+      for (int i = 0; i < R::kLimbs; ++i) {
+        const auto& posture = motion.posture.limbs[i];
+        const auto& rates = motion.limbs[i];
+        RowVector<double, N> J_elbow = posture.J_beta;
+        double elbow_rate = rates.beta_d;
+        if constexpr (R::kDrive == DriveKind::revolute) {
+          J_elbow(i) -= 1.0;
+          elbow_rate -= motion.qd(i);
+        }
+        add(0, elbow_rate, rates.beta_dd, J_elbow);
+        add(0, rates.beta_d, rates.beta_dd, posture.J_beta);
+        add(0, rates.gamma_d, rates.gamma_dd, posture.J_gamma);
+      }
+      if constexpr (R::kTelescope) {
+        add(0, motion.telescope.a_d, motion.telescope.a_dd, motion.posture.telescope.J_a);
+        add(0, motion.telescope.b_d, motion.telescope.b_dd, motion.posture.telescope.J_b);
+      }
+    }
+  }
+
+  Geometry<double, R> geometry_;
+  Vector<double, Layout::kColumns> p_;
+  Drives home_offset_ = Drives::Zero();
+  bool passive_;
+};
+
+/// One translation unit for each type, so that they build side by side.
+template <class R>
+std::unique_ptr<Mechanism> make_mechanism_of(const RobotDescription& description, const Eigen::VectorXd& p,
+                                             const MechanismOptions& options) {
+  return std::make_unique<MechanismOf<R>>(description, p, options);
+}
+extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta3>(const RobotDescription&, const Eigen::VectorXd&,
+                                                                     const MechanismOptions&);
+extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearDelta3>(const RobotDescription&, const Eigen::VectorXd&,
+                                                                           const MechanismOptions&);
+extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta4>(const RobotDescription&, const Eigen::VectorXd&,
+                                                                     const MechanismOptions&);
+extern template std::unique_ptr<Mechanism> make_mechanism_of<Axis>(const RobotDescription&, const Eigen::VectorXd&,
+                                                                   const MechanismOptions&);
+extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearAxis>(const RobotDescription&, const Eigen::VectorXd&,
+                                                                         const MechanismOptions&);
+
+}  // namespace deltadyn::detail

@@ -1,0 +1,159 @@
+#include "deltadyn/simulation/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+namespace {
+
+/// Ratio of two rates, which must be a whole number.
+int whole_ratio(double high, double low) {
+  const double ratio = high / low;
+  const double whole = std::round(ratio);
+  if (!(whole >= 1 && whole < 1e6 && std::abs(ratio - whole) < 1e-9 * whole)) {
+    throw Error(fmt::format("the controller's rate of {} Hz is no whole multiple of the log's {} Hz", high, low), "",
+                "give --control-rate-hz as a multiple of --rate-hz", ExitCode::usage);
+  }
+  return static_cast<int>(whole);
+}
+
+/// Rows of the log as they come.
+class Recorder {
+ public:
+  Recorder(Eigen::Index rows, int drives) : drives_(drives) {
+    t.resize(rows);
+    for (Eigen::MatrixXd* m : {&q, &qd, &qdd, &tau, &reading}) m->resize(rows, drives);
+  }
+  Eigen::VectorXd t;
+  Eigen::MatrixXd q, qd, qdd, tau, reading;
+
+  void finish(const std::vector<Effect>& effects, const SimulationOptions& options, SimulationResult& result) const {
+    result.log.t_s = t;
+    result.log.q = reading;
+    result.log.qd = qd;
+    result.log.qdd = qdd;
+    result.log.tau = recorded_torque(t, tau, effects, options.sensors, options.seed + 0x9e3779b97f4a7c15ULL);
+    result.true_q = q;
+    result.true_tau = tau;
+    result.largest_torque = tau.cwiseAbs().colwise().maxCoeff();
+  }
+
+ private:
+  int drives_;
+};
+
+SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,
+                       const SimulationOptions& options, Eigen::Index first, Eigen::Index samples) {
+  const int n = reference.drives();
+  SimulationResult result;
+  Recorder record(samples - first, n);
+  Encoders encoders(n, options.sensors, options.seed);
+  ReferenceMotion::State state;
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const double time = static_cast<double>(k) / options.log_rate_hz;
+    reference.at(time, state);
+    const DriveVector tau = plant.inverse(time, state.q, state.qd, state.qdd);
+    if (k < first) continue;
+    const Eigen::Index row = k - first;
+    record.t(row) = static_cast<double>(row) / options.log_rate_hz;
+    record.q.row(row) = state.q;
+    record.qd.row(row) = state.qd;
+    record.qdd.row(row) = state.qdd;
+    record.tau.row(row) = tau;
+    record.reading.row(row) = encoders.read(state.q);
+  }
+  record.finish(effects, options, result);
+  result.rms_error = result.largest_error = Eigen::VectorXd::Zero(n);
+  return result;
+}
+
+}  // namespace
+
+void SimulationOptions::validate(int drives) const {
+  const auto positive = [](double value, const char* what) {
+    if (!(value > 0 && std::isfinite(value))) {
+      throw Error(fmt::format("{} of {} Hz", what, value), "", "give a positive number", ExitCode::usage);
+    }
+  };
+  positive(log_rate_hz, "a rate of the log");
+  positive(control_rate_hz, "a rate of the controller");
+  if (!inverse) (void)whole_ratio(control_rate_hz, log_rate_hz);
+  if (!(discard_s >= 0)) throw Error(fmt::format("{} s of the start to leave out", discard_s), "", "", ExitCode::usage);
+  sensors.validate(drives);
+  controller.validate(drives);
+}
+
+SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorXd& p, const ReferenceMotion& reference,
+                          const std::vector<Effect>& effects, const SimulationOptions& options) {
+  const int n = reference.drives();
+  options.validate(n);
+  const auto samples = static_cast<Eigen::Index>(std::floor(reference.duration_s() * options.log_rate_hz + 1e-6)) + 1;
+  const auto first = static_cast<Eigen::Index>(std::ceil(options.discard_s * options.log_rate_hz - 1e-6));
+  if (samples - first < 2) {
+    throw Error(fmt::format("the motion of {:.4g} s leaves no log after {:.4g} s", reference.duration_s(), options.discard_s), "",
+                "give a longer motion, a higher rate, or discard less", ExitCode::usage);
+  }
+  if (options.inverse) return along(plant, reference, effects, options, first, samples);
+
+  SimulationResult result;
+  Recorder record(samples - first, n);
+  const int ratio = whole_ratio(options.control_rate_hz, options.log_rate_hz);
+  const double period = 1 / options.control_rate_hz;
+  ReferenceMotion::State wanted;
+  reference.at(0, wanted);
+  Controller controller(model, p, options.controller, period, wanted.q);
+  Encoders encoders(n, options.sensors, options.seed);
+  DriveVector limit(n);
+  for (int j = 0; j < n; ++j) limit(j) = model.description().limits[static_cast<std::size_t>(j)].effort;
+  plant.start(wanted.q, wanted.qd);
+  const double energy = plant.kinetic_and_spring_energy();
+  DriveVector tau_before, qdd_before;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(n);
+  result.largest_error = Eigen::VectorXd::Zero(n);
+  const Eigen::Index controls = (samples - 1) * ratio + 1;
+  for (Eigen::Index k = 0; k < controls; ++k) {
+    const double time = static_cast<double>(k) * period;
+    reference.at(time, wanted);
+    const Eigen::VectorXd reading = encoders.read(plant.q());
+    DriveVector tau = controller.torque(wanted, reading);
+    for (int j = 0; j < n; ++j) {
+      if (std::abs(tau(j)) <= limit(j)) continue;
+      tau(j) = std::clamp(tau(j), -limit(j), limit(j));
+      ++result.clipped;
+    }
+    plant.command(tau);
+    const DriveVector tau_now = plant.torque(), qdd_now = plant.qdd();
+    if (k == 0) {
+      tau_before = tau_now;
+      qdd_before = qdd_now;
+    }
+    const Eigen::Index row = k / ratio - first;
+    if (k % ratio == 0 && row >= 0) {
+      record.t(row) = static_cast<double>(row) / options.log_rate_hz;
+      record.q.row(row) = plant.q();
+      record.qd.row(row) = plant.qd();
+      record.qdd.row(row) = 0.5 * (qdd_before + qdd_now);
+      record.tau.row(row) = 0.5 * (tau_before + tau_now);
+      record.reading.row(row) = reading;
+      const Eigen::VectorXd error = wanted.q - record.q.row(row).transpose();
+      squares += error.cwiseAbs2();
+      result.largest_error = result.largest_error.cwiseMax(error.cwiseAbs());
+    }
+    if (k + 1 < controls) plant.advance(period);
+    tau_before = plant.torque();
+    qdd_before = plant.qdd();
+    if (options.progress && k % 256 == 0) options.progress(static_cast<double>(k) / static_cast<double>(controls));
+  }
+  record.finish(effects, options, result);
+  result.rms_error = (squares / static_cast<double>(samples - first)).cwiseSqrt();
+  result.counts = plant.counts();
+  result.work = plant.work();
+  result.losses = plant.losses();
+  result.energy_change = plant.kinetic_and_spring_energy() - energy;
+  return result;
+}
+
+}  // namespace deltadyn
