@@ -1,5 +1,6 @@
 #pragma once
 
+#include "deltadyn/core/rotation.hpp"
 #include "deltadyn/core/types.hpp"
 
 namespace deltadyn {
@@ -10,7 +11,7 @@ namespace deltadyn {
 template <class T>
 Vector3<T> tilted_gravity(const Vector3<T>& gravity, const T& angle_x, const T& angle_y) {
   const Vector3<T> delta(angle_x, angle_y, T(0));
-  return gravity + delta.cross(gravity);
+  return gravity + skew(delta) * gravity;
 }
 
 }  // namespace deltadyn

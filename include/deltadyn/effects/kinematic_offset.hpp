@@ -14,9 +14,10 @@ T kinematic_step() {
 }
 
 /// d(tau)/d(kappa) from the torques at kappa + step and kappa - step.
-template <class T>
-T kinematic_offset(const T& torque_plus, const T& torque_minus) {
-  return (torque_plus - torque_minus) / (T(2) * kinematic_step<T>());
+/// \tparam T  a scalar, or an Eigen array of one torque a drive
+template <class T, class Scalar>
+T kinematic_offset(const T& torque_plus, const T& torque_minus, const Scalar& step) {
+  return (torque_plus - torque_minus) / (Scalar(2) * step);
 }
 
 }  // namespace deltadyn

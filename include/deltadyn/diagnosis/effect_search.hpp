@@ -1,0 +1,89 @@
+#pragma once
+
+/// \file
+/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs, backward
+/// (diagnosis page, steps 3, 5, 7, 8).
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "deltadyn/diagnosis/generic_basis.hpp"
+#include "deltadyn/diagnosis/null_study.hpp"
+#include "deltadyn/diagnosis/white_problem.hpp"
+
+namespace deltadyn {
+
+/// AR noise of every drive and log from the residual of base model, accepted effects and generic basis; refined in white rows, then
+/// scaled so that the white residual has unit variance.
+/// \param floor  if given, [log][drive] rms of that residual in the rows themselves: no model can do better [N m | N]
+[[nodiscard]] PerLogAndDrive<NoiseModel> estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
+                                                        const PerLogAndDrive<Eigen::MatrixXd>& extra,
+                                                        PerLogAndDrive<double>* floor = nullptr);
+
+/// An effect that the model holds, with its columns in the rows of the logs.
+struct AcceptedEffect {
+  std::size_t hypothesis = 0;
+  Effect effect;
+  PerLogAndDrive<Eigen::MatrixXd> rows;
+};
+
+/// A hypothesis beside a model, its shape refined.
+struct Fit {
+  std::size_t hypothesis = 0;
+  Effect effect;                         ///< shape and amplitude
+  double grid_gain = 0;                  ///< on the start values: what the null knows
+  double gain = 0;                       ///< refined
+  PerLogAndDrive<Eigen::MatrixXd> rows;  ///< of the refined shape: rows x amplitudes
+  WhiteColumns white;
+  Eigen::MatrixXd gram;
+};
+
+class EffectSearch {
+ public:
+  /// \param known  effects of the model that is being diagnosed; their amplitudes are fitted along
+  EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
+               const std::vector<Effect>& known);
+
+  [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
+  [[nodiscard]] const std::vector<LogRows>& logs() const { return logs_; }
+  /// [log][drive] columns of the known effects and the accepted ones.
+  [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<AcceptedEffect>& accepted) const;
+  [[nodiscard]] PerLogAndDrive<NoiseModel> noise_beside(const std::vector<AcceptedEffect>& accepted,
+                                                        PerLogAndDrive<double>* floor = nullptr) const;
+
+  /// Problem and signatures of all hypotheses beside the accepted effects.
+  struct State {
+    std::unique_ptr<WhiteProblem> problem;
+    std::vector<Signature> signatures;
+    std::vector<Score> scores;
+    std::vector<Eigen::VectorXd> bias;  ///< EncoderPilots::bias, taken off every score
+  };
+  [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
+                            const EncoderPilots* pilots) const;
+
+  /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the amplitude is solved for).
+  [[nodiscard]] Fit refine(const State& state, std::size_t hypothesis) const;
+  [[nodiscard]] AcceptedEffect accept(const Fit& fit) const { return {fit.hypothesis, fit.effect, fit.rows}; }
+
+  /// What a hypothesis is worth when hypotheses compete: the gain less what its free parameters gain by chance (Schwarz 1978).
+  [[nodiscard]] double worth(std::size_t hypothesis, double gain, const State& state) const;
+
+  /// The pair of hypotheses with the largest joint gain among the `best` ones, at the shapes of their own scores.
+  struct Pair {
+    std::size_t first = 0, second = 0;
+    double gain = 0;
+  };
+  [[nodiscard]] Pair best_pair(const State& state, std::size_t best) const;
+
+ private:
+  const EffectModel& model_;
+  const std::vector<LogRows>& logs_;
+  const GenericBasis& basis_;
+  std::vector<Hypothesis> hypotheses_;
+  std::vector<PerLogAndDrive<Eigen::MatrixXd>> rows_;  ///< of each hypothesis
+  PerLogAndDrive<Eigen::MatrixXd> known_rows_;
+};
+
+}  // namespace deltadyn

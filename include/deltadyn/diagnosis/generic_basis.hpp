@@ -1,0 +1,24 @@
+#pragma once
+
+/// \file
+/// A basis for structure of any kind in a drive's residual: piecewise linear in position, speed (logarithmic), acceleration, load and
+/// time, by direction, and in the other joints' motion. It knows nothing of the catalogue: it sees what the catalogue may not explain.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "deltadyn/diagnosis/log_rows.hpp"
+
+namespace deltadyn {
+
+struct GenericBasis {
+  /// [log][drive]: rows x columns; the same columns in every log.
+  std::vector<std::vector<Eigen::MatrixXd>> columns;
+  /// Which coordinate each column belongs to, for each drive: "position", "speed", ...
+  std::vector<std::vector<std::string>> coordinate;
+};
+
+[[nodiscard]] GenericBasis make_generic_basis(const std::vector<LogRows>& logs);
+
+}  // namespace deltadyn

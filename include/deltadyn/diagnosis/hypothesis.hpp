@@ -1,0 +1,39 @@
+#pragma once
+
+/// \file
+/// What could be missing: every effect of the catalogue at every place of the robot, with the start values of its shape.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "deltadyn/diagnosis/log_rows.hpp"
+
+namespace deltadyn {
+
+/// One effect at one place.
+struct Hypothesis {
+  EffectId id;
+  int joint;                            ///< drive from 0, or -1
+  std::vector<Eigen::VectorXd> shapes;  ///< start values, at least one (possibly without entries)
+  Eigen::Index amplitudes = 1;          ///< columns a shape
+
+  [[nodiscard]] const EffectKind& kind() const { return effect_kind(id); }
+  [[nodiscard]] std::string name() const { return kind().name; }
+  [[nodiscard]] std::string joint_name() const { return effect_joint_name(id, joint); }
+  /// Parameters that a fit would spend on it.
+  [[nodiscard]] int freedom() const {
+    return static_cast<int>(amplitudes) + static_cast<int>(kind().shapes.size()) - (kind().tied ? 1 : 0);
+  }
+};
+
+/// All hypotheses for a robot, with shapes that suit the motion of the logs. Effects that the base model holds already (an offset that
+/// is a parameter, a rotor inertia of its own) and those in `known` are left out.
+[[nodiscard]] std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs,
+                                                     const std::vector<Effect>& known);
+
+/// Rows of all shapes of a hypothesis in one log: for each drive rows x (shapes x amplitudes), empty for drives it does not reach.
+[[nodiscard]] std::vector<Eigen::MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& log,
+                                                           const EffectSignals& signals, const Hypothesis& hypothesis);
+
+}  // namespace deltadyn

@@ -1,0 +1,41 @@
+#pragma once
+
+/// \file
+/// A log as the diagnosis sees it: rows of the base regressor and of the torque, the state at each row, and the signals that the
+/// catalogue's effects are computed from.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deltadyn/diagnosis/noise_model.hpp"
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/identification/effect_columns.hpp"
+
+namespace deltadyn {
+
+struct LogRows {
+  PreparedLog log;
+  int number = 1;                  ///< among the training logs, from 1
+  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x base parameters (and further columns, see append)
+  Eigen::MatrixXd tau;             ///< rows x drives
+  std::vector<RowMask> usable;     ///< for each drive: rows that count (no reversal, no repaired sample in reach)
+  Eigen::VectorXd t_s;             ///< of the rows' samples
+  Eigen::MatrixXd q, qd, qdd;      ///< rows x drives
+  EffectSignals signals;
+
+  [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
+};
+
+/// Rows of the base columns alone, low-passed: for each drive rows x base parameters. For any motion in place of the log's own.
+[[nodiscard]] std::vector<Eigen::MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log);
+
+/// \param number  of the log among the training logs, from 1
+/// The signals are left empty: they need parameters (EffectModel::signals).
+[[nodiscard]] LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLog log, int number);
+
+/// Base parameters by ordinary least squares over all logs and drives, each drive in units of its own residual; with the
+/// parameters of `around` that are closest to reproducing them: p + B^T (B B^T)^-1 (beta - B p).
+[[nodiscard]] Eigen::VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>& logs,
+                                               const Eigen::VectorXd& around);
+
+}  // namespace deltadyn

@@ -1,0 +1,124 @@
+#pragma once
+
+/// \file
+/// What the scores are when nothing is missing: the whole pipeline on simulated clean logs (diagnosis page, step 6).
+///
+/// Encoder noise enters the position and passes the zero-phase filter, the differentiation, the regressor, the low pass and the
+/// whitening; torque noise enters as the fitted autoregression. Encoder noise alone fakes Stribeck and elasticity otherwise.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "deltadyn/diagnosis/generic_basis.hpp"
+#include "deltadyn/diagnosis/white_problem.hpp"
+
+namespace deltadyn {
+
+/// Distribution of one score: empirical below its upper quarter, exponential above (the tail of a chi-square or of a supremum of some).
+class NullDistribution {
+ public:
+  NullDistribution() = default;
+  explicit NullDistribution(std::vector<double> values);
+  /// Chance of a score this large or larger.
+  [[nodiscard]] double p_value(double score) const;
+  /// Score with this chance.
+  [[nodiscard]] double quantile(double p) const;
+
+ private:
+  std::vector<double> sorted_;
+  double knee_ = 0, slope_ = 1;
+};
+
+/// The generic basis of each drive in white rows, and how much a residual holds of it.
+class Omnibus {
+ public:
+  Omnibus() = default;
+  Omnibus(const WhiteProblem& problem, const GenericBasis& basis);
+  /// Fall of the sum of squares, one value a drive.
+  [[nodiscard]] Eigen::VectorXd gains(const WhiteProblem& problem, const Eigen::VectorXd& r) const;
+  /// Independent columns of each drive's basis.
+  [[nodiscard]] const std::vector<Eigen::Index>& ranks() const { return ranks_; }
+  /// Gain of each coordinate of the basis alone, for one drive: where the structure lies.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> by_coordinate(const WhiteProblem& problem, const Eigen::VectorXd& r,
+                                                                          std::size_t drive) const;
+
+ private:
+  std::vector<WhiteColumns> white_;    ///< one a drive
+  std::vector<Eigen::MatrixXd> root_;  ///< gain = |root^T u|^2
+  std::vector<Eigen::Index> ranks_;
+  std::vector<std::vector<std::string>> coordinate_;
+};
+
+/// Encoder noise through the pipeline, some times: which columns it moves, and what it fakes on average. A column and the residual feel
+/// the same noise, so that their product has a mean: joint_elasticity is the plainest case. All scores are freed of it.
+class EncoderPilots {
+ public:
+  /// \param position_noise  [log][drive], standard deviation of the recorded positions
+  EncoderPilots(const EffectModel& model, const BaseParameters& base, const std::vector<LogRows>& logs, const Eigen::VectorXd& p,
+                const std::vector<Hypothesis>& hypotheses, const PerLogAndDrive<double>& position_noise, double cutoff_hz,
+                std::uint64_t seed, int threads);
+
+  /// One noisy motion: base rows of every log, and rows of the sensitive hypotheses.
+  struct Run {
+    PerLogAndDrive<Eigen::MatrixXd> Y;
+    std::vector<PerLogAndDrive<Eigen::MatrixXd>> rows;  ///< one a sensitive hypothesis
+  };
+  [[nodiscard]] Run draw(std::uint64_t seed) const;
+  /// C^T r of the sensitive hypotheses and the residual for a torque y in white rows.
+  [[nodiscard]] std::vector<Eigen::VectorXd> products(const WhiteProblem& problem, const Run& run, const Eigen::VectorXd& y,
+                                                      Eigen::VectorXd& r) const;
+  /// Mean of C_perp^T r that encoder noise makes, one vector a hypothesis (empty: none).
+  [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem) const;
+  /// Filter taps, one vector a segment, that turn white noise into the torque's own noise: what is left when the encoder's part is
+  /// taken from the unit spectrum of the white residual. \param share  the encoder's share of the variance
+  [[nodiscard]] std::vector<Eigen::VectorXd> torque_noise(const WhiteProblem& problem, double& share) const;
+
+  [[nodiscard]] const std::vector<std::size_t>& sensitive() const { return sensitive_; }
+  /// The model's torque in white rows.
+  [[nodiscard]] Eigen::VectorXd clean(const WhiteProblem& problem) const;
+
+ private:
+  void rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which, Run& run) const;
+  [[nodiscard]] std::vector<PreparedLog> motion(std::uint64_t seed) const;
+
+  const EffectModel& model_;
+  const BaseParameters& base_;
+  const std::vector<LogRows>& logs_;
+  const Eigen::VectorXd p_;
+  const std::vector<Hypothesis>& hypotheses_;
+  PerLogAndDrive<double> position_noise_;
+  double cutoff_hz_;
+  std::vector<std::size_t> sensitive_;
+  std::vector<Run> runs_;
+};
+
+struct NullOptions {
+  int runs = 200;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::function<void(double)> progress;
+};
+
+struct NullStudy {
+  std::vector<NullDistribution> hypothesis;  ///< one a hypothesis
+  NullDistribution family;                   ///< of -log of the smallest p of all hypotheses (Westfall and Young 1993)
+  std::vector<NullDistribution> omnibus;     ///< one a drive
+  NullDistribution omnibus_family;
+  double encoder_share = 0;  ///< of the white residual's variance that encoder noise makes
+  int sensitive = 0;         ///< hypotheses whose columns encoder noise moves, too
+  int runs = 0;
+
+  /// p of one score corrected for having looked at all hypotheses.
+  [[nodiscard]] double family_p(std::size_t index, double score) const;
+  [[nodiscard]] double omnibus_p(const Eigen::VectorXd& gains) const;
+};
+
+/// \param bias  EncoderPilots::bias of the same problem
+[[nodiscard]] NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
+                                       const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
+                                       const std::vector<Eigen::VectorXd>& bias, const Omnibus& omnibus,
+                                       const NullOptions& options);
+
+}  // namespace deltadyn

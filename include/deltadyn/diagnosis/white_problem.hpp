@@ -1,0 +1,101 @@
+#pragma once
+
+/// \file
+/// The regression of all logs and drives in white, unit-variance rows, with the base model projected out: a candidate counts only by
+/// its part orthogonal to what a re-fit of the base parameters would absorb (diagnosis page, steps 2, 3, 5).
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deltadyn/diagnosis/hypothesis.hpp"
+#include "deltadyn/diagnosis/log_rows.hpp"
+#include "deltadyn/diagnosis/noise_model.hpp"
+
+namespace deltadyn {
+
+/// [log][drive]
+template <class T>
+using PerLogAndDrive = std::vector<std::vector<T>>;
+
+/// White rows of one drive in one log.
+struct WhiteSegment {
+  std::size_t log = 0, drive = 0;
+  Eigen::Index offset = 0;  ///< of its rows among all rows
+  Whitener whitener;
+
+  [[nodiscard]] Eigen::Index rows() const { return whitener.rows(); }
+};
+
+/// Columns in white rows, one block a segment (empty where the column is zero).
+struct WhiteColumns {
+  std::vector<Eigen::MatrixXd> blocks;
+  Eigen::MatrixXd base;  ///< Q^T C
+  Eigen::Index cols = 0;
+
+  /// C_perp^T r for the columns [first, first + count).
+  [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& r, const Eigen::VectorXd& Q_r,
+                                      const std::vector<WhiteSegment>& segments, Eigen::Index first, Eigen::Index count) const;
+  /// C_perp^T C_perp.
+  [[nodiscard]] Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index count) const;
+  /// C^T C without projection.
+  [[nodiscard]] Eigen::MatrixXd raw_gram(Eigen::Index first, Eigen::Index count) const;
+  /// Columns [first, first + count) alone.
+  [[nodiscard]] WhiteColumns part(Eigen::Index first, Eigen::Index count) const;
+  /// C_perp over all rows.
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& Q, const std::vector<WhiteSegment>& segments, Eigen::Index first,
+                                          Eigen::Index count) const;
+};
+
+/// a^T b between the projected columns of two sets.
+[[nodiscard]] Eigen::MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b);
+
+class WhiteProblem {
+ public:
+  /// \param extra  columns of effects that the model holds already, [log][drive] rows x e; may be empty
+  WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDrive<NoiseModel>& noise,
+               const PerLogAndDrive<Eigen::MatrixXd>& extra = {});
+
+  [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<Eigen::MatrixXd>& columns) const;
+  /// One column vector a drive and log in place of the torque.
+  [[nodiscard]] Eigen::VectorXd whiten_torque(const PerLogAndDrive<Eigen::VectorXd>& torque) const;
+
+  std::vector<WhiteSegment> segments;
+  Eigen::Index rows = 0;
+  Eigen::MatrixXd X;     ///< white regressor
+  Eigen::MatrixXd Q;     ///< orthonormal basis of its columns: rows x rank
+  Eigen::VectorXd y, r;  ///< white torque, and its part orthogonal to Q
+  Eigen::VectorXd beta;  ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+};
+
+/// Best amplitudes of k columns under sign constraints.
+struct Gain {
+  double gain = 0;            ///< fall of the sum of squares
+  Eigen::VectorXd amplitude;  ///< k
+};
+
+/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`. \param gram C_perp^T C_perp, \param inner C_perp^T r
+[[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner, const std::vector<bool>& positive);
+
+/// The whitened signatures of one hypothesis, all shapes.
+struct Signature {
+  WhiteColumns white;
+  std::vector<Eigen::MatrixXd> gram;  ///< of each shape, projected
+  std::vector<double> kept;           ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
+};
+
+[[nodiscard]] Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
+                                       const PerLogAndDrive<Eigen::MatrixXd>& rows);
+
+struct Score {
+  double gain = 0;
+  std::size_t shape = 0;
+  Eigen::VectorXd amplitude;
+};
+
+/// Supremum of the gain over the shapes. Shapes that a re-fit absorbs count as nothing.
+/// \param inner  C_perp^T r of all columns, WhiteColumns::inner
+[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const Eigen::VectorXd& inner);
+/// The same for the problem's own residual.
+[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem);
+
+}  // namespace deltadyn

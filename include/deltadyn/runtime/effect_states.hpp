@@ -1,0 +1,36 @@
+#pragma once
+
+/// \file
+/// What the effects on plate and telescope need to know of a robot's state, for any robot type.
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "deltadyn/core/status.hpp"
+#include "deltadyn/runtime/robot_description.hpp"
+
+namespace deltadyn {
+
+/// Plate, telescope and passive joints at one state of the drives. For an axis everything is zero.
+struct EffectState {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< of the plate in W [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< [m/s]
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  Eigen::Matrix3Xd J;                                      ///< d position / dq
+  double bar_rate = 0;                                     ///< of the telescope [m/s]
+  Eigen::RowVectorXd J_bar;                                ///< d length / dq
+  Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
+  Eigen::VectorXd passive;                                 ///< torque of `passive_joint_friction` per N m
+};
+
+/// Dispatches once on the type of the robot.
+class EffectStates {
+ public:
+  virtual ~EffectStates() = default;
+  using ConstRef = Eigen::Ref<const Eigen::VectorXd>;
+  [[nodiscard]] virtual Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state) const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<EffectStates> make_effect_states(const RobotDescription& description);
+
+}  // namespace deltadyn

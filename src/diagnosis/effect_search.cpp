@@ -1,0 +1,342 @@
+#include "deltadyn/diagnosis/effect_search.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <numeric>
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kNoisePasses = 3;
+constexpr double kRidge = 1e-6;  // of the generic basis, whose hats overlap
+
+/// Coefficients of the generic basis of one drive beside the problem's residual, and the dof it takes.
+VectorXd basis_coefficients(const WhiteProblem& problem, const GenericBasis& basis, std::size_t drive, double& fitted) {
+  const Index columns = basis.columns.front()[drive].cols();
+  MatrixXd G = MatrixXd::Zero(columns, columns);
+  VectorXd u = VectorXd::Zero(columns);
+  for (const WhiteSegment& segment : problem.segments) {
+    if (segment.drive != drive) continue;
+    const MatrixXd C = segment.whitener.apply(basis.columns[segment.log][drive]);
+    G += C.transpose() * C;
+    u += C.transpose() * problem.r.segment(segment.offset, segment.rows());
+  }
+  const VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  const VectorXd coefficients = scale.asDiagonal() * scaled.ldlt().solve(VectorXd(scale.asDiagonal() * u));
+  fitted = static_cast<double>(Eigen::FullPivHouseholderQR<MatrixXd>(scaled).setThreshold(1e-4).rank());
+  return coefficients;
+}
+
+PerLogAndDrive<MatrixXd> columns_of(const PerLogAndDrive<MatrixXd>& rows, Index first, Index count) {
+  PerLogAndDrive<MatrixXd> out = rows;
+  for (auto& log : out) {
+    for (MatrixXd& drive : log) {
+      if (drive.size() > 0) drive = MatrixXd(drive.middleCols(first, count));
+    }
+  }
+  return out;
+}
+
+void append(PerLogAndDrive<MatrixXd>& to, const PerLogAndDrive<MatrixXd>& from, Index columns) {
+  for (std::size_t l = 0; l < to.size(); ++l) {
+    for (std::size_t j = 0; j < to[l].size(); ++j) {
+      MatrixXd& target = to[l][j];
+      const Index first = target.cols();
+      target.conservativeResize(Eigen::NoChange, first + columns);
+      if (from[l][j].size() > 0) {
+        target.rightCols(columns) = from[l][j];
+      } else {
+        target.rightCols(columns).setZero();
+      }
+    }
+  }
+}
+
+/// How a shape parameter may move between the start values: factor down and up, or step.
+struct Reach {
+  bool free = false, logarithmic = true;
+  double low = 0, high = 0;
+};
+
+Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const VectorXd& shape) {
+  const EffectShape& kind = hypothesis.kind().shapes[parameter];
+  const double value = shape(static_cast<Index>(parameter));
+  if (kind.scale == ShapeScale::logs || hypothesis.id == EffectId::kinematic_offset || kind.name == "recorded") return {};
+  if (kind.name == "exponent") {
+    if (hypothesis.id == EffectId::convex_viscous) return {true, false, std::max(1.2, value - 0.5), value + 0.7};
+    return {};
+  }
+  if (hypothesis.id == EffectId::shear_thinning && shape(1) > 0) return {};
+  if (kind.scale == ShapeScale::waves) {
+    double spacing = 0.25 * std::abs(value);
+    for (const VectorXd& other : hypothesis.shapes) {
+      const double distance = std::abs(other(0) - value);
+      if (distance > 1e-12) spacing = std::min(spacing, distance);
+    }
+    return {true, false, value - spacing, value + spacing};
+  }
+  return {true, true, 0.55 * value, 1.8 * value};
+}
+
+}  // namespace
+
+PerLogAndDrive<NoiseModel> estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
+                                          const PerLogAndDrive<MatrixXd>& extra, PerLogAndDrive<double>* floor_rms) {
+  const std::size_t n = logs.front().usable.size();
+  PerLogAndDrive<NoiseModel> noise(logs.size(), std::vector<NoiseModel>(n));
+  // Drives weighted by their torque to begin with.
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto tau = logs[l].tau.col(static_cast<Index>(j));
+      noise[l][j].std = std::max(1e-2 * std::sqrt(tau.squaredNorm() / static_cast<double>(tau.size())), 1e-9);
+    }
+  }
+  if (floor_rms != nullptr) floor_rms->assign(logs.size(), std::vector<double>(n, 0.0));
+  for (int pass = 0; pass < kNoisePasses; ++pass) {
+    const WhiteProblem problem(logs, noise, extra);
+    const Index b = logs.front().Y.front().cols();
+    PerLogAndDrive<NoiseModel> next = noise;
+    for (std::size_t j = 0; j < n; ++j) {
+      double fitted = 0;
+      const VectorXd coefficients = basis_coefficients(problem, basis, j, fitted);
+      double drive_rows = 0;
+      for (const WhiteSegment& segment : problem.segments)
+        drive_rows += segment.drive == j ? static_cast<double>(segment.rows()) : 0.0;
+      const double spent = fitted + static_cast<double>(problem.Q.cols()) / static_cast<double>(n);
+      const double correction = std::sqrt(drive_rows / std::max(drive_rows - spent, 0.2 * drive_rows));
+      for (const WhiteSegment& segment : problem.segments) {
+        if (segment.drive != j) continue;
+        const LogRows& log = logs[segment.log];
+        VectorXd e =
+            log.tau.col(static_cast<Index>(j)) - log.Y[j] * problem.beta.head(b) - basis.columns[segment.log][j] * coefficients;
+        if (!extra.empty()) e -= extra[segment.log][j] * problem.beta.tail(problem.beta.size() - b);
+        NoiseModel& model = next[segment.log][j];
+        if (pass + 1 < kNoisePasses) {
+          model = fit_noise_model(e, log.usable[j]);
+        } else {
+          // Same colour, the scale of the white residual itself.
+          const VectorXd white = segment.whitener.apply(e);
+          model = noise[segment.log][j];
+          model.std *= std::sqrt(white.squaredNorm() / std::max<double>(1, static_cast<double>(white.size()))) * correction;
+        }
+        if (floor_rms != nullptr) {
+          const auto count = static_cast<double>(std::max<Index>(1, log.usable[j].count()));
+          (*floor_rms)[segment.log][j] = correction * std::sqrt(log.usable[j].select(e.array(), 0.0).square().sum() / count);
+        }
+        const double floor = 1e-9 * std::max(log.tau.col(static_cast<Index>(j)).cwiseAbs().maxCoeff(), 1e-9);
+        model.std = std::max(model.std, floor);
+      }
+    }
+    noise = std::move(next);
+  }
+  return noise;
+}
+
+EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
+                           const std::vector<Effect>& known)
+    : model_(model),
+      logs_(logs),
+      basis_(basis),
+      hypotheses_(all_hypotheses(model.robot(), logs, known)),
+      rows_(hypotheses_.size()) {
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+    try {
+      for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  for (const LogRows& log : logs_) {
+    known_rows_.emplace_back();
+    for (std::size_t j = 0; j < log.usable.size(); ++j) known_rows_.back().push_back(MatrixXd(log.rows(), 0));
+  }
+  for (const Effect& effect : known) {
+    Hypothesis hypothesis{effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
+    PerLogAndDrive<MatrixXd> rows;
+    for (const LogRows& log : logs_) rows.push_back(hypothesis_rows(model_, log, log.signals, hypothesis));
+    append(known_rows_, rows, hypothesis.amplitudes);
+  }
+}
+
+PerLogAndDrive<MatrixXd> EffectSearch::extra(const std::vector<AcceptedEffect>& accepted) const {
+  PerLogAndDrive<MatrixXd> out = known_rows_;
+  for (const AcceptedEffect& one : accepted) append(out, one.rows, hypotheses_[one.hypothesis].amplitudes);
+  return out;
+}
+
+PerLogAndDrive<NoiseModel> EffectSearch::noise_beside(const std::vector<AcceptedEffect>& accepted,
+                                                      PerLogAndDrive<double>* floor) const {
+  return estimate_noise(logs_, basis_, extra(accepted), floor);
+}
+
+EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
+                                        const EncoderPilots* pilots) const {
+  State out;
+  out.problem = std::make_unique<WhiteProblem>(logs_, noise, extra(accepted));
+  out.signatures.resize(hypotheses_.size());
+  out.scores.resize(hypotheses_.size());
+  out.bias.resize(hypotheses_.size());
+  if (pilots != nullptr) out.bias = pilots->bias(*out.problem);
+  std::vector<char> held(hypotheses_.size(), 0);
+  for (const AcceptedEffect& one : accepted) held[one.hypothesis] = 1;
+  const VectorXd Q_r = out.problem->Q.transpose() * out.problem->r;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+    out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]);
+    out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
+    const WhiteColumns& white = out.signatures[h].white;
+    if (held[h] || white.cols == 0) continue;
+    VectorXd inner = white.inner(out.problem->r, Q_r, out.problem->segments, 0, white.cols);
+    if (out.bias[h].size() > 0) inner -= out.bias[h];
+    out.scores[h] = best_score(hypotheses_[h], out.signatures[h], inner);
+  }
+  return out;
+}
+
+double EffectSearch::worth(std::size_t hypothesis, double gain, const State& state) const {
+  return gain - hypotheses_[hypothesis].freedom() * std::log(static_cast<double>(state.problem->rows));
+}
+
+Fit EffectSearch::refine(const State& state, std::size_t h) const {
+  const Hypothesis& hypothesis = hypotheses_[h];
+  const Score& start = state.scores[h];
+  const Index k = hypothesis.amplitudes;
+  Fit best;
+  best.hypothesis = h;
+  best.grid_gain = best.gain = start.gain;
+  best.effect.id = hypothesis.id;
+  best.effect.joint = hypothesis.joint;
+  best.effect.shape = hypothesis.shapes[start.shape];
+  best.effect.amplitude = start.amplitude;
+  best.rows = columns_of(rows_[h], static_cast<Index>(start.shape) * k, k);
+  const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
+  const auto evaluate = [&](const VectorXd& shape, Fit& into) {
+    Hypothesis one = hypothesis;
+    one.shapes = {shape};
+    into.rows.clear();
+    for (const LogRows& log : logs_) into.rows.push_back(hypothesis_rows(model_, log, log.signals, one));
+    const Signature signature = make_signature(*state.problem, one, into.rows);
+    VectorXd inner = signature.white.cols > 0
+                         ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0, signature.white.cols)
+                         : VectorXd(0);
+    // What encoder noise fakes changes little from one shape to the next.
+    if (state.bias[h].size() > 0 && inner.size() > 0) inner -= state.bias[h].segment(static_cast<Index>(start.shape) * k, k);
+    const Score score = best_score(one, signature, inner);
+    into.hypothesis = h;
+    into.effect = best.effect;
+    into.effect.shape = shape;
+    into.effect.amplitude = score.amplitude;
+    into.gain = score.gain;
+    into.grid_gain = best.grid_gain;
+  };
+  const std::size_t parameters = hypothesis.kind().shapes.size();
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    for (std::size_t parameter = 0; parameter < parameters && start.gain > 0; ++parameter) {
+      const Reach reach = reach_of(hypothesis, parameter, best.effect.shape);
+      if (!reach.free) continue;
+      // Golden section, in the logarithm where the scale is one.
+      const double sign = best.effect.shape(static_cast<Index>(parameter)) < 0 ? -1.0 : 1.0;
+      const auto to = [&](double x) { return reach.logarithmic ? std::log(sign * x) : x; };
+      const auto from = [&](double x) { return reach.logarithmic ? sign * std::exp(x) : x; };
+      double low = to(reach.low), high = to(reach.high);
+      if (low > high) std::swap(low, high);
+      constexpr double kGolden = 0.381966;
+      const auto gain_at = [&](double x) {
+        VectorXd shape = best.effect.shape;
+        shape(static_cast<Index>(parameter)) = from(x);
+        Fit trial;
+        evaluate(shape, trial);
+        const double gain = trial.gain;
+        if (gain > best.gain) best = std::move(trial);
+        return gain;
+      };
+      double x1 = low + kGolden * (high - low), x2 = high - kGolden * (high - low);
+      double f1 = gain_at(x1), f2 = gain_at(x2);
+      for (int step = 0; step < (sweep == 0 ? 9 : 5); ++step) {
+        if (f1 > f2) {
+          high = x2;
+          x2 = x1;
+          f2 = f1;
+          x1 = low + kGolden * (high - low);
+          f1 = gain_at(x1);
+        } else {
+          low = x1;
+          x1 = x2;
+          f1 = f2;
+          x2 = high - kGolden * (high - low);
+          f2 = gain_at(x2);
+        }
+      }
+    }
+  }
+  best.white = state.problem->whiten(best.rows);
+  best.gram = best.white.cols >= k ? best.white.gram(0, k) : MatrixXd::Zero(k, k);
+  return best;
+}
+
+EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best) const {
+  std::vector<std::size_t> order(hypotheses_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return worth(a, state.scores[a].gain, state) > worth(b, state.scores[b].gain, state);
+  });
+  order.resize(std::min(best, order.size()));
+  const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
+  struct One {
+    WhiteColumns white;
+    VectorXd inner;
+    std::vector<bool> positive;
+  };
+  std::vector<One> ones;
+  for (const std::size_t h : order) {
+    const Index k = hypotheses_[h].amplitudes;
+    const Signature& signature = state.signatures[h];
+    One one;
+    if (signature.white.cols > 0) {
+      const Index first = static_cast<Index>(state.scores[h].shape) * k;
+      one.white = signature.white.part(first, k);
+      one.inner = one.white.inner(state.problem->r, Q_r, state.problem->segments, 0, k);
+      if (state.bias[h].size() > 0) one.inner -= state.bias[h].segment(first, k);
+    }
+    for (const EffectAmplitude& amplitude : hypotheses_[h].kind().amplitudes) one.positive.push_back(amplitude.positive);
+    ones.push_back(std::move(one));
+  }
+  Pair out;
+  double best_worth = 0;
+  for (std::size_t a = 0; a < ones.size(); ++a) {
+    for (std::size_t c = a + 1; c < ones.size(); ++c) {
+      if (ones[a].inner.size() == 0 || ones[c].inner.size() == 0) continue;
+      const Index ka = ones[a].inner.size(), kc = ones[c].inner.size();
+      MatrixXd G(ka + kc, ka + kc);
+      const MatrixXd cross = cross_gram(ones[a].white, ones[c].white);
+      G << ones[a].white.gram(0, ka), cross, cross.transpose(), ones[c].white.gram(0, kc);
+      VectorXd u(ka + kc);
+      u << ones[a].inner, ones[c].inner;
+      std::vector<bool> positive = ones[a].positive;
+      positive.insert(positive.end(), ones[c].positive.begin(), ones[c].positive.end());
+      const double gain = constrained_gain(G, u, positive).gain;
+      const double value = worth(order[a], gain, state) + worth(order[c], 0, state);
+      if (value > best_worth) {
+        best_worth = value;
+        out = {order[a], order[c], gain};
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace deltadyn

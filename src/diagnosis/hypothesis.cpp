@@ -1,0 +1,162 @@
+#include "deltadyn/diagnosis/hypothesis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kFinestWave = 0.5;  // spacing of the waves over the range: a quarter of a wave out of step at the ends
+constexpr double kPassBand = 0.6;    // of the cut-off: a ripple above it at the usual speed is filtered away
+constexpr int kMostWaves = 60;
+constexpr int kMostFrictionWaves = 10;  // friction varies over a turn, not over a tooth
+
+/// What the motion of a joint is like over all logs.
+struct MotionScale {
+  double largest_rate = 0, usual_rate = 0, range = 0, largest_torque = 0;
+};
+
+MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
+  MotionScale scale;
+  std::vector<double> rates;
+  double low = 1e300, high = -1e300;
+  for (const LogRows& log : logs) {
+    const auto& s = log.signals;
+    for (Index k = 0; k < log.rows(); ++k) {
+      const Index at = sample_of_row(log.log, k);
+      rates.push_back(std::abs(joint >= 0 ? s.qd(at, joint) : s.bar_rate(at)));
+      if (joint < 0) continue;
+      low = std::min(low, s.q(at, joint));
+      high = std::max(high, s.q(at, joint));
+      scale.largest_torque = std::max(scale.largest_torque, std::abs(s.torque(at, joint)));
+    }
+  }
+  std::sort(rates.begin(), rates.end());
+  scale.largest_rate = rates.empty() ? 0 : rates[static_cast<std::size_t>(0.995 * static_cast<double>(rates.size() - 1))];
+  scale.usual_rate = rates.empty() ? 0 : rates[rates.size() / 2];
+  scale.range = std::max(high - low, 0.0);
+  return scale;
+}
+
+std::vector<double> waves(const MotionScale& scale, double cutoff_hz, int most) {
+  std::vector<double> n;
+  if (!(scale.range > 0)) return n;
+  const double per_wave = 2 * std::numbers::pi / scale.range;
+  const double highest = 2 * std::numbers::pi * kPassBand * cutoff_hz / std::max(scale.usual_rate, 1e-9);
+  for (double w = 1.0; w <= most && w * per_wave <= highest; w += kFinestWave) n.push_back(w * per_wave);
+  return n;
+}
+
+std::vector<double> grid_of(const EffectShape& shape, const Hypothesis& hypothesis, const MotionScale& scale,
+                            const std::vector<LogRows>& logs, const Robot& robot) {
+  const bool turns = hypothesis.joint < 0 || robot.description().kind_of_drive(hypothesis.joint) == DriveKind::revolute;
+  std::vector<double> grid = shape.grid;
+  double unit = 1;
+  switch (shape.scale) {
+    case ShapeScale::absolute: break;
+    case ShapeScale::largest_rate: unit = scale.largest_rate; break;
+    case ShapeScale::largest_torque: unit = scale.largest_torque; break;
+    case ShapeScale::displacement: unit = turns ? 1.0 : 0.1; break;
+    case ShapeScale::range: unit = scale.range; break;
+    case ShapeScale::waves: {
+      double cutoff_hz = 1e9;
+      for (const LogRows& log : logs) {
+        // Half the rate of the rows stands for the pass band.
+        cutoff_hz = std::min(cutoff_hz, 0.4 * log.log.rate_hz / static_cast<double>(log.log.stride));
+      }
+      return waves(scale, cutoff_hz, hypothesis.id == EffectId::position_dependent_friction ? kMostFrictionWaves : kMostWaves);
+    }
+    case ShapeScale::logs:
+      for (const LogRows& log : logs) grid.push_back(log.number);
+      return logs.size() > 1 ? grid : std::vector<double>{};
+  }
+  for (double& value : grid) value *= unit;
+  return grid;
+}
+
+bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
+  const ParameterOptions& options = robot.parameter_options();
+  switch (hypothesis.id) {
+    case EffectId::asymmetric_coulomb: return options.offset;
+    case EffectId::rotor_inertia:
+      // An axis has one inertia only; the telescope's drive turns the tool, whose inertia stands in the model.
+      return robot.description().parts.empty() || hypothesis.joint >= static_cast<int>(robot.description().limbs.size()) ||
+             std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), hypothesis.joint + 1) > 0;
+    case EffectId::limb_inertia_mismatch:
+      return options.individual_limbs || robot.description().drive_kind != DriveKind::revolute;
+    // One drive alone: its torque constant scales all its parameters and cannot be seen.
+    case EffectId::torque_constant_error: return robot.drives() == 1;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs, const std::vector<Effect>& known) {
+  std::vector<MotionScale> scales;
+  for (int j = -1; j < robot.drives(); ++j) scales.push_back(scale_of(logs, j));
+  std::vector<Hypothesis> all;
+  for (const EffectKind& kind : effect_catalogue()) {
+    for (const int joint : effect_joints(kind.id, robot.description())) {
+      Hypothesis hypothesis{kind.id, joint, {VectorXd(0)}, static_cast<Index>(kind.amplitudes.size())};
+      const bool is_known =
+          std::any_of(known.begin(), known.end(), [&](const Effect& e) { return e.id == kind.id && e.joint == joint; });
+      if (is_known || base_holds(robot, hypothesis)) continue;
+      // Every combination of the shapes' start values.
+      for (const EffectShape& shape : kind.shapes) {
+        const std::vector<double> grid = grid_of(shape, hypothesis, scales[static_cast<std::size_t>(joint + 1)], logs, robot);
+        std::vector<VectorXd> combined;
+        for (const VectorXd& so_far : hypothesis.shapes) {
+          for (std::size_t g = 0; g < grid.size(); ++g) {
+            VectorXd next(so_far.size() + 1);
+            next << so_far, grid[g];
+            combined.push_back(next);
+          }
+        }
+        hypothesis.shapes = combined;
+      }
+      if (kind.id == EffectId::shear_thinning) {
+        // The power law has no rate of its own: one start value serves.
+        const double reference = scales[static_cast<std::size_t>(joint + 1)].largest_rate;
+        std::erase_if(hypothesis.shapes,
+                      [&](const VectorXd& s) { return s(1) > 0 && std::abs(s(0) - reference) > 1e-9 * reference; });
+      }
+      if (!hypothesis.shapes.empty()) all.push_back(std::move(hypothesis));
+    }
+  }
+  return all;
+}
+
+std::vector<MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& log, const EffectSignals& signals,
+                                      const Hypothesis& hypothesis) {
+  const Index n = log.tau.cols();
+  const Index k = hypothesis.amplitudes;
+  const Index N = signals.q.rows();
+  const auto shapes = static_cast<Index>(hypothesis.shapes.size());
+  std::vector<MatrixXd> raw(static_cast<std::size_t>(n)), out(static_cast<std::size_t>(n));
+  for (Index s = 0; s < shapes; ++s) {
+    const auto columns =
+        model.columns(signals, hypothesis.id, hypothesis.joint, hypothesis.shapes[static_cast<std::size_t>(s)], log.number);
+    for (Index c = 0; c < k; ++c) {
+      const EffectColumn& column = columns[static_cast<std::size_t>(c)];
+      for (Index j = 0; j < n; ++j) {
+        if (column.drive >= 0 && column.drive != j) continue;
+        MatrixXd& to = raw[static_cast<std::size_t>(j)];
+        if (to.size() == 0) to.setZero(N, shapes * k);
+        to.col(s * k + c) = column.values.col(column.drive < 0 ? j : 0);
+      }
+    }
+  }
+  for (std::size_t j = 0; j < raw.size(); ++j) {
+    if (raw[j].size() > 0) out[j] = low_passed_rows(log.log, raw[j]);
+  }
+  return out;
+}
+
+}  // namespace deltadyn

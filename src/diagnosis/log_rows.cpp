@@ -1,0 +1,98 @@
+#include "deltadyn/diagnosis/log_rows.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log) {
+  const Index n = robot.drives();
+  const auto b = static_cast<Index>(base.count());
+  const Index N = log.t_s.size();
+  MatrixXd raw(N, n * b);
+  MatrixXd Y(n, robot.parameters());
+  for (Index k = 0; k < N; ++k) {
+    const Status status = robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y);
+    if (status != Status::ok) throw Error(message(status), log.file, "check that the robot file belongs to this machine");
+    for (Index c = 0; c < b; ++c) {
+      const auto column = base.independent[static_cast<std::size_t>(c)];
+      for (Index j = 0; j < n; ++j) raw(k, j * b + c) = Y(j, column);
+    }
+  }
+  const MatrixXd rows = low_passed_rows(log, raw);
+  std::vector<MatrixXd> out;
+  for (Index j = 0; j < n; ++j) out.push_back(rows.middleCols(j * b, b));
+  return out;
+}
+
+LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLog log, int number) {
+  LogRows out;
+  out.log = std::move(log);
+  out.number = number;
+  const PreparedLog& from = out.log;
+  const Index n = robot.drives();
+  out.Y = base_rows(robot, base, from);
+  out.tau = low_passed_rows(from, from.tau);
+  out.t_s.resize(from.rows);
+  for (MatrixXd* m : {&out.q, &out.qd, &out.qdd}) m->resize(from.rows, n);
+  out.usable.assign(static_cast<std::size_t>(n), RowMask::Constant(from.rows, true));
+  const Index reach = from.low_pass ? from.low_pass->half_width() : 0;
+  for (Index row = 0; row < from.rows; ++row) {
+    const Index centre = sample_of_row(from, row);
+    out.t_s(row) = from.t_s(centre);
+    out.q.row(row) = from.q.row(centre);
+    out.qd.row(row) = from.qd.row(centre);
+    out.qdd.row(row) = from.qdd.row(centre);
+    const Index first = centre - reach, count = 2 * reach + 1;
+    const bool filled = !from.filled.empty() && std::any_of(from.filled.begin() + first, from.filled.begin() + first + count,
+                                                            [](char c) { return c != 0; });
+    for (Index j = 0; j < n; ++j) {
+      if (filled || from.reversal.col(j).segment(first, count).any()) out.usable[static_cast<std::size_t>(j)](row) = false;
+    }
+  }
+  return out;
+}
+
+VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>& logs, const VectorXd& around) {
+  const auto b = static_cast<Index>(base.count());
+  const std::size_t n = logs.front().usable.size();
+  VectorXd weight = VectorXd::Ones(static_cast<Index>(n));
+  VectorXd beta = VectorXd::Zero(b);
+  for (int pass = 0; pass < 3; ++pass) {
+    MatrixXd information = MatrixXd::Zero(b, b);
+    VectorXd right = VectorXd::Zero(b);
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto drive = static_cast<Index>(j);
+      for (const LogRows& log : logs) {
+        const VectorXd use = log.usable[j].cast<double>();
+        const MatrixXd weighted = weight(drive) * weight(drive) * (use.asDiagonal() * log.Y[j].leftCols(b));
+        information += weighted.transpose() * log.Y[j].leftCols(b);
+        right += weighted.transpose() * log.tau.col(drive);
+      }
+    }
+    const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    beta = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(VectorXd(scale.asDiagonal() * right));
+    for (std::size_t j = 0; j < n; ++j) {
+      double square = 0, count = 0;
+      for (const LogRows& log : logs) {
+        const VectorXd e = log.tau.col(static_cast<Index>(j)) - log.Y[j].leftCols(b) * beta;
+        square += log.usable[j].select(e.array(), 0.0).square().sum();
+        count += static_cast<double>(log.usable[j].count());
+      }
+      weight(static_cast<Index>(j)) = 1.0 / std::max(std::sqrt(square / std::max(count, 1.0)), 1e-9);
+    }
+  }
+  const MatrixXd& B = base.B;
+  return around + B.transpose() * (B * B.transpose()).ldlt().solve(beta - B * around);
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,164 @@
+#include "deltadyn/diagnosis/noise_model.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double NoiseModel::total_std() const {
+  // Impulse response; a stable model has died out after a few thousand rows.
+  VectorXd memory = VectorXd::Zero(std::max<Index>(1, order()));
+  double sum = 1.0;
+  memory(0) = 1.0;
+  for (int k = 0; k < 20000 && order() > 0; ++k) {
+    const double next = ar.dot(memory.head(order()));
+    for (Index i = order() - 1; i > 0; --i) memory(i) = memory(i - 1);
+    memory(0) = next;
+    sum += next * next;
+    if (memory.squaredNorm() < 1e-10 * sum) break;
+  }
+  return std * std::sqrt(sum);
+}
+
+NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, Index largest_order) {
+  // Forward and backward errors of each run of usable rows (Burg 1968).
+  struct Run {
+    VectorXd forward, backward;
+  };
+  std::vector<Run> runs;
+  Index count = 0;
+  for (Index t = 0; t < residual.size();) {
+    Index end = t;
+    while (end < residual.size() && usable(end)) ++end;
+    if (end > t) {
+      runs.push_back({residual.segment(t, end - t), residual.segment(t, end - t)});
+      count += end - t;
+    }
+    t = end + 1;
+  }
+  NoiseModel best;
+  if (count < 4) return best;
+  double power = 0;
+  for (const Run& run : runs) power += run.forward.squaredNorm();
+  power = std::max(power / static_cast<double>(count), 1e-300);
+  best.std = std::sqrt(power);
+  const double log_count = std::log(static_cast<double>(count));
+  double best_score = static_cast<double>(count) * std::log(power);
+  VectorXd ar(0);
+  for (Index order = 1; order <= std::min(largest_order, count / 20); ++order) {
+    double cross = 0, square = 0;
+    for (Run& run : runs) {
+      const Index length = run.forward.size() - 1;
+      if (length < 1) {
+        run.forward.resize(0);
+        continue;
+      }
+      // forward error at t beside the backward error at t - 1
+      cross += run.forward.tail(length).dot(run.backward.head(length));
+      square += run.forward.tail(length).squaredNorm() + run.backward.head(length).squaredNorm();
+    }
+    if (!(square > 0)) break;
+    const double reflection = 2 * cross / square;
+    for (Run& run : runs) {
+      const Index length = run.forward.size() - 1;
+      if (length < 1) continue;
+      const VectorXd f = run.forward.tail(length), b = run.backward.head(length);
+      run.forward = f - reflection * b;
+      run.backward = b - reflection * f;
+    }
+    VectorXd next(order);
+    for (Index k = 0; k < order - 1; ++k) next(k) = ar(k) - reflection * ar(order - 2 - k);
+    next(order - 1) = reflection;
+    ar = next;
+    power *= std::max(1 - reflection * reflection, 1e-12);
+    const double score = static_cast<double>(count) * std::log(power) + static_cast<double>(order) * log_count;
+    if (score < best_score) {
+      best_score = score;
+      best.ar = ar;
+      best.std = std::sqrt(power);
+    }
+  }
+  return best;
+}
+
+Whitener::Whitener(const NoiseModel& noise, const RowMask& usable) : noise_(noise), usable_(usable) {
+  const Index N = usable.size();
+  const Index p = noise.order();
+  Index last_gap = -p - 1;  // latest unusable row so far
+  Index t = p;
+  for (Index k = 0; k < std::min(p, N); ++k) {
+    if (!usable(k)) last_gap = k;
+  }
+  while (t < N) {
+    if (!usable(t)) last_gap = t;
+    if (t - last_gap > p) {
+      plain_.push_back(t);
+      plain_out_.push_back(static_cast<Index>(source_.size()));
+      source_.push_back(t);
+      ++t;
+      continue;
+    }
+    // All innovations that see an unknown row, until the memory is clean again.
+    const Index first = t;
+    while (t < N) {
+      if (!usable(t)) last_gap = t;
+      if (t - last_gap > p) break;
+      ++t;
+    }
+    const Index length = t - first;
+    std::vector<Index> unknown;
+    for (Index k = first - p; k < t; ++k) {
+      if (!usable(k)) unknown.push_back(k);
+    }
+    if (static_cast<Index>(unknown.size()) >= length) continue;
+    MatrixXd U = MatrixXd::Zero(length, static_cast<Index>(unknown.size()));
+    for (std::size_t c = 0; c < unknown.size(); ++c) {
+      for (Index k = 0; k <= p; ++k) {
+        const Index row = unknown[c] + k - first;
+        if (row >= 0 && row < length) U(row, static_cast<Index>(c)) = k == 0 ? 1.0 : -noise.ar(k - 1);
+      }
+    }
+    const Eigen::HouseholderQR<MatrixXd> qr(U);
+    const Index kept = length - U.cols();
+    const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(length, length).rightCols(kept);
+    clusters_.push_back({first, static_cast<Index>(source_.size()), Q});
+    // For maps: the usable rows of the cluster, as many as there are white rows.
+    std::vector<Index> near;
+    for (Index k = first; k < t; ++k) {
+      if (usable(k)) near.push_back(k);
+    }
+    for (Index k = 0; k < kept; ++k) {
+      source_.push_back(near.empty() ? first
+                                     : near[static_cast<std::size_t>(std::min<Index>(k, static_cast<Index>(near.size()) - 1))]);
+    }
+  }
+}
+
+MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
+  const Index p = noise_.order();
+  const double scale = 1.0 / noise_.std;
+  MatrixXd out(rows(), x.cols());
+  VectorXd known(x.rows()), innovation(x.rows());
+  for (Index c = 0; c < x.cols(); ++c) {
+    known = usable_.select(x.col(c).array(), 0.0);
+    innovation.setZero();
+    if (x.rows() > p) {
+      innovation.tail(x.rows() - p) = known.tail(x.rows() - p);
+      for (Index k = 0; k < p; ++k) innovation.tail(x.rows() - p) -= noise_.ar(k) * known.segment(p - 1 - k, x.rows() - p);
+      innovation *= scale;
+    }
+    for (std::size_t k = 0; k < plain_.size(); ++k) out(plain_out_[k], c) = innovation(plain_[k]);
+    for (const Cluster& cluster : clusters_) {
+      out.col(c).segment(cluster.out, cluster.Z.cols()).noalias() =
+          cluster.Z.transpose() * innovation.segment(cluster.first, cluster.Z.rows());
+    }
+  }
+  return out;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,207 @@
+#include "deltadyn/diagnosis/white_problem.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding
+constexpr double kAbsorbed = 1e-5;  // of a signature's square: below, nothing of it is left beside the base model
+
+}  // namespace
+
+VectorXd WhiteColumns::inner(const VectorXd& r, const VectorXd& Q_r, const std::vector<WhiteSegment>& segments, Index first,
+                             Index count) const {
+  VectorXd u = -base.middleCols(first, count).transpose() * Q_r;
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    if (blocks[s].size() > 0)
+      u.noalias() += blocks[s].middleCols(first, count).transpose() * r.segment(segments[s].offset, segments[s].rows());
+  }
+  return u;
+}
+
+MatrixXd WhiteColumns::raw_gram(Index first, Index count) const {
+  MatrixXd G = MatrixXd::Zero(count, count);
+  for (const MatrixXd& block : blocks) {
+    if (block.size() > 0) G.noalias() += block.middleCols(first, count).transpose() * block.middleCols(first, count);
+  }
+  return G;
+}
+
+MatrixXd WhiteColumns::gram(Index first, Index count) const {
+  const auto part_of_base = base.middleCols(first, count);
+  return raw_gram(first, count) - part_of_base.transpose() * part_of_base;
+}
+
+WhiteColumns WhiteColumns::part(Index first, Index count) const {
+  WhiteColumns out;
+  out.cols = count;
+  out.base = base.middleCols(first, count);
+  for (const MatrixXd& block : blocks)
+    out.blocks.push_back(block.size() > 0 ? MatrixXd(block.middleCols(first, count)) : MatrixXd());
+  return out;
+}
+
+MatrixXd WhiteColumns::projected(const MatrixXd& Q, const std::vector<WhiteSegment>& segments, Index first, Index count) const {
+  MatrixXd C = -Q * base.middleCols(first, count);
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    if (blocks[s].size() > 0) C.middleRows(segments[s].offset, segments[s].rows()) += blocks[s].middleCols(first, count);
+  }
+  return C;
+}
+
+MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b) {
+  MatrixXd G = -a.base.transpose() * b.base;
+  for (std::size_t s = 0; s < a.blocks.size(); ++s) {
+    if (a.blocks[s].size() > 0 && b.blocks[s].size() > 0) G.noalias() += a.blocks[s].transpose() * b.blocks[s];
+  }
+  return G;
+}
+
+WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDrive<NoiseModel>& noise,
+                           const PerLogAndDrive<MatrixXd>& extra) {
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (std::size_t j = 0; j < logs[l].usable.size(); ++j) {
+      WhiteSegment segment{l, j, rows, Whitener(noise[l][j], logs[l].usable[j])};
+      rows += segment.rows();
+      segments.push_back(std::move(segment));
+    }
+  }
+  const Index b = logs.front().Y.front().cols();
+  const Index e = extra.empty() ? 0 : extra.front().front().cols();
+  X.resize(rows, b + e);
+  y.resize(rows);
+  for (const WhiteSegment& segment : segments) {
+    const LogRows& log = logs[segment.log];
+    auto target = X.middleRows(segment.offset, segment.rows());
+    target.leftCols(b) = segment.whitener.apply(log.Y[segment.drive]);
+    if (e > 0) target.rightCols(e) = segment.whitener.apply(extra[segment.log][segment.drive]);
+    y.segment(segment.offset, segment.rows()) = segment.whitener.apply(log.tau.col(static_cast<Index>(segment.drive)));
+  }
+  const VectorXd norm = X.colwise().norm().transpose().cwiseMax(1e-300);
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(X * norm.cwiseInverse().asDiagonal());
+  qr.setThreshold(kRank);
+  Q = qr.householderQ() * MatrixXd::Identity(rows, qr.rank());
+  beta = norm.cwiseInverse().asDiagonal() * qr.solve(y);
+  r = y - Q * (Q.transpose() * y);
+}
+
+WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const {
+  WhiteColumns out;
+  for (const auto& log : columns) {
+    for (const MatrixXd& drive : log) out.cols = std::max(out.cols, drive.cols());
+  }
+  out.base = MatrixXd::Zero(Q.cols(), out.cols);
+  for (const WhiteSegment& segment : segments) {
+    const MatrixXd& raw = columns[segment.log][segment.drive];
+    out.blocks.push_back(raw.size() > 0 ? segment.whitener.apply(raw) : MatrixXd());
+    if (raw.size() > 0) out.base.noalias() += Q.middleRows(segment.offset, segment.rows()).transpose() * out.blocks.back();
+  }
+  return out;
+}
+
+VectorXd WhiteProblem::whiten_torque(const PerLogAndDrive<VectorXd>& torque) const {
+  VectorXd out(rows);
+  for (const WhiteSegment& segment : segments) {
+    out.segment(segment.offset, segment.rows()) = segment.whitener.apply(torque[segment.log][segment.drive]);
+  }
+  return out;
+}
+
+Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
+  const Index k = inner.size();
+  std::vector<Index> free;
+  for (Index i = 0; i < k; ++i) free.push_back(i);
+  Gain best;
+  best.amplitude = VectorXd::Zero(k);
+  while (!free.empty()) {
+    const auto m = static_cast<Index>(free.size());
+    MatrixXd G(m, m);
+    VectorXd u(m);
+    for (Index a = 0; a < m; ++a) {
+      u(a) = inner(free[static_cast<std::size_t>(a)]);
+      for (Index c = 0; c < m; ++c) G(a, c) = gram(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(c)]);
+    }
+    const VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
+    const VectorXd a = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(VectorXd(scale.asDiagonal() * u));
+    // Columns whose amplitude has the wrong sign leave, the worst first.
+    Index worst = -1;
+    double least = 0;
+    for (Index i = 0; i < m; ++i) {
+      const double size = a(i) / scale(i);
+      if (positive[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])] && size < least) {
+        least = size;
+        worst = i;
+      }
+    }
+    if (worst >= 0) {
+      free.erase(free.begin() + worst);
+      continue;
+    }
+    for (Index i = 0; i < m; ++i) best.amplitude(free[static_cast<std::size_t>(i)]) = a(i);
+    best.gain = std::max(0.0, u.dot(a));
+    break;
+  }
+  return best;
+}
+
+Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis, const PerLogAndDrive<MatrixXd>& rows) {
+  Signature out;
+  out.white = problem.whiten(rows);
+  const Index k = hypothesis.amplitudes;
+  for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
+    const Index first = static_cast<Index>(s) * k;
+    if (out.white.cols < first + k) {  // nowhere in these logs
+      out.gram.push_back(MatrixXd::Zero(k, k));
+      out.kept.push_back(0);
+      continue;
+    }
+    out.gram.push_back(out.white.gram(first, k));
+    const MatrixXd raw = out.white.raw_gram(first, k);
+    const double whole = raw.trace();
+    out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
+  }
+  return out;
+}
+
+Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem) {
+  if (signature.white.cols == 0) return best_score(hypothesis, signature, VectorXd(0));
+  const VectorXd Q_r = problem.Q.transpose() * problem.r;
+  return best_score(hypothesis, signature, signature.white.inner(problem.r, Q_r, problem.segments, 0, signature.white.cols));
+}
+
+Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner) {
+  const EffectKind& kind = hypothesis.kind();
+  const Index k = hypothesis.amplitudes;
+  std::vector<bool> positive;
+  for (const EffectAmplitude& amplitude : kind.amplitudes) positive.push_back(amplitude.positive);
+  Score best;
+  best.amplitude = VectorXd::Zero(k);
+  if (signature.white.cols == 0) return best;
+  for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
+    if (signature.kept[s] < kAbsorbed) continue;
+    const VectorXd u = inner.segment(static_cast<Index>(s) * k, k);
+    Gain gain;
+    if (kind.tied) {
+      const double amount = hypothesis.shapes[s](0);
+      gain.gain = 2 * amount * u(0) - amount * amount * signature.gram[s](0, 0);
+      gain.amplitude = VectorXd::Constant(1, amount);
+    } else {
+      gain = constrained_gain(signature.gram[s], u, positive);
+    }
+    if (gain.gain > best.gain) best = {gain.gain, s, gain.amplitude};
+  }
+  return best;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,55 @@
+#include "deltadyn/runtime/effect_states.hpp"
+
+#include "deltadyn/effects/passive_joint_friction.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+template <class R>
+class EffectStatesOf final : public EffectStates {
+ public:
+  using Drives = Vector<double, R::kDrives>;
+  explicit EffectStatesOf(const RobotDescription& description) : geometry_(geometry_of<double, R>(description)) {}
+
+  Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status != Status::ok) return status;
+    state.J.setZero(3, R::kDrives);
+    state.J_bar.setZero(R::kDrives);
+    if constexpr (kHasPlate<R>) {
+      state.position = motion.posture.z.template head<3>();
+      state.velocity = motion.zd.template head<3>();
+      state.acceleration = motion.zdd.template head<3>();
+      state.J = motion.posture.J_plate.template topRows<3>();
+    }
+    if constexpr (R::kTelescope) {
+      state.bar_rate = motion.telescope.length_d;
+      state.J_bar = motion.posture.telescope.J_length;
+      state.bar = motion.posture.telescope.e;
+    }
+    state.passive = passive_joint_friction(motion);
+    return status;
+  }
+
+ private:
+  Geometry<double, R> geometry_;
+};
+
+}  // namespace
+
+std::unique_ptr<EffectStates> make_effect_states(const RobotDescription& description) {
+  const bool revolute = description.drive_kind == DriveKind::revolute;
+  if (description.type == Delta4::kName) return std::make_unique<EffectStatesOf<Delta4>>(description);
+  if (description.type == Delta3::kName) return std::make_unique<EffectStatesOf<Delta3>>(description);
+  if (description.type == LinearDelta3::kName) return std::make_unique<EffectStatesOf<LinearDelta3>>(description);
+  if (description.type == Axis::kName && revolute) return std::make_unique<EffectStatesOf<Axis>>(description);
+  if (description.type == Axis::kName) return std::make_unique<EffectStatesOf<LinearAxis>>(description);
+  throw Error("effects are not known for robots of type " + description.type, description.name,
+              "use delta3, linear-delta3, delta4 or axis");
+}
+
+}  // namespace deltadyn
