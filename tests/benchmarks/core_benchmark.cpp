@@ -34,7 +34,10 @@ template <class T>
 struct State {
   Vector<T, 4> q{T(0.1), T(-0.2), T(0.3), T(1)}, qd{T(1), T(-2), T(3), T(10)}, qdd{T(10), T(20), T(-30), T(100)};
   Vector<T, Layout::kColumns> p = Vector<T, Layout::kColumns>::Constant(T(0.1));
-  State() { benchmark::DoNotOptimize(q.data()); }
+  State() {
+    auto* known = q.data();
+    benchmark::DoNotOptimize(known);
+  }
 };
 
 /// Calls `work(geometry, state, motion)` once an iteration, after the posture and rates of the state.
@@ -45,7 +48,7 @@ void after_motion(benchmark::State& state, Work work) {
   Motion<T, Delta4> m;
   for (auto _ : state) {
     benchmark::ClobberMemory();
-    const Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
+    Status status = motion_from_drives(g, s.q, s.qd, s.qdd, m);
     benchmark::DoNotOptimize(status);
     auto result = work(g, s, m);
     benchmark::DoNotOptimize(result);
