@@ -1,0 +1,36 @@
+#pragma once
+
+/// \file
+/// The page that shows an excitation trajectory: its path, how far it uses the limits, and what it will identify.
+
+#include <Eigen/Core>
+#include <string>
+
+#include "deltadyn/excitation/optimize.hpp"
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/report/report_context.hpp"
+#include "deltadyn/trajectory/motion_plan.hpp"
+
+namespace deltadyn {
+
+struct ExcitationReportInput {
+  const Robot& robot;
+  const BaseParameters& base;
+  const Excitation& excitation;
+  const std::vector<PlanSegment>& segments;
+  const MotionPlan& plan;
+  const LimitCheck& check;  ///< of the plan
+  const TrajectorySamples& samples;
+  const DesignBound& bound;
+  Eigen::VectorXd torque_noise = {};    ///< standard deviation a drive [N m | N]
+  Eigen::VectorXd predicted_std = {};   ///< of each base parameter, for one run of the samples
+  Eigen::VectorXd base_values = {};     ///< what the base parameters are expected to be
+  bool values_are_nominal = true;  ///< from simple shapes, not from a known model
+  const TrajectorySamples* validation = nullptr;
+};
+
+/// \return the page as HTML
+/// Throws deltadyn::Error if the parts do not belong together, or gnuplot cannot draw.
+[[nodiscard]] std::string excitation_report(const ExcitationReportInput& input, const ReportContext& context);
+
+}  // namespace deltadyn

@@ -1,0 +1,463 @@
+#include "deltadyn/excitation/optimize.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+#include <omp.h>
+#include <optional>
+#include <random>
+
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/trajectory/motion_plan.hpp"
+
+#include "design_problem.hpp"
+#include "search.hpp"
+
+namespace deltadyn {
+
+using detail::DesignProblem;
+using detail::ProblemSettings;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kFeasibleMargin = 1e-4;  // kept from every limit, so that run-in and finer grids find it kept, too
+constexpr int kVerifySamples = 4000;      // of a period
+constexpr int kRankSamples = 600;         // of a period, to compare starts
+constexpr double kLargestStretch = 1.1;   // the smooth limits of the search lie inside the true ones
+constexpr int kSearchEvaluations = 250;   // of a start
+constexpr int kPolishEvaluations = 250;   // of a motion that is polished
+constexpr int kPolished = 4;
+constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
+constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
+constexpr double kShareOfTime = 0.5;    // of the time limit that the starts may plan for
+
+int search_samples(int harmonics) {
+  return std::max(60, 20 * harmonics);
+}
+
+class Clock {
+ public:
+  explicit Clock(const ExcitationOptions& options) : options_(options) {}
+  [[nodiscard]] double seconds() const {
+    return options_.elapsed_s + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  [[nodiscard]] bool interrupted() const { return options_.stop != nullptr && options_.stop->load(); }
+  [[nodiscard]] bool over() const { return interrupted() || seconds() > options_.time_limit_s; }
+
+ private:
+  const ExcitationOptions& options_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Numbers that are the same with every standard library.
+class Normal {
+ public:
+  explicit Normal(std::uint64_t seed) : random_(seed) {}
+  double uniform() { return (static_cast<double>(random_() >> 11U) + 0.5) * 0x1.0p-53; }
+  double normal() { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform()); }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+std::uint64_t mixed(std::uint64_t seed, std::uint64_t number) {
+  std::uint64_t x = seed + 0x9E3779B97F4A7C15U * (number + 1);  // splitmix64
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+double margin_of(const DesignSpace& space, const MotionLimits& limits, const FourierSeries& series, int samples) {
+  return check_limits(*space.robot, limits, one_period(series), samples).margin();
+}
+
+/// The largest factor on the deviations from the centre, up to `most`, with which the limits are kept; none if not even small
+/// motions keep them.
+std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits& limits, const FourierSeries& series,
+                                    double most, int samples) {
+  const VectorXd centre = space.states.centre;
+  double low = 0, high = most;
+  if (margin_of(space, limits, series.scaled(centre, most), samples) >= kFeasibleMargin) return series.scaled(centre, most);
+  constexpr int kHalvings = 24;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = (low + high) / 2;
+    (margin_of(space, limits, series.scaled(centre, middle), samples) >= kFeasibleMargin ? low : high) = middle;
+  }
+  if (low <= 0) return std::nullopt;
+  return series.scaled(centre, low);
+}
+
+struct Candidate {
+  FourierSeries series;
+  double value = -std::numeric_limits<double>::infinity();  ///< of the criterion with the other segments, true signs
+};
+
+}  // namespace
+
+MatrixXd series_information(const DesignSpace& space, const FourierSeries& series, int samples) {
+  const Index p = space.base_parameters(), n = space.regressor->drives();
+  const VectorXd phases = even_phases(samples);
+  const MatrixXd z = series.at_phases(phases, 0), zd = series.at_phases(phases, 1), zdd = series.at_phases(phases, 2);
+  MatrixXd rows(n * samples, p), A(n, p);
+  VectorXd x(3 * n);
+  for (Index i = 0; i < samples; ++i) {
+    x << z.row(i).transpose(), zd.row(i).transpose(), zdd.row(i).transpose();
+    if (space.weighted_columns(x, A) != Status::ok) A.setZero();
+    rows.middleRows(n * i, n) = A;
+  }
+  MatrixXd M = MatrixXd::Zero(p, p);
+  M.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), 1.0 / samples);
+  return M.selfadjointView<Eigen::Lower>();
+}
+
+namespace {
+
+/// The search for one segment beside the others.
+class SegmentSearch {
+ public:
+  SegmentSearch(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options, const Clock& clock,
+                MatrixXd other_information, double share)
+      : space_(space), limits_(limits), options_(options), clock_(clock), other_(std::move(other_information)), share_(share) {}
+
+  [[nodiscard]] ProblemSettings settings(bool polish) const {
+    ProblemSettings s;
+    s.criterion = options_.criterion;
+    s.velocity_weight = options_.velocity_weight;
+    s.harmonics = options_.harmonics;
+    s.lowest_hz = options_.lowest_hz;
+    s.highest_hz = options_.highest_hz;
+    s.samples = search_samples(options_.harmonics) * (polish ? 2 : 1);
+    s.windows = polish ? 6 : 4;
+    s.sharpness = polish ? 300 : 150;
+    s.sign_share = polish ? 0.01 : 0.02;
+    s.other_information = other_;
+    s.share = share_;
+    return s;
+  }
+
+  /// Of the criterion as it is reported: true signs, many samples.
+  [[nodiscard]] double value(const FourierSeries& series) const {
+    ProblemSettings s = settings(true);
+    s.samples = kRankSamples;
+    s.sign_share = 0;
+    const DesignProblem problem(space_, limits_, s);
+    DesignProblem::Evaluation e;
+    problem.evaluate(problem.variables_of(series), false, e);
+    return e.regular ? e.value : -std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] std::optional<FourierSeries> random_start(std::uint64_t seed) const {
+    Normal random(seed);
+    const DesignProblem problem(space_, limits_, settings(false));
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      VectorXd v(problem.variables());
+      constexpr double kSpread = 0.3;  // of the coefficients, in units of the largest single amplitudes
+      for (Index k = 0; k < v.size(); ++k) v(k) = kSpread * random.normal();
+      v(v.size() - 1) = 0.5 + 0.5 * random.uniform();  // information grows with speed
+      FourierSeries series = problem.series(v);
+      series.coefficients.row(0) = space_.states.centre.transpose();
+      if (auto found = fitted(space_, limits_, series, 1.0, kRankSamples)) return found;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] FourierSeries kicked(const FourierSeries& series, std::uint64_t seed) const {
+    Normal random(seed);
+    const DesignProblem problem(space_, limits_, settings(false));
+    VectorXd v = problem.variables_of(series);
+    const double size = 0.02 + 0.15 * random.uniform();
+    for (Index k = 0; k + 1 < v.size(); ++k) v(k) += size * random.normal();
+    return problem.series(v);
+  }
+
+  /// Local search from a series, then made to keep the true limits. Nothing if that cannot be.
+  [[nodiscard]] std::optional<Candidate> improve(const FourierSeries& start, bool polish, long& evaluations) const {
+    const DesignProblem problem(space_, limits_, settings(polish));
+    const detail::SearchResult found = detail::local_search(
+        problem, problem.variables_of(start), polish ? kPolishEvaluations : kSearchEvaluations, [this] { return clock_.over(); });
+    evaluations += found.evaluations;
+    const auto series = fitted(space_, limits_, on_grid(problem.series(found.best)), kLargestStretch, kRankSamples);
+    if (!series) return std::nullopt;
+    return Candidate{*series, value(*series)};
+  }
+
+  [[nodiscard]] FourierSeries on_grid(const FourierSeries& series) const {
+    FourierSeries result = on_sample_grid(series, options_.rate_hz);
+    // The next lower frequency may lie below the range; then the next higher one.
+    if (result.base_frequency_hz < options_.lowest_hz * (1 - 1e-9))
+      result.base_frequency_hz = options_.rate_hz / std::floor(options_.rate_hz / options_.lowest_hz + 1e-6);
+    return result;
+  }
+
+  [[nodiscard]] const DesignSpace& space() const { return space_; }
+  [[nodiscard]] const MotionLimits& limits() const { return limits_; }
+
+ private:
+  const DesignSpace& space_;
+  const MotionLimits& limits_;
+  const ExcitationOptions& options_;
+  const Clock& clock_;
+  MatrixXd other_;
+  double share_;
+};
+
+/// Runs work(k) for k = 0 .. count-1 on all threads; the first exception is passed on.
+template <class Work>
+void in_parallel(int count, Work work) {
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int k = 0; k < count; ++k) {
+    try {
+      work(k);
+    } catch (...) {
+#pragma omp critical(deltadyn_excitation_failure)
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// Best first; ties by number, so that the order does not depend on the threads.
+std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& candidates) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (candidates[k] && std::isfinite(candidates[k]->value)) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
+  return order;
+}
+
+struct RunCount {
+  int finished = 0;
+  long evaluations = 0;
+  int done = 0, planned = 1;
+};
+
+}  // namespace
+
+void ExcitationOptions::validate() const {
+  const auto refuse = [](const std::string& what, const std::string& flag, const std::string& mend) {
+    throw Error(what, flag, mend, ExitCode::usage);
+  };
+  if (harmonics < 1 || harmonics > 50) refuse(fmt::format("{} harmonics", harmonics), "--harmonics", "give 1 to 50");
+  if (!(lowest_hz > 0) || !(highest_hz >= lowest_hz) || !std::isfinite(highest_hz))
+    refuse(fmt::format("the base frequency range {} to {} Hz is empty", lowest_hz, highest_hz), "--base-frequency-hz",
+           "give lower,upper with 0 < lower <= upper");
+  if (!(rate_hz >= 20 * harmonics * highest_hz) || !std::isfinite(rate_hz))
+    refuse(fmt::format("{} Hz is too slow for {} harmonics of {} Hz", rate_hz, harmonics, highest_hz), "--rate-hz",
+           fmt::format("give at least {} Hz, twenty samples in the fastest harmonic", 20 * harmonics * highest_hz));
+  if (!(time_limit_s > 0)) refuse("the time limit must be positive", "--time-limit-s", "give seconds, e.g. 60");
+  if (starts < 0) refuse("the number of starts is negative", "--starts", "give 1 or more, or 0 for as many as the time allows");
+  if (!(velocity_weight >= 0) || !std::isfinite(velocity_weight))
+    refuse("the velocity weight is negative", "--velocity-weight", "give 0 or more");
+  if (speeds.empty()) refuse("there is no segment", "--segments", "give 1 or more");
+  for (const double speed : speeds)
+    if (!(speed > 0 && speed <= 1))
+      refuse(fmt::format("the speed {} of a segment is not in (0, 1]", speed), "--segment-speeds", "give shares such as 0.3,1");
+}
+
+double Excitation::margin() const {
+  double margin = 1;
+  for (const Segment& segment : segments) margin = std::min(margin, segment.check.margin());
+  return margin;
+}
+
+std::string Excitation::brief_report() const {
+  return fmt::format("D-efficiency {:.3f}, condition number {:.4g}, margin {:.2e}, {} of {} starts, {} evaluations in {:.1f} s{}",
+                     d_efficiency, condition_number, margin(), finished_starts, starts, evaluations, total_time_s,
+                     interrupted ? ", interrupted" : (out_of_time ? ", stopped by the time limit" : ""));
+}
+
+std::string Excitation::full_report() const {
+  std::string text = brief_report() + "\n";
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const Segment& segment = segments[k];
+    text += fmt::format("segment {}: base frequency {:.6g} Hz, period {:.6g} s\n", k + 1, segment.series.base_frequency_hz,
+                        segment.series.period_s());
+    for (const LimitUse& use : segment.check.uses)
+      text += fmt::format("  {:<24} {:>10.4g} of {:.4g} {}, used to {:.2f} %\n", use.limit.name, use.value,
+                          use.value < 0 && std::isfinite(use.limit.lower) ? use.limit.lower : use.limit.upper, use.limit.unit,
+                          100 * use.load);
+  }
+  return text;
+}
+
+FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options,
+                                     std::uint64_t seed) {
+  const Clock clock(options);
+  const SegmentSearch search(space, limits, options, clock, MatrixXd(), 1.0);
+  auto series = search.random_start(seed);
+  if (series) series = fitted(space, limits, search.on_grid(*series), 1.0, kVerifySamples);
+  if (!series) throw Error("no random motion keeps the limits", "limits", "widen the limits", ExitCode::no_convergence);
+  return *series;
+}
+
+namespace {
+
+/// All stages for one segment: random starts, kicks of the best, polishing.
+std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options, const Clock& clock,
+                                        int starts, std::uint64_t seed, const std::optional<FourierSeries>& incumbent,
+                                        Excitation& result, RunCount& run, const std::function<void(const Candidate&)>& first) {
+  const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
+  std::vector<std::optional<Candidate>> found(static_cast<std::size_t>(starts + kPolished) + 1);
+  if (incumbent) found.back() = Candidate{*incumbent, search.value(*incumbent)};
+  const auto count = [&](long evaluations) {
+#pragma omp critical(deltadyn_excitation_count)
+    {
+      run.evaluations += evaluations;
+      ++run.done;
+      if (!clock.over()) ++run.finished;
+      if (options.progress)
+        options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
+    }
+  };
+  const auto attempt = [&](std::size_t k, const std::optional<FourierSeries>& start, bool polish) {
+    long evaluations = 0;
+    if (start) {
+      auto better = search.improve(*start, polish, evaluations);
+      const double before = search.value(*start);
+      if (better && better->value > before) {
+        found[k] = std::move(better);
+      } else if (std::isfinite(before) && margin_of(search.space(), search.limits(), search.on_grid(*start), kRankSamples) >= 0) {
+        found[k] = Candidate{search.on_grid(*start), before};
+      }
+    }
+    count(evaluations);
+  };
+
+  // A feasible answer before anything else.
+  if (auto start = search.random_start(mixed(seed, 0))) {
+    const auto safe = fitted(search.space(), search.limits(), search.on_grid(*start), 1.0, kVerifySamples);
+    if (safe) first(Candidate{*safe, search.value(*safe)});
+  }
+  in_parallel(random_starts, [&](int k) {
+    // The first start is always made, so that there is an answer however short the time.
+    if (k > 0 && clock.over()) return;
+    attempt(static_cast<std::size_t>(k), search.random_start(mixed(seed, static_cast<std::uint64_t>(k))), false);
+  });
+  const std::vector<std::size_t> parents = ranked(found);
+  if (!parents.empty()) {
+    const std::vector<std::optional<Candidate>> before = found;
+    in_parallel(starts - random_starts, [&](int k) {
+      if (clock.over()) return;
+      const std::size_t parent = parents[static_cast<std::size_t>(k) % std::min<std::size_t>(3, parents.size())];
+      const auto number = static_cast<std::size_t>(random_starts + k);
+      attempt(number, search.kicked(before[parent]->series, mixed(seed, number)), false);
+    });
+  }
+  const std::vector<std::size_t> best = ranked(found);
+  const std::vector<std::optional<Candidate>> before = found;
+  in_parallel(static_cast<int>(std::min<std::size_t>(kPolished, best.size())), [&](int k) {
+    if (clock.over()) return;
+    attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true);
+  });
+  for (int k = 0; k < starts; ++k) {
+    const auto& candidate = found[static_cast<std::size_t>(k)];
+    result.start_efficiency.push_back(candidate ? candidate->value : -std::numeric_limits<double>::infinity());
+  }
+  for (const std::size_t k : ranked(found)) {
+    // Checked more finely, the room between the samples turns out larger.
+    const auto safe = fitted(search.space(), search.limits(), found[k]->series, kLargestStretch, kVerifySamples);
+    if (safe) return Candidate{*safe, search.value(*safe)};
+  }
+  return std::nullopt;
+}
+
+int planned_starts(const DesignSpace& space, const ExcitationOptions& options) {
+  if (options.starts > 0) return options.starts;
+  // A state of N drives is differentiated in 3 N directions at about N joints.
+  const double n = space.regressor->drives();
+  const double rate = kNominalRate * (4 / n) * (4 / n);
+  const double work = static_cast<double>(search_samples(options.harmonics)) * kSearchEvaluations;
+  const double rounds = options.speeds.size() == 1 ? 1 : 2 * static_cast<double>(options.speeds.size());
+  const double seconds = kShareOfTime * std::max(0.0, options.time_limit_s - 2) * 2;
+  const double polish = 2.0 * kPolished;  // in units of starts: twice the samples
+  return std::clamp(static_cast<int>(rate * seconds / work / rounds - polish), 4, 400);
+}
+
+}  // namespace
+
+Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& limits, const DesignBound& bound,
+                               const ExcitationOptions& options) {
+  options.validate();
+  const Clock clock(options);
+  const std::size_t count = options.speeds.size();
+  const int p = space.base_parameters();
+  Excitation result;
+  std::vector<MotionLimits> segment_limits;
+  for (const double speed : options.speeds) segment_limits.push_back(limits.slowed(speed));
+  std::vector<std::optional<FourierSeries>> series(count);
+  std::vector<MatrixXd> information(count);
+
+  const int starts = planned_starts(space, options);
+  const int rounds = count == 1 ? 1 : 2;
+  RunCount run;
+  run.planned = static_cast<int>(count) * rounds * (starts + kPolished);
+  result.starts = run.planned;
+  const double share = 1.0 / static_cast<double>(count);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (series[k] && clock.over()) continue;
+      // In the first round the segments that are still to come count as nothing.
+      MatrixXd other;
+      for (std::size_t j = 0; j < count; ++j) {
+        if (j == k || !series[j]) continue;
+        if (other.size() == 0) other = MatrixXd::Zero(p, p);
+        other += share * information[j];
+      }
+      const SegmentSearch search(space, segment_limits[k], options, clock, other, share);
+      const std::uint64_t seed = mixed(options.seed, static_cast<std::uint64_t>(round) * 1000 + k);
+      const auto first = [&](const Candidate& candidate) {
+        if (result.first_feasible_time_s > 0) return;
+        result.first_feasible_time_s = clock.seconds();
+        result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
+      };
+      const auto found = search_segment(search, options, clock, starts, seed, series[k], result, run, first);
+      if (!found && !series[k]) {
+        const FourierSeries still{options.highest_hz, MatrixXd::Zero(1 + 2 * options.harmonics, space.regressor->drives())};
+        const LimitCheck check =
+            check_limits(*space.robot, segment_limits[k], one_period(still.scaled(space.states.centre, 0.0)), 10);
+        const LimitUse& use = check.tightest();
+        throw Error(fmt::format("no motion that keeps all limits was found; the limit that is violated least is '{}' ({:.6g} {} "
+                                "where {:.6g} to {:.6g} is allowed)",
+                                use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper),
+                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+      }
+      if (found) {
+        series[k] = found->series;
+        information[k] = series_information(space, found->series);
+      }
+    }
+  }
+
+  result.information = MatrixXd::Zero(p, p);
+  for (std::size_t k = 0; k < count; ++k) {
+    Excitation::Segment segment{*series[k], segment_limits[k], {}, information[k]};
+    segment.check = check_limits(*space.robot, segment.limits, one_period(segment.series), kVerifySamples);
+    result.information += share * segment.information;
+    result.segments.push_back(std::move(segment));
+  }
+  result.log_det = log_determinant(result.information);
+  result.log_det_physical = result.log_det + space.log_det_of_scales();
+  result.d_efficiency = d_efficiency(result.log_det, bound, p);
+  const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(result.information, Eigen::EigenvaluesOnly).eigenvalues();
+  result.condition_number = std::sqrt(eigenvalues(p - 1) / eigenvalues(0));
+  const CriterionValue value = evaluate(options.criterion, result.information);
+  result.value = value.regular ? value.value : -std::numeric_limits<double>::infinity();
+  result.evaluations = run.evaluations;
+  result.finished_starts = run.finished;
+  result.interrupted = clock.interrupted();
+  result.out_of_time = !result.interrupted && run.finished < result.starts;
+  result.total_time_s = clock.seconds();
+  return result;
+}
+
+}  // namespace deltadyn

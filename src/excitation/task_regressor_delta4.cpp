@@ -1,0 +1,5 @@
+#include "task_regressor_of.hpp"
+
+namespace deltadyn::detail {
+template std::unique_ptr<TaskRegressor> make_task_regressor_of<Delta4>(const Robot&);
+}  // namespace deltadyn::detail

@@ -1,0 +1,195 @@
+#include "deltadyn/report/excitation_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+#include <utility>
+
+#include "deltadyn/report/format.hpp"
+#include "deltadyn/report/html_report.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/trajectory/task_columns.hpp"
+
+#include "drive_names.hpp"
+#include "excitation_figures.hpp"
+
+namespace deltadyn {
+namespace {
+
+// Relative standard deviations from which a base parameter counts as known, and beyond which as not identified.
+constexpr double kWell = 0.05, kNot = 0.5;
+constexpr double kGoodEfficiency = 0.6, kFairEfficiency = 0.4;
+constexpr double kBinding = 0.99;
+
+double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
+  return input.predicted_std(k) / std::max(std::abs(input.base_values(k)), 1e-300);
+}
+
+struct Counts {
+  int well = 0, roughly = 0, not_at_all = 0;
+};
+Counts counts(const ExcitationReportInput& input) {
+  Counts c;
+  for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) {
+    const double relative = relative_std(input, k);
+    ++(relative <= kWell ? c.well : (relative <= kNot ? c.roughly : c.not_at_all));
+  }
+  return c;
+}
+
+void add_verdict(HtmlReport& report, const ExcitationReportInput& input) {
+  const Excitation& e = input.excitation;
+  const Counts c = counts(input);
+  const bool good = e.d_efficiency >= kGoodEfficiency, fair = e.d_efficiency >= kFairEfficiency;
+  std::vector<std::string> lines;
+  lines.push_back(
+      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} "
+                  "to spare.",
+                  input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
+  lines.push_back(fmt::format("It gives {} of the information (D-efficiency) that any motion inside these limits could give.",
+                              format_percent(e.d_efficiency, 3)));
+  lines.push_back(fmt::format("Of {} base parameters {} will be known to {} or better, {} roughly, {} hardly.",
+                              input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
+  if (e.out_of_time) lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
+  if (e.interrupted) lines.emplace_back("The search was interrupted; more time may find a better motion.");
+  report.verdict(good ? Verdict::good : (fair ? Verdict::caution : Verdict::bad),
+                 good ? "A good excitation" : (fair ? "A usable excitation" : "A weak excitation"), lines);
+}
+
+void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
+  const Excitation& e = input.excitation;
+  report.key_figures({
+      {"D-efficiency", format_percent(e.d_efficiency, 3),
+       fmt::format("bound known to {}", format_percent(input.bound.gap(input.base.count()), 1)),
+       e.d_efficiency >= kGoodEfficiency ? Tone::good : Tone::caution},
+      {"margin to the limits", format_percent(input.check.margin(), 2), input.check.tightest().limit.name, Tone::plain},
+      {"condition number", format_number(e.condition_number, 4), "columns scaled", Tone::plain},
+      {"length", format_number(input.plan.duration_s, "s", 4), fmt::format("{} samples", format_count(input.samples.samples())),
+       Tone::plain},
+      {"base parameters", fmt::format("{} of {}", input.base.count(), input.robot.parameters()), "columns", Tone::plain},
+      {"search", format_duration(e.total_time_s), fmt::format("first motion after {}", format_duration(e.first_feasible_time_s)),
+       Tone::plain},
+  });
+}
+
+void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
+  Table table({{"limit", Align::left}, {"lower"}, {"upper"}, {"reached"}, {"unit", Align::left}, {"used"}, {"at [s]"}});
+  for (const LimitUse& use : input.check.uses) {
+    table.row({use.limit.name, format_number(use.limit.lower, 4), format_number(use.limit.upper, 4), format_number(use.value, 4),
+               pretty_unit(use.limit.unit), format_percent(use.load, 4), format_number(use.time_s, 4)},
+              use.load > kBinding ? Tone::strong : Tone::plain);
+  }
+  report.table(table, "Limits in bold type bind: wider ones would allow a better motion.");
+}
+
+void add_identification_table(HtmlReport& report, const ExcitationReportInput& input) {
+  std::string noise;
+  for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
+    noise += (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
+  }
+  report.paragraph(
+      fmt::format("Predicted standard deviations for one run of this trajectory with white torque noise of {} in the "
+                  "drives. Expected values are those of {}.",
+                  noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  const auto fill = [&](Table& table, bool only_hidden) {
+    for (const Eigen::Index k : order) {
+      const double relative = relative_std(input, k);
+      if (only_hidden && relative <= kNot) continue;
+      const auto at = static_cast<std::size_t>(k);
+      const std::string unit(pretty_unit(input.base.units[at]));
+      table.row({input.base.expressions[at], format_number(input.base_values(k), 4), format_number(input.predicted_std(k), 3),
+                 unit, relative > 10 ? "–" : format_percent(relative, 2),
+                 relative <= kWell ? "well" : (relative <= kNot ? "roughly" : "hardly")},
+                relative <= kWell ? Tone::plain : (relative <= kNot ? Tone::caution : Tone::bad));
+    }
+  };
+  const std::vector<TableColumn> columns = {{"combination of parameters", Align::left},
+                                            {"expected"},
+                                            {"standard deviation"},
+                                            {"unit", Align::left},
+                                            {"relative"},
+                                            {"seen", Align::left}};
+  report.subheading("What the motion will hardly identify");
+  Table hidden(columns);
+  fill(hidden, true);
+  if (hidden.empty()) {
+    report.paragraph("Nothing: every combination will be known to half of its value or better.");
+  } else {
+    report.table(hidden,
+                 "Their effect on the torque is small in every motion inside these limits, or of this length; more "
+                 "periods lower the standard deviation with the root of their number.");
+  }
+  report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
+    Table all(columns);
+    fill(all, false);
+    inner.table(all);
+  });
+  // Parameters that enter no combination at all.
+  std::vector<std::string> none;
+  for (Eigen::Index k = 0; k < input.base.B.cols(); ++k) {
+    if (input.base.B.col(k).cwiseAbs().maxCoeff() <= 0)
+      none.push_back(input.robot.parameter_names()[static_cast<std::size_t>(k)]);
+  }
+  if (!none.empty()) {
+    std::string text = "No motion of the drives shows these parameters: ";
+    for (std::size_t k = 0; k < none.size(); ++k) text += (k > 0 ? ", " : "") + none[k];
+    report.note(text + ".");
+  }
+}
+
+void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
+  const Excitation& e = input.excitation;
+  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  if (!context.parameter_file.empty()) facts.emplace_back("Model", context.parameter_file);
+  if (input.segments.front().limits.region) facts.emplace_back("Workspace", input.segments.front().limits.region->text());
+  for (std::size_t k = 0; k < input.segments.size(); ++k) {
+    const FourierSeries& series = input.segments[k].series;
+    facts.emplace_back(
+        fmt::format("Segment {}", k + 1),
+        fmt::format("{} harmonics of {}, {} periods of {}", series.harmonics(), format_number(series.base_frequency_hz, "Hz", 5),
+                    input.segments[k].periods, format_number(series.period_s(), "s", 5)));
+  }
+  facts.emplace_back(
+      "Search", fmt::format("{} of {} starts and polishing runs, {} evaluations with gradient, {}", e.finished_starts, e.starts,
+                            format_count(e.evaluations), format_duration(e.total_time_s)));
+  facts.emplace_back("Upper bound",
+                     fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a "
+                                 "share, certified to {}",
+                                 format_count(input.bound.shares.size()), input.bound.support,
+                                 format_percent(input.bound.gap(input.base.count()), 2)));
+  report.facts(facts);
+}
+
+}  // namespace
+
+std::string excitation_report(const ExcitationReportInput& input, const ReportContext& context) {
+  const auto p = static_cast<Eigen::Index>(input.base.count());
+  if (input.predicted_std.size() != p || input.base_values.size() != p || input.samples.z.cols() != input.robot.drives() ||
+      input.plan.parts.empty() || input.segments.empty())
+    throw Error("trajectory, base parameters and plan are not those of this robot", input.robot.description().name,
+                "make them with the same robot", ExitCode::usage);
+  const RobotDescription& description = input.robot.description();
+  HtmlReport report("Excitation of " + description.name,
+                    fmt::format("{}, {} {}, {:.4g} s", description.type, description.drives(),
+                                description.drives() == 1 ? "drive" : "drives", input.plan.duration_s));
+  add_verdict(report, input);
+  add_key_figures(report, input);
+  report.heading("Path");
+  add_path_figures(report, input);
+  report.heading("Limits");
+  add_limit_figures(report, input);
+  add_limit_table(report, input);
+  report.heading("What the motion will identify");
+  add_identification_table(report, input);
+  report.heading("Settings");
+  add_settings(report, input, context);
+  if (!context.command_line.empty()) report.footer(context.command_line);
+  return report.str();
+}
+
+}  // namespace deltadyn
