@@ -174,35 +174,54 @@ EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>&
 
 PerLogAndDrive<MatrixXd> EffectSearch::extra(const std::vector<AcceptedEffect>& accepted) const {
   PerLogAndDrive<MatrixXd> out = known_rows_;
-  for (const AcceptedEffect& one : accepted) append(out, one.rows, hypotheses_[one.hypothesis].amplitudes);
+  for (const AcceptedEffect& one : accepted) {
+    const Hypothesis& hypothesis = hypotheses_[one.hypothesis];
+    if (!hypothesis.kind().tied) append(out, one.rows, hypothesis.amplitudes);
+  }
+  return out;
+}
+
+std::vector<LogRows> EffectSearch::corrected(const std::vector<AcceptedEffect>& accepted) const {
+  std::vector<LogRows> out = logs_;
+  for (const AcceptedEffect& one : accepted) {
+    if (!hypotheses_[one.hypothesis].kind().tied) continue;
+    for (std::size_t l = 0; l < out.size(); ++l) {
+      for (std::size_t j = 0; j < one.rows[l].size(); ++j) {
+        if (one.rows[l][j].size() > 0) out[l].tau.col(static_cast<Index>(j)) -= one.rows[l][j] * one.effect.amplitude;
+      }
+    }
+  }
   return out;
 }
 
 PerLogAndDrive<NoiseModel> EffectSearch::noise_beside(const std::vector<AcceptedEffect>& accepted,
                                                       PerLogAndDrive<double>* floor) const {
-  return estimate_noise(logs_, basis_, extra(accepted), floor);
+  return estimate_noise(corrected(accepted), basis_, extra(accepted), floor);
 }
 
 EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
                                         const EncoderPilots* pilots) const {
   State out;
-  out.problem = std::make_unique<WhiteProblem>(logs_, noise, extra(accepted));
+  out.problem = std::make_unique<WhiteProblem>(corrected(accepted), noise, extra(accepted));
   out.signatures.resize(hypotheses_.size());
   out.scores.resize(hypotheses_.size());
   out.bias.resize(hypotheses_.size());
-  if (pilots != nullptr) out.bias = pilots->bias(*out.problem);
   std::vector<char> held(hypotheses_.size(), 0);
   for (const AcceptedEffect& one : accepted) held[one.hypothesis] = 1;
   const VectorXd Q_r = out.problem->Q.transpose() * out.problem->r;
 #pragma omp parallel for schedule(dynamic)
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]);
+  if (pilots != nullptr) {
+    out.bias = pilots->bias(*out.problem, out.signatures);
+    pilots->correct(*out.problem, out.signatures);
+  }
+#pragma omp parallel for schedule(dynamic)
   for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]);
     out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
     const WhiteColumns& white = out.signatures[h].white;
     if (held[h] || white.cols == 0) continue;
     VectorXd inner = white.inner(out.problem->r, Q_r, out.problem->segments, 0, white.cols);
-    if (out.bias[h].size() > 0) inner -= out.bias[h];
-    out.scores[h] = best_score(hypotheses_[h], out.signatures[h], inner);
+    out.scores[h] = best_score(hypotheses_[h], out.signatures[h], freed_of_bias(inner, out.bias[h]));
   }
   return out;
 }
@@ -224,17 +243,22 @@ Fit EffectSearch::refine(const State& state, std::size_t h) const {
   best.effect.amplitude = start.amplitude;
   best.rows = columns_of(rows_[h], static_cast<Index>(start.shape) * k, k);
   const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
+  // Share of the Gram matrix that is not encoder noise in the columns.
+  const Signature& own = state.signatures[h];
+  const double whole = own.white.cols > 0 ? own.white.gram(static_cast<Index>(start.shape) * k, k).trace() : 0.0;
+  const double kept_gram = whole > 0 ? std::clamp(own.gram[start.shape].trace() / whole, 0.0, 1.0) : 1.0;
   const auto evaluate = [&](const VectorXd& shape, Fit& into) {
     Hypothesis one = hypothesis;
     one.shapes = {shape};
     into.rows.clear();
     for (const LogRows& log : logs_) into.rows.push_back(hypothesis_rows(model_, log, log.signals, one));
-    const Signature signature = make_signature(*state.problem, one, into.rows);
+    Signature signature = make_signature(*state.problem, one, into.rows);
+    for (MatrixXd& gram : signature.gram) gram *= kept_gram;
     VectorXd inner = signature.white.cols > 0
                          ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0, signature.white.cols)
                          : VectorXd(0);
     // What encoder noise fakes changes little from one shape to the next.
-    if (state.bias[h].size() > 0 && inner.size() > 0) inner -= state.bias[h].segment(static_cast<Index>(start.shape) * k, k);
+    if (state.bias[h].size() > 0) inner = freed_of_bias(inner, state.bias[h].segment(static_cast<Index>(start.shape) * k, k));
     const Score score = best_score(one, signature, inner);
     into.hypothesis = h;
     into.effect = best.effect;
@@ -284,7 +308,7 @@ Fit EffectSearch::refine(const State& state, std::size_t h) const {
     }
   }
   best.white = state.problem->whiten(best.rows);
-  best.gram = best.white.cols >= k ? best.white.gram(0, k) : MatrixXd::Zero(k, k);
+  best.gram = best.white.cols >= k ? MatrixXd(kept_gram * best.white.gram(0, k)) : MatrixXd::Zero(k, k);
   return best;
 }
 
@@ -310,7 +334,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       const Index first = static_cast<Index>(state.scores[h].shape) * k;
       one.white = signature.white.part(first, k);
       one.inner = one.white.inner(state.problem->r, Q_r, state.problem->segments, 0, k);
-      if (state.bias[h].size() > 0) one.inner -= state.bias[h].segment(first, k);
+      if (state.bias[h].size() > 0) one.inner = freed_of_bias(one.inner, state.bias[h].segment(first, k));
     }
     for (const EffectAmplitude& amplitude : hypotheses_[h].kind().amplitudes) one.positive.push_back(amplitude.positive);
     ones.push_back(std::move(one));

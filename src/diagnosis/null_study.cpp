@@ -27,28 +27,41 @@ constexpr int kPilotRuns = 12;         // to average what it fakes
 constexpr double kSensitive = 0.01;    // change of a column, as a share of its size, that counts
 constexpr double kLeastTorque = 0.05;  // share of the spectrum that is the torque's own at least
 constexpr Index kSpectrumLags = 24;
+constexpr double kBiasDoubt = 0.3;   // share of a faked score that the noise's variance may be wrong by
+constexpr double kLeastGram = 0.25;  // of a Gram matrix that is left at least when the noise's own squares are taken off
+constexpr std::size_t kGramRuns = 4;
 
-/// A motion with encoder noise, through the same zero-phase filter as the log's own.
-PreparedLog noisy_motion(const PreparedLog& log, const std::vector<double>& sigma, double cutoff_hz, std::mt19937_64& random) {
-  PreparedLog out = log;
-  std::normal_distribution<double> normal;
-  MatrixXd noise(log.q.rows(), log.q.cols());
-  for (Index j = 0; j < noise.cols(); ++j) {
-    for (Index k = 0; k < noise.rows(); ++k) noise(k, j) = sigma[static_cast<std::size_t>(j)] * normal(random);
+/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples to spare
+/// before its first row and after its last one, as the coarser low pass may be longer by one step.
+LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& start) {
+  LogRows out;
+  out.number = from.number;
+  out.tau.resize(from.rows(), from.tau.cols());
+  PreparedLog& log = out.log;
+  log = from.log;
+  // The rows' stride must be a whole number of steps.
+  step = 1;
+  for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
+    if (log.low_pass && log.stride % candidate == 0 && log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
+      step = candidate;
+      break;
+    }
   }
-  noise = zero_phase_filter(noise, log.rate_hz, cutoff_hz, 4);
-  out.q += noise;
-  out.qd += differentiate(noise, 1.0 / log.rate_hz, 1, 3);
-  out.qdd += differentiate(noise, 1.0 / log.rate_hz, 2, 3);
+  start = log.first % step;
+  if (step == 1) return out;
+  const Index samples = (log.t_s.size() - start + step - 1) / step;
+  const auto rows = [&](const MatrixXd& m) {
+    MatrixXd thin(samples, m.cols());
+    for (Index k = 0; k < samples; ++k) thin.row(k) = m.row(start + k * step);
+    return thin;
+  };
+  for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
+  log.t_s = rows(log.t_s);
+  log.first = (log.first - start) / step;
+  log.stride /= step;
+  log.rate_hz /= static_cast<double>(step);
+  log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
   return out;
-}
-
-/// Largest change of any column of `b` beside `a`, as a share of its size.
-double change(const MatrixXd& a, const MatrixXd& b) {
-  double largest = 0;
-  for (Index c = 0; c < a.cols(); ++c)
-    largest = std::max(largest, (a.col(c) - b.col(c)).norm() / std::max(a.col(c).norm(), 1e-300));
-  return largest;
 }
 
 }  // namespace
@@ -144,76 +157,109 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
 
 std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
   std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
   std::vector<PreparedLog> out;
-  for (std::size_t l = 0; l < logs_.size(); ++l)
-    out.push_back(noisy_motion(logs_[l].log, position_noise_[l], cutoff_hz_, random));
+  for (std::size_t l = 0; l < logs_.size(); ++l) {
+    PreparedLog log = logs_[l].log;
+    MatrixXd noise(samples_[l], log.q.cols());
+    for (Index j = 0; j < noise.cols(); ++j) {
+      for (Index k = 0; k < noise.rows(); ++k) noise(k, j) = position_noise_[l][static_cast<std::size_t>(j)] * normal(random);
+    }
+    // Through the same zero-phase filter and differentiation as the log's own motion.
+    noise = zero_phase_filter(noise, rate_hz_[l], cutoff_hz_, 4);
+    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz_[l], 1, 3), second = differentiate(noise, 1.0 / rate_hz_[l], 2, 3);
+    for (Index k = 0; k < log.q.rows(); ++k) {
+      const Index sample = start_[l] + k * step_[l];
+      log.q.row(k) += noise.row(sample);
+      log.qd.row(k) += rate.row(sample);
+      log.qdd.row(k) += second.row(sample);
+    }
+    out.push_back(std::move(log));
+  }
   return out;
 }
 
-void EncoderPilots::rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which, Run& run) const {
-  run.rows.assign(which.size(), {});
-  if (which.empty()) return;
+EncoderPilots::Run EncoderPilots::rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which) const {
+  Run run;
+  run.rows.resize(which.size());
   for (std::size_t l = 0; l < logs_.size(); ++l) {
+    run.Y.push_back(base_rows(model_.robot(), base_, motion[l]));
+    if (which.empty()) continue;
     const EffectSignals signals = model_.signals(motion[l], p_, false);
     for (std::size_t k = 0; k < which.size(); ++k) {
       run.rows[k].push_back(hypothesis_rows(model_, logs_[l], signals, hypotheses_[which[k]]));
     }
   }
+  return run;
 }
 
 EncoderPilots::Run EncoderPilots::draw(std::uint64_t seed) const {
-  Run run;
-  const std::vector<PreparedLog> noisy = motion(seed);
-  for (const PreparedLog& log : noisy) run.Y.push_back(base_rows(model_.robot(), base_, log));
-  rows_of(noisy, sensitive_, run);
+  Run run = rows_of(motion(seed), sensitive_);
+  for (std::size_t l = 0; l < logs_.size(); ++l) {
+    for (std::size_t j = 0; j < run.Y[l].size(); ++j) {
+      run.Y[l][j] -= still_.Y[l][j];
+      for (std::size_t k = 0; k < run.rows.size(); ++k) {
+        if (run.rows[k][l][j].size() > 0) run.rows[k][l][j] -= still_.rows[k][l][j];
+      }
+    }
+  }
   return run;
 }
 
 EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& base, const std::vector<LogRows>& logs,
-                             const VectorXd& p, const std::vector<Hypothesis>& hypotheses,
-                             const PerLogAndDrive<double>& position_noise, double cutoff_hz, std::uint64_t seed, int threads)
-    : model_(model),
-      base_(base),
-      logs_(logs),
-      p_(p),
-      hypotheses_(hypotheses),
-      position_noise_(position_noise),
-      cutoff_hz_(cutoff_hz) {
-  std::vector<std::size_t> candidates;
+                             const VectorXd& p, const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses,
+                             const std::vector<Signature>& signatures, const PerLogAndDrive<double>& position_noise,
+                             double cutoff_hz, double low_pass_hz, std::uint64_t seed, int threads)
+    : model_(model), base_(base), p_(p), hypotheses_(hypotheses), position_noise_(position_noise), cutoff_hz_(cutoff_hz) {
+  std::vector<PreparedLog> own;
+  for (const LogRows& log : logs) {
+    Index step = 1, start = 0;
+    logs_.push_back(thinned(log, low_pass_hz, step, start));
+    step_.push_back(step);
+    start_.push_back(start);
+    samples_.push_back(log.log.t_s.size());
+    rate_hz_.push_back(log.log.rate_hz);
+    own.push_back(logs_.back().log);
+  }
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     // Columns of pose alone: a few encoder counts do nothing there.
     const EffectId id = hypotheses[h].id;
-    if (id != EffectId::base_tilt && id != EffectId::kinematic_offset && id != EffectId::hose_force) candidates.push_back(h);
+    if (id != EffectId::base_tilt && id != EffectId::kinematic_offset && id != EffectId::hose_force) sensitive_.push_back(h);
   }
-  std::vector<char> feels(hypotheses.size(), 0);
+  still_ = rows_of(own, sensitive_);
   const int team = threads > 0 ? threads : omp_get_max_threads();
+  const auto draws = [&](int count, std::uint64_t from) {
+    std::vector<Run> runs(static_cast<std::size_t>(count));
 #pragma omp parallel for schedule(dynamic) num_threads(team)
-  for (int k = 0; k < kTrialRuns; ++k) {
-    Run run, still;
-    std::vector<PreparedLog> own;
-    for (const LogRows& log : logs_) own.push_back(log.log);
-    rows_of(motion(seed * 1000003U + static_cast<std::uint64_t>(k)), candidates, run);
-    rows_of(own, candidates, still);
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      for (std::size_t l = 0; l < logs_.size(); ++l) {
-        for (std::size_t j = 0; j < run.rows[c][l].size(); ++j) {
-          const MatrixXd &a = still.rows[c][l][j], &b = run.rows[c][l][j];
-          if (a.size() == 0) continue;
-          const VectorXd use = logs_[l].usable[j].cast<double>();
-          if (change(use.asDiagonal() * a, use.asDiagonal() * b) > kSensitive) {
-#pragma omp atomic write
-            feels[candidates[c]] = 1;
-          }
-        }
+    for (int k = 0; k < count; ++k) runs[static_cast<std::size_t>(k)] = draw(from + static_cast<std::uint64_t>(k));
+    return runs;
+  };
+  // Which scores feel the change of their own columns, beside the torque noise of unit size?
+  std::vector<char> feels(hypotheses.size(), 0);
+  const VectorXd y = clean(problem);
+  for (const Run& run : draws(kTrialRuns, seed * 1000003U)) {
+    VectorXd r;
+    const std::vector<VectorXd> inner = products(problem, run, y, r);
+    for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+      const std::size_t h = sensitive_[k];
+      const Index amplitudes = hypotheses[h].amplitudes;
+      for (Index c = 0; c < inner[k].size(); ++c) {
+        const MatrixXd& gram = signatures[h].gram[static_cast<std::size_t>(c / amplitudes)];
+        if (std::abs(inner[k](c)) > kSensitive * std::sqrt(std::max(gram(c % amplitudes, c % amplitudes), 1e-300))) feels[h] = 1;
       }
     }
   }
-  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    if (feels[h]) sensitive_.push_back(h);
+  std::vector<std::size_t> kept;
+  Run still;
+  still.Y = std::move(still_.Y);
+  for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+    if (!feels[sensitive_[k]]) continue;
+    kept.push_back(sensitive_[k]);
+    still.rows.push_back(std::move(still_.rows[k]));
   }
-  runs_.resize(kPilotRuns);
-#pragma omp parallel for schedule(dynamic) num_threads(team)
-  for (int k = 0; k < kPilotRuns; ++k) runs_[static_cast<std::size_t>(k)] = draw(seed * 7727U + static_cast<std::uint64_t>(k));
+  sensitive_ = kept;
+  still_ = std::move(still);
+  runs_ = draws(kPilotRuns, seed * 7727U);
 }
 
 VectorXd EncoderPilots::clean(const WhiteProblem& problem) const {
@@ -225,7 +271,7 @@ std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const
   const Index b = base_.count();
   MatrixXd X = problem.X;
   for (const WhiteSegment& segment : problem.segments) {
-    X.block(segment.offset, 0, segment.rows(), b) = segment.whitener.apply(run.Y[segment.log][segment.drive]);
+    X.block(segment.offset, 0, segment.rows(), b) += segment.whitener.apply(run.Y[segment.log][segment.drive]);
   }
   const VectorXd scale = X.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   X = X * scale.asDiagonal();
@@ -246,19 +292,53 @@ std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const
   return out;
 }
 
-std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem) const {
+std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std::vector<Signature>& signatures) const {
   std::vector<VectorXd> out(hypotheses_.size());
   const VectorXd y = clean(problem);
   for (const Run& run : runs_) {
     VectorXd r;
     const std::vector<VectorXd> inner = products(problem, run, y, r);
+    const VectorXd Q_r = problem.Q.transpose() * r;
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+      const WhiteColumns& white = signatures[sensitive_[k]].white;
       VectorXd& sum = out[sensitive_[k]];
-      if (sum.size() == 0) sum = VectorXd::Zero(inner[k].size());
-      sum += inner[k] / static_cast<double>(runs_.size());
+      if (white.cols == 0) continue;
+      if (sum.size() == 0) sum = VectorXd::Zero(white.cols);
+      VectorXd whole = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
+      if (inner[k].size() > 0) whole += inner[k];
+      sum += whole / static_cast<double>(runs_.size());
     }
   }
   return out;
+}
+
+void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>& signatures) const {
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+    const std::size_t h = sensitive_[k];
+    Signature& signature = signatures[h];
+    if (signature.white.cols == 0) continue;
+    const Index amplitudes = hypotheses_[h].amplitudes;
+    std::vector<MatrixXd> noise(signature.gram.size(), MatrixXd::Zero(amplitudes, amplitudes));
+    const std::size_t runs = std::min(kGramRuns, runs_.size());
+    for (std::size_t run = 0; run < runs; ++run) {
+      const WhiteColumns change = problem.whiten(runs_[run].rows[k]);
+      if (change.cols < signature.white.cols) continue;
+      for (std::size_t s = 0; s < noise.size(); ++s) {
+        noise[s] += change.gram(static_cast<Index>(s) * amplitudes, amplitudes) / static_cast<double>(runs);
+      }
+    }
+    for (std::size_t s = 0; s < noise.size(); ++s) {
+      const double share = noise[s].trace() / std::max(signature.gram[s].trace(), 1e-300);
+      signature.gram[s] *= std::max(kLeastGram, 1 - share);
+    }
+  }
+}
+
+VectorXd freed_of_bias(const VectorXd& inner, const VectorXd& bias) {
+  if (bias.size() == 0 || inner.size() == 0) return inner;
+  const VectorXd rest = inner - bias;
+  return (rest.array().abs() - kBiasDoubt * bias.array().abs()).max(0.0) * rest.array().sign();
 }
 
 std::vector<VectorXd> EncoderPilots::torque_noise(const WhiteProblem& problem, double& share) const {
@@ -333,11 +413,18 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
       const std::vector<VectorXd> sensitive = pilots.products(problem, pilots.draw(seed + 1), y, r);
       const VectorXd Q_r = problem.Q.transpose() * r;
       std::vector<VectorXd> inner(hypotheses.size());
-      for (std::size_t c = 0; c < sensitive.size(); ++c) inner[pilots.sensitive()[c]] = sensitive[c];
+
+      std::vector<const VectorXd*> changed(hypotheses.size(), nullptr);
+      for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
       for (std::size_t h = 0; h < hypotheses.size(); ++h) {
         if (signatures[h].white.cols == 0) continue;
-        if (inner[h].size() == 0) inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
-        if (bias[h].size() > 0) inner[h] -= bias[h];
+        inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
+        if (changed[h] != nullptr) {
+          // The column itself, not only its part beside the base model, moves with the regressor.
+          inner[h] += signatures[h].white.base.transpose() * Q_r;
+          if (changed[h]->size() > 0) inner[h] += *changed[h];
+        }
+        inner[h] = freed_of_bias(inner[h], bias[h]);
         scores(k, static_cast<Index>(h)) = best_score(hypotheses[h], signatures[h], inner[h]).gain;
       }
       generic.row(k) = omnibus.gains(problem, r).transpose();

@@ -48,7 +48,9 @@ class EffectSearch {
 
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   [[nodiscard]] const std::vector<LogRows>& logs() const { return logs_; }
-  /// [log][drive] columns of the known effects and the accepted ones.
+  /// The logs with the torque of those accepted effects taken off whose shape is their amplitude (a delay): a fit must not scale them.
+  [[nodiscard]] std::vector<LogRows> corrected(const std::vector<AcceptedEffect>& accepted) const;
+  /// [log][drive] columns of the known effects and the other accepted ones.
   [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<AcceptedEffect>& accepted) const;
   [[nodiscard]] PerLogAndDrive<NoiseModel> noise_beside(const std::vector<AcceptedEffect>& accepted,
                                                         PerLogAndDrive<double>* floor = nullptr) const;

@@ -57,20 +57,23 @@ class EncoderPilots {
  public:
   /// \param position_noise  [log][drive], standard deviation of the recorded positions
   EncoderPilots(const EffectModel& model, const BaseParameters& base, const std::vector<LogRows>& logs, const Eigen::VectorXd& p,
-                const std::vector<Hypothesis>& hypotheses, const PerLogAndDrive<double>& position_noise, double cutoff_hz,
-                std::uint64_t seed, int threads);
+                const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
+                const PerLogAndDrive<double>& position_noise, double cutoff_hz, double low_pass_hz, std::uint64_t seed,
+                int threads);
 
-  /// One noisy motion: base rows of every log, and rows of the sensitive hypotheses.
+  /// What one noisy motion changes: base rows of every log, and rows of the sensitive hypotheses.
   struct Run {
     PerLogAndDrive<Eigen::MatrixXd> Y;
     std::vector<PerLogAndDrive<Eigen::MatrixXd>> rows;  ///< one a sensitive hypothesis
   };
   [[nodiscard]] Run draw(std::uint64_t seed) const;
-  /// C^T r of the sensitive hypotheses and the residual for a torque y in white rows.
+  /// What the change of the sensitive hypotheses' columns adds to C^T r, and the residual r for a torque y in white rows.
   [[nodiscard]] std::vector<Eigen::VectorXd> products(const WhiteProblem& problem, const Run& run, const Eigen::VectorXd& y,
                                                       Eigen::VectorXd& r) const;
   /// Mean of C_perp^T r that encoder noise makes, one vector a hypothesis (empty: none).
-  [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem) const;
+  [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem, const std::vector<Signature>& signatures) const;
+  /// Takes the squares that encoder noise adds to the sensitive columns off their Gram matrices: without it amplitudes come out small.
+  void correct(const WhiteProblem& problem, std::vector<Signature>& signatures) const;
   /// Filter taps, one vector a segment, that turn white noise into the torque's own noise: what is left when the encoder's part is
   /// taken from the unit spectrum of the white residual. \param share  the encoder's share of the variance
   [[nodiscard]] std::vector<Eigen::VectorXd> torque_noise(const WhiteProblem& problem, double& share) const;
@@ -80,12 +83,15 @@ class EncoderPilots {
   [[nodiscard]] Eigen::VectorXd clean(const WhiteProblem& problem) const;
 
  private:
-  void rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which, Run& run) const;
+  [[nodiscard]] Run rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which) const;
   [[nodiscard]] std::vector<PreparedLog> motion(std::uint64_t seed) const;
 
   const EffectModel& model_;
   const BaseParameters& base_;
-  const std::vector<LogRows>& logs_;
+  std::vector<LogRows> logs_;                         ///< motion only, every few samples: the low pass that follows needs no more
+  std::vector<Eigen::Index> step_, start_, samples_;  ///< of each log: sample = start + k step, of so many
+  std::vector<double> rate_hz_;                       ///< of the logs as recorded
+  Run still_;                                         ///< without noise
   const Eigen::VectorXd p_;
   const std::vector<Hypothesis>& hypotheses_;
   PerLogAndDrive<double> position_noise_;
@@ -93,6 +99,10 @@ class EncoderPilots {
   std::vector<std::size_t> sensitive_;
   std::vector<Run> runs_;
 };
+
+/// C_perp^T r freed of what encoder noise fakes. The noise of the positions is known to some tenths of its variance only (quantisation
+/// is not white), so that a share of the fake counts as nothing.
+[[nodiscard]] Eigen::VectorXd freed_of_bias(const Eigen::VectorXd& inner, const Eigen::VectorXd& bias);
 
 struct NullOptions {
   int runs = 200;

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kHidden = 0.002;  // of a signature's square: less is left beside the base model than any noise allows to see
+constexpr double kAlike = 0.97;    // |cosine| of two signatures from which on their names should not be trusted
+constexpr std::size_t kMostAlike = 4;
+
+/// A shape in the middle of the start values stands for the hypothesis.
+std::size_t middle_shape(const Hypothesis& hypothesis, const Signature& signature) {
+  std::size_t best = hypothesis.shapes.size() / 2;
+  if (!(signature.gram.size() > best) || !(signature.gram[best].trace() > 0)) best = 0;
+  return best;
+}
+
+/// Detectable and distinguishable: from the motion alone, before the torque has a say (step 11).
+void what_the_logs_show(const SearchContext& context, const SearchResult& found, std::vector<ConsideredEffect>& considered) {
+  PerLogAndDrive<NoiseModel> unit = found.noise;
+  for (auto& log : unit) {
+    for (NoiseModel& noise : log) {
+      const double size = noise.total_std();
+      noise = NoiseModel();
+      noise.std = size;
+    }
+  }
+  const auto& hypotheses = context.search.hypotheses();
+  const EffectSearch::State state = context.search.state(unit, {}, nullptr);
+  std::vector<WhiteColumns> one;
+  std::vector<MatrixXd> gram;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    const std::size_t shape = middle_shape(hypotheses[h], state.signatures[h]);
+    const Index k = hypotheses[h].amplitudes;
+    double kept = 0;
+    for (const double share : state.signatures[h].kept) kept = std::max(kept, share);
+    considered[h].kept = kept;
+    if (state.signatures[h].white.cols == 0) {
+      one.emplace_back();
+      gram.emplace_back();
+      continue;
+    }
+    one.push_back(state.signatures[h].white.part(static_cast<Index>(shape) * k, k));
+    gram.push_back(state.signatures[h].gram[shape]);
+  }
+  for (std::size_t a = 0; a < one.size(); ++a) {
+    std::vector<std::pair<double, std::string>> alike;
+    for (std::size_t b = 0; b < one.size(); ++b) {
+      // One column each: the angle between spans of several would need its own words.
+      if (a == b || one[a].cols != 1 || one[b].cols != 1) continue;
+      const double size = std::sqrt(gram[a](0, 0) * gram[b](0, 0));
+      if (!(size > 0)) continue;
+      const double cosine = std::abs(cross_gram(one[a], one[b])(0, 0)) / size;
+      if (cosine > kAlike)
+        alike.emplace_back(cosine, fmt::format("{} at {} ({:.3f})", considered[b].name, considered[b].joint, cosine));
+    }
+    std::sort(alike.rbegin(), alike.rend());
+    for (std::size_t k = 0; k < std::min(kMostAlike, alike.size()); ++k) considered[a].like.push_back(alike[k].second);
+  }
+}
+
+std::string ruling_of(const SearchContext& context, const SearchResult& found, std::size_t h, const ConsideredEffect& one) {
+  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    if (found.fits[k].hypothesis == h) return "found";
+    for (const EffectCandidate& other : found.sets[k]) {
+      if (other.name == one.name && other.joint == one.joint)
+        return "cannot be told from " + effect_kind(found.fits[k].effect.id).name;
+    }
+  }
+  if (one.kept < kHidden) return "these motions cannot show it: a re-fit of the parameters absorbs it";
+  const double alpha = context.options.false_naming_rate;
+  if (one.p_left <= alpha) return "a trace too small to matter, or what the named effect's form leaves";
+  if (one.p_alone <= alpha && !found.accepted.empty()) return "ruled out: nothing is left of it beside what was found";
+  if (one.p_alone <= alpha) return "a trace, too small to matter";
+  if (found.before.scores[h].gain <= 0 && effect_kind(context.search.hypotheses()[h].id).amplitudes.front().positive)
+    return "ruled out: it would need the wrong sign";
+  return "no evidence";
+}
+
+}  // namespace
+
+void say_too_short(double length_s, double needed_s, Diagnosis& out) {
+  out.verdict = DiagnosisVerdict::not_testable;
+  out.needed_s = needed_s;
+  out.headline = fmt::format("Not testable: {:.3g} s of log are too short to look for missing effects.", length_s);
+  out.lines.push_back("Too few samples are left beside velocity reversals to fit the model and still see what it misses.");
+  out.next.push_back(
+      fmt::format("Record about {:.0f} s or more in all, fast and slow, over the workspace.", std::ceil(needed_s)));
+}
+
+void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out) {
+  const auto& logs = context.logs;
+  const Index n = context.robot.drives();
+  const Index b = context.base.count();
+  const std::vector<LogRows> corrected = context.search.corrected(found.accepted);
+  const PerLogAndDrive<MatrixXd> known = context.search.extra({}), all = context.search.extra(found.accepted);
+  const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
+  std::vector<double> before(static_cast<std::size_t>(n), 0), after = before, floor = before, count = before, white_rows = before;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    DiagnosisTrace trace;
+    trace.file = logs[l].log.file;
+    trace.t_s = logs[l].t_s;
+    trace.q = logs[l].q;
+    trace.qd = logs[l].qd;
+    trace.torque = logs[l].tau;
+    trace.before.resize(logs[l].rows(), n);
+    trace.after.resize(logs[l].rows(), n);
+    trace.usable.resize(logs[l].rows(), n);
+    for (Index j = 0; j < n; ++j) {
+      const auto drive = static_cast<std::size_t>(j);
+      trace.before.col(j) =
+          logs[l].tau.col(j) - logs[l].Y[drive] * beta0.head(b) - known[l][drive] * beta0.tail(beta0.size() - b);
+      trace.after.col(j) =
+          corrected[l].tau.col(j) - logs[l].Y[drive] * beta1.head(b) - all[l][drive] * beta1.tail(beta1.size() - b);
+      trace.usable.col(j) = logs[l].usable[drive];
+      const auto rows = static_cast<double>(logs[l].usable[drive].count());
+      before[drive] += logs[l].usable[drive].select(trace.before.col(j).array(), 0.0).square().sum();
+      after[drive] += logs[l].usable[drive].select(trace.after.col(j).array(), 0.0).square().sum();
+      floor[drive] += rows * found.floor[l][drive] * found.floor[l][drive];
+      count[drive] += rows;
+    }
+    out.traces.push_back(std::move(trace));
+  }
+  for (const WhiteSegment& segment : found.before.problem->segments)
+    white_rows[segment.drive] += static_cast<double>(segment.rows());
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
+    const auto at = static_cast<Index>(j);
+    DriveFit drive;
+    drive.rms = std::sqrt(before[j] / std::max(1.0, count[j]));
+    drive.rms_after = std::sqrt(after[j] / std::max(1.0, count[j]));
+    drive.floor = std::sqrt(floor[j] / std::max(1.0, count[j]));
+    const double chance = found.null.omnibus[j].quantile(0.5);
+    const double excess = std::max(0.0, found.structure_before(at) - chance);
+    drive.structure = excess / std::max(1.0, excess + white_rows[j]);
+    drive.p_value = found.null.omnibus[j].p_value(found.structure_before(at));
+    drive.p_left = found.null.omnibus[j].p_value(found.structure_after(at));
+    double sum = 0;
+    for (auto& [name, gain] : found.omnibus_before.by_coordinate(*found.before.problem, found.before.problem->r, j)) {
+      drive.follows.emplace_back(name, gain);
+      sum = std::max(sum, gain);
+    }
+    for (auto& entry : drive.follows) entry.second /= std::max(sum, 1e-300);
+    std::sort(drive.follows.begin(), drive.follows.end(), [](const auto& x, const auto& y) { return x.second > y.second; });
+    out.drives.push_back(std::move(drive));
+  }
+
+  const auto& hypotheses = context.search.hypotheses();
+  const double material = kMaterial * rows_per_drive(context, *found.before.problem);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    ConsideredEffect one;
+    one.name = hypotheses[h].name();
+    one.effect_class = hypotheses[h].kind().effect_class;
+    one.joint = hypotheses[h].joint_name();
+    one.unit = effect_unit(hypotheses[h].kind().amplitudes.front().unit, hypotheses[h].joint, context.robot.description());
+    one.gain_alone = found.before.scores[h].gain;
+    one.p_alone = found.null.family_p(h, one.gain_alone);
+    one.gain_left = found.after.scores[h].gain;
+    one.p_left = found.null.family_p(h, one.gain_left);
+    const double threshold = std::max(
+        material, found.null.hypothesis[h].quantile(context.options.false_naming_rate / static_cast<double>(hypotheses.size())));
+    double strongest = 0;
+    for (const MatrixXd& gram : found.before.signatures[h].gram) strongest = std::max(strongest, gram(0, 0));
+    one.detectable = strongest > 0 ? std::sqrt(threshold / strongest) : std::numeric_limits<double>::infinity();
+    out.considered.push_back(std::move(one));
+  }
+  what_the_logs_show(context, found, out.considered);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) out.considered[h].ruling = ruling_of(context, found, h, out.considered[h]);
+}
+
+}  // namespace deltadyn::detail

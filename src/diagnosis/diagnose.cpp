@@ -1,0 +1,190 @@
+#include "deltadyn/diagnosis/diagnose.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <memory>
+
+#include "deltadyn/diagnosis/effect_search.hpp"
+#include "deltadyn/identification/cutoff_scan.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/reversal_mask.hpp"
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+const char* verdict_name(DiagnosisVerdict verdict) {
+  switch (verdict) {
+    case DiagnosisVerdict::nothing_missing: return "nothing-missing";
+    case DiagnosisVerdict::named: return "named";
+    case DiagnosisVerdict::confusable: return "confusable";
+    case DiagnosisVerdict::unknown_structure: return "unknown-structure";
+    case DiagnosisVerdict::not_testable: return "not-testable";
+  }
+  return "";
+}
+
+void DiagnosisOptions::validate() const {
+  const auto refuse = [](const char* field, const char* range) {
+    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
+  };
+  processing.validate();
+  if (!(false_naming_rate > 0 && false_naming_rate < 0.5)) refuse("--false-naming-rate", "it must be above 0 and below 0.5");
+  if (max_effects < 1 || max_effects > 6) refuse("--max-effects", "it must be 1 to 6");
+  if (null_runs < 20 || null_runs > 100000) refuse("--null-runs", "it must be 20 to 100000");
+  if (!processing.filter) refuse("--no-filter", "the diagnosis filters every log alike");
+}
+
+namespace {
+
+constexpr double kMotionOverPass = 2.0;     // cut-off of the motion in units of the one that identification uses: then the
+constexpr double kPassOverMotion = 0.6;     // low pass of regressor and torque, not that of the motion, bounds the band
+constexpr double kFewestRowsPerBase = 8.0;  // usable rows of a drive in units of base parameters a drive
+
+bool same_log(const Log& a, const Log& b) {
+  if (a.samples() != b.samples() || a.q.cols() != b.q.cols()) return false;
+  return (a.q - b.q).cwiseAbs().maxCoeff() == 0 && (a.tau - b.tau).cwiseAbs().maxCoeff() == 0;
+}
+
+ProcessingOptions diagnosis_processing(const Robot& robot, const std::vector<Log>& logs, const DiagnosisOptions& options,
+                                       double& cutoff_hz) {
+  ProcessingOptions out = options.processing;
+  out.periods = Periods::ignore;
+  cutoff_hz = options.choose_cutoff ? best_cutoff_hz(scan_cutoffs(robot, logs, out, options.threads)) : out.cutoff_hz;
+  double rate_hz = 1e12;
+  for (const Log& log : logs) rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
+  out.cutoff_hz = std::min(kMotionOverPass * cutoff_hz, 0.35 * rate_hz);
+  out.torque_cutoff_ratio = kPassOverMotion;
+  // An even stride lets simulated motions be thinned.
+  const double pass_hz = std::min(kPassOverMotion * out.cutoff_hz, 0.4 * rate_hz);
+  const int stride = std::max(1, static_cast<int>(0.4 * rate_hz / pass_hz));
+  out.stride = stride >= 4 ? stride - stride % 4 : (stride >= 2 ? 2 : 1);
+  return out;
+}
+
+/// Takes a row off either end, so that a thinned motion has a sample to spare.
+PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions& options) {
+  PreparedLog out = prepare_log(robot, log, options);
+  if (out.rows > 10) {
+    out.first += out.stride;
+    out.rows -= 2;
+  }
+  return out;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const Log* holdout, const VectorXd& p,
+                   const VectorXd& p_std, const std::vector<Effect>& all_known, const DiagnosisOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  options.validate();
+  if (all_logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
+  if (holdout != nullptr) {
+    for (const Log& log : all_logs) {
+      if (same_log(log, *holdout)) {
+        throw Error("the hold-out log is one of the training logs (" + log.file + ")", holdout->file,
+                    "hold out a log that takes no part in the search, else it proves nothing", ExitCode::usage);
+      }
+    }
+  }
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+  Diagnosis out;
+  out.null_runs = options.null_runs;
+  out.effects = all_known;
+  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+  const auto finish = [&]() {
+    out.total_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report(1);
+    return out;
+  };
+
+  // Known effects whose shape is their amplitude are taken off at once, the others are fitted along.
+  std::vector<Effect> known, fixed;
+  for (const Effect& effect : all_known) (effect_kind(effect.id).tied ? fixed : known).push_back(effect);
+  std::vector<Log> logs = all_logs;
+  std::optional<Log> held_log;
+  if (holdout != nullptr) held_log = *holdout;
+  if (!fixed.empty()) {
+    double cutoff_hz = options.processing.cutoff_hz;
+    if (options.choose_cutoff) cutoff_hz = best_cutoff_hz(scan_cutoffs(robot, logs, options.processing, options.threads));
+    logs = without_effects(robot, logs, p, fixed, kMotionOverPass * cutoff_hz);
+    if (held_log) held_log = without_effects(robot, {*held_log}, p, fixed, kMotionOverPass * cutoff_hz).front();
+  }
+
+  const BaseParameters base = find_base_parameters(robot);
+  ProcessingOptions processing;
+  std::vector<LogRows> rows;
+  try {
+    processing = diagnosis_processing(robot, logs, options, out.cutoff_hz);
+    report(0.05);
+    for (std::size_t l = 0; l < logs.size(); ++l) {
+      rows.push_back(make_log_rows(robot, base, prepared(robot, logs[l], processing), static_cast<int>(l) + 1));
+    }
+  } catch (const Error& error) {
+    double length = 0;
+    for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
+    if (std::string(error.problem()).find("too short") == std::string::npos) throw;
+    detail::say_too_short(length, std::max(10.0, 4 * length), out);
+    return finish();
+  }
+  // Rows enough to fit the base model and still see something beside it?
+  double fewest = 1e12, length = 0;
+  for (const LogRows& log : rows) length += log.t_s(log.rows() - 1) - log.t_s(0);
+  for (std::size_t j = 0; j < rows.front().usable.size(); ++j) {
+    double count = 0;
+    for (const LogRows& log : rows) count += static_cast<double>(log.usable[j].count());
+    fewest = std::min(fewest, count);
+  }
+  const double needed = std::max(120.0, kFewestRowsPerBase * base.count());
+  if (fewest < needed) {
+    detail::say_too_short(length, 1.2 * length * needed / std::max(fewest, 1.0), out);
+    return finish();
+  }
+
+  const VectorXd p_fit = refit_parameters(base, rows, p);
+  const EffectModel model(robot);
+  for (LogRows& log : rows) log.signals = model.signals(log.log, p_fit);
+  const GenericBasis basis = make_generic_basis(rows);
+  const EffectSearch search(model, rows, basis, known);
+  report(0.15);
+  detail::SearchContext context{robot, model, base, rows, basis, search, options, processing, p_fit};
+  for (const Log& log : logs) {
+    context.position_noise.emplace_back();
+    for (Index j = 0; j < log.q.cols(); ++j) context.position_noise.back().push_back(position_noise(log.q.col(j)));
+  }
+  detail::SearchResult found = detail::search_effects(context, out);
+  report(0.9);
+
+  std::optional<LogRows> held;
+  if (held_log) {
+    held = make_log_rows(robot, base, prepared(robot, *held_log, processing), 0);
+    held->signals = model.signals(held->log, p_fit);
+  }
+  detail::describe_drives(context, found, out);
+  detail::judge(context, found, held ? &*held : nullptr, known, out);
+  if (options.identify && !out.named.empty()) {
+    try {
+      IdentificationOptions identification;
+      identification.processing = options.processing;
+      identification.processing.cutoff_hz = out.cutoff_hz;
+      identification.choose_cutoff = false;
+      identification.threads = options.threads;
+      out.improved = identify(robot, without_effects(robot, all_logs, p_fit, out.effects, kMotionOverPass * out.cutoff_hz), p,
+                              p_std, identification);
+    } catch (const Error& error) {
+      out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
+    }
+  }
+  return finish();
+}
+
+}  // namespace deltadyn

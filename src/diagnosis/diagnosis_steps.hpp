@@ -1,0 +1,60 @@
+#pragma once
+
+/// \file
+/// The steps of diagnose(), between them the search's result.
+
+#include <optional>
+#include <vector>
+
+#include "deltadyn/diagnosis/diagnose.hpp"
+#include "deltadyn/diagnosis/effect_search.hpp"
+
+namespace deltadyn::detail {
+
+struct SearchContext {
+  const Robot& robot;
+  const EffectModel& model;
+  const BaseParameters& base;
+  const std::vector<LogRows>& logs;
+  const GenericBasis& basis;
+  const EffectSearch& search;
+  const DiagnosisOptions& options;
+  const ProcessingOptions& processing;
+  const Eigen::VectorXd& p;
+  PerLogAndDrive<double> position_noise = {};
+};
+
+struct SearchResult {
+  PerLogAndDrive<NoiseModel> noise;   ///< beside everything found
+  PerLogAndDrive<double> floor;       ///< rms that no model can beat
+  EffectSearch::State before, after;  ///< beside the base model, and beside the accepted effects
+  NullStudy null;
+  Omnibus omnibus_before, omnibus_after;
+  Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
+  std::vector<AcceptedEffect> accepted;
+  std::vector<Fit> fits;                           ///< of the accepted effects
+  std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
+};
+
+void say_too_short(double length_s, double needed_s, Diagnosis& out);
+
+/// Steps 3 to 8 of the procedure.
+[[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out);
+
+/// Fits and structure of every drive, and the list of all effects considered.
+void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out);
+
+/// Steps 9 and 10: names, unknown structure, proof on the hold-out log, what to do next.
+void judge(const SearchContext& context, const SearchResult& found, const LogRows* holdout, const std::vector<Effect>& known,
+           Diagnosis& out);
+
+/// Rows a drive has on average: what the size of a gain is compared with.
+[[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
+
+/// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
+/// that are clean for every purpose have traces of that size.
+inline constexpr double kMaterial = 0.02;
+/// The same for structure without a name.
+inline constexpr double kMaterialStructure = 0.12;
+
+}  // namespace deltadyn::detail

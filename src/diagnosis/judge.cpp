@@ -1,0 +1,388 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kExplained = 0.8;          // of the structure that names must explain
+constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
+constexpr double kCarriesOver = 0.3;        // of the hold-out gap that an effect must close
+constexpr double kHoldoutGap = 1.25;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kBlock_s = 0.25;
+constexpr int kResamples = 1000;
+
+/// Rows of the hold-out log: residuals before and after, and the floor.
+struct HoldoutProof {
+  MatrixXd before, after;
+  std::vector<RowMask> usable;
+  VectorXd rms_before, rms_after, floor;
+};
+
+double rms_of(const VectorXd& e, const RowMask& usable) {
+  return std::sqrt(usable.select(e.array(), 0.0).square().sum() / std::max<double>(1, static_cast<double>(usable.count())));
+}
+
+HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
+                   const std::vector<Effect>& known) {
+  const Index n = context.robot.drives(), b = context.base.count();
+  std::vector<Effect> effects = known;
+  MatrixXd corrected = held.tau;  // without the effects whose shape is their amplitude
+  for (const AcceptedEffect& one : found.accepted) {
+    if (!effect_kind(one.effect.id).tied) {
+      effects.push_back(one.effect);
+      continue;
+    }
+    const Hypothesis tied{one.effect.id, one.effect.joint, {one.effect.shape}, 1};
+    const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, tied);
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      if (rows[j].size() > 0) corrected.col(static_cast<Index>(j)) -= rows[j] * one.effect.amplitude;
+    }
+  }
+  PerLogAndDrive<MatrixXd> extra(1);
+  for (Index j = 0; j < n; ++j) extra[0].push_back(MatrixXd::Zero(held.rows(), amplitude_count(effects)));
+  Index at = 0;
+  for (const Effect& effect : effects) {
+    Hypothesis one{effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
+    const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, one);
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      if (rows[j].size() > 0) extra[0][j].middleCols(at, one.amplitudes) = rows[j];
+    }
+    at += one.amplitudes;
+  }
+  HoldoutProof out;
+  out.before.resize(held.rows(), n);
+  out.after.resize(held.rows(), n);
+  out.usable = held.usable;
+  out.rms_before.resize(n);
+  out.rms_after.resize(n);
+  out.floor.resize(n);
+  const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
+  std::vector<LogRows> alone = {held};
+  alone.front().tau = corrected;
+  PerLogAndDrive<double> floor;
+  (void)estimate_noise(alone, make_generic_basis(alone), extra, &floor);
+  for (Index j = 0; j < n; ++j) {
+    const auto drive = static_cast<std::size_t>(j);
+    out.before.col(j) = held.tau.col(j) - held.Y[drive] * beta0.head(b) -
+                        extra[0][drive].leftCols(beta0.size() - b) * beta0.tail(beta0.size() - b);
+    out.after.col(j) = corrected.col(j) - held.Y[drive] * beta1.head(b) - extra[0][drive] * beta1.tail(beta1.size() - b);
+    out.rms_before(j) = rms_of(out.before.col(j), held.usable[drive]);
+    out.rms_after(j) = rms_of(out.after.col(j), held.usable[drive]);
+    // The same log fitted by everything: a model from other logs cannot be expected to do better.
+    out.floor(j) = std::min({floor[0][drive], out.rms_before(j), out.rms_after(j)});
+  }
+  return out;
+}
+
+/// Gap shrink over some drives, each in units of its floor, and its bootstrap interval.
+void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector<int>& drives, std::uint64_t seed,
+               Diagnosis& out) {
+  std::vector<std::pair<double, double>> blocks;  // squares before and after
+  double rows = 0;
+  const double row_s = held.t_s(1) - held.t_s(0);
+  const auto per_block = std::max<Index>(1, static_cast<Index>(kBlock_s / row_s));
+  std::vector<double> counts;
+  for (Index first = 0; first < held.rows(); first += per_block) {
+    double before = 0, after = 0, count = 0;
+    for (Index k = first; k < std::min(first + per_block, held.rows()); ++k) {
+      for (const int j : drives) {
+        if (!proof.usable[static_cast<std::size_t>(j)](k)) continue;
+        const double floor = std::max(proof.floor(j), 1e-300);
+        before += proof.before(k, j) * proof.before(k, j) / (floor * floor);
+        after += proof.after(k, j) * proof.after(k, j) / (floor * floor);
+        ++count;
+      }
+    }
+    if (count == 0) continue;
+    blocks.emplace_back(before, after);
+    counts.push_back(count);
+    rows += count;
+  }
+  const auto shrink = [](double before, double after, double count) {
+    const double b = std::sqrt(before / count), a = std::sqrt(after / count);
+    return b > 1 + 1e-9 ? (b - a) / (b - 1) : 0.0;
+  };
+  double before = 0, after = 0;
+  for (const auto& block : blocks) {
+    before += block.first;
+    after += block.second;
+  }
+  out.gap_shrink = shrink(before, after, rows);
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::size_t> pick(0, blocks.size() - 1);
+  std::vector<double> samples;
+  int losses = 0;
+  for (int k = 0; k < kResamples; ++k) {
+    double b = 0, a = 0, count = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::size_t at = pick(random);
+      b += blocks[at].first;
+      a += blocks[at].second;
+      count += counts[at];
+    }
+    samples.push_back(shrink(b, a, count));
+    losses += a >= b ? 1 : 0;
+  }
+  std::sort(samples.begin(), samples.end());
+  out.gap_low = samples[static_cast<std::size_t>(0.025 * kResamples)];
+  out.gap_high = samples[static_cast<std::size_t>(0.975 * kResamples)];
+  out.p_no_gain = (losses + 1.0) / (kResamples + 1.0);
+}
+
+/// Drives that bear at least a twentieth of the effect.
+std::vector<int> drives_of(const Fit& fit, const WhiteProblem& problem, Index drives) {
+  std::vector<double> energy(static_cast<std::size_t>(drives), 0.0);
+  double whole = 0;
+  for (std::size_t s = 0; s < problem.segments.size(); ++s) {
+    if (fit.white.blocks.size() <= s || fit.white.blocks[s].size() == 0) continue;
+    const double e = (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
+    energy[problem.segments[s].drive] += e;
+    whole += e;
+  }
+  std::vector<int> out;
+  for (std::size_t j = 0; j < energy.size(); ++j) {
+    if (energy[j] > 0.05 * whole) out.push_back(static_cast<int>(j));
+  }
+  return out;
+}
+
+/// Where the effect does its work: the rates that hold four fifths of it.
+std::string region_of(const SearchContext& context, const Fit& fit, const WhiteProblem& problem, const std::vector<int>& drives) {
+  if (drives.empty()) return "";
+  const auto drive = static_cast<std::size_t>(drives.front());
+  const MatrixXd C = fit.white.projected(problem.Q, problem.segments, 0, fit.effect.amplitude.size());
+  const VectorXd s = C * fit.effect.amplitude;
+  std::vector<std::pair<double, double>> by_rate;  // |rate|, energy
+  double whole = 0;
+  for (const WhiteSegment& segment : problem.segments) {
+    if (segment.drive != drive) continue;
+    const auto& source = segment.whitener.source();
+    for (std::size_t k = 0; k < source.size(); ++k) {
+      const double e = s(segment.offset + static_cast<Index>(k));
+      by_rate.emplace_back(std::abs(context.logs[segment.log].qd(source[k], static_cast<Index>(drive))), e * e);
+      whole += e * e;
+    }
+  }
+  std::sort(by_rate.begin(), by_rate.end());
+  double sum = 0, low = 0, high = 0;
+  for (const auto& [rate, e] : by_rate) {
+    if (sum < 0.1 * whole) low = rate;
+    if (sum < 0.9 * whole) high = rate;
+    sum += e;
+  }
+  std::string names;
+  for (const int j : drives) names += (names.empty() ? "drive " : ", ") + std::to_string(j + 1);
+  const bool turns = context.robot.description().kind_of_drive(drives.front()) == DriveKind::revolute;
+  return fmt::format("{}; 80 % of it at {:.3g} to {:.3g} {} of drive {}", names, low, high, turns ? "rad/s" : "m/s",
+                     drives.front() + 1);
+}
+
+std::string place_of(const Diagnosis& out, std::size_t drive) {
+  std::string text = fmt::format("drive {}", drive + 1);
+  const auto& follows = out.drives[drive].follows;
+  if (!follows.empty()) text += ", follows " + follows[0].first;
+  if (follows.size() > 1 && follows[1].second > 0.5) text += " and " + follows[1].first;
+  return text;
+}
+
+std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot) {
+  const EffectKind& kind = effect_kind(one.effect.id);
+  std::string text;
+  for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    const double std = one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0.0;
+    text += fmt::format("{}{} {:.4g} +- {:.2g} {}", text.empty() ? "" : ", ", kind.amplitudes[k].name, one.effect.amplitude(at),
+                        1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
+  }
+  return text;
+}
+
+void say(const SearchContext& context, Diagnosis& out) {
+  const RobotDescription& robot = context.robot.description();
+  switch (out.verdict) {
+    case DiagnosisVerdict::nothing_missing:
+      out.headline = "Nothing is missing: what the model leaves is noise as far as these logs can show.";
+      out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
+      return;
+    case DiagnosisVerdict::not_testable:
+      out.next.push_back(
+          "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow.");
+      return;
+    case DiagnosisVerdict::unknown_structure:
+      out.headline = "Something is missing that no effect of the catalogue explains: " + out.region + ".";
+      out.next.push_back("Look at the maps of the residual: which coordinate does it follow? Check the machine at that place.");
+      out.next.push_back("Repeat the motion once: a residual that does not repeat is no property of the robot.");
+      return;
+    default: break;
+  }
+  std::string names;
+  for (const NamedEffect& one : out.named) names += (names.empty() ? "" : " and ") + one.name + " at " + one.joint;
+  for (const NamedEffect& one : out.named) {
+    const EffectKind& kind = effect_kind(one.effect.id);
+    const std::string shape = effect_shape_text(one.effect, robot);
+    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning, amplitude_text(one, robot),
+                                    shape.empty() ? "" : "; " + shape));
+    if (!one.confusable.empty()) {
+      std::string others;
+      for (const EffectCandidate& other : one.confusable)
+        others += (others.empty() ? "" : ", ") + other.name + " at " + other.joint;
+      out.lines.push_back("These logs cannot tell it from " + others + ": " + one.confusable.front().why + ".");
+      out.next.push_back("To tell " + one.name + " from " + others +
+                         ", record a motion that separates them: --plan-next FILE writes one.");
+    }
+    out.next.push_back(one.name + ": " + kind.remedy + ".");
+  }
+  out.headline = out.verdict == DiagnosisVerdict::named
+                     ? "Missing: " + names + "."
+                     : "Missing: " + names + ", or an effect that these logs cannot tell from it.";
+  out.next.push_back("Go on with the improved parameters and the effect file (--params-out, --effects-out).");
+}
+
+}  // namespace
+
+void judge(const SearchContext& context, const SearchResult& found, const LogRows* holdout, const std::vector<Effect>& known,
+           Diagnosis& out) {
+  const Index n = context.robot.drives();
+  std::vector<double> rows(static_cast<std::size_t>(n), 0.0);
+  for (const WhiteSegment& segment : found.before.problem->segments) rows[segment.drive] += static_cast<double>(segment.rows());
+
+  // What the generic basis still sees.
+  double left = 0, worst = 0;
+  std::size_t worst_drive = 0;
+  bool unexplained = false;
+  for (Index j = 0; j < n; ++j) {
+    const auto drive = static_cast<std::size_t>(j);
+    const double excess = std::max(0.0, found.structure_after(j) - found.null.omnibus[drive].quantile(0.5));
+    left += excess;
+    const double share = excess / std::max(1.0, rows[drive]);
+    if (share > worst) {
+      worst = share;
+      worst_drive = drive;
+    }
+    if (share > kMaterialStructure && found.null.omnibus[drive].p_value(found.structure_after(j)) < kStructureChance)
+      unexplained = true;
+  }
+  const double gain = std::max(0.0, found.before.problem->r.squaredNorm() - found.after.problem->r.squaredNorm());
+  out.explained_share = gain > 0 ? gain / (gain + left) : 0.0;
+
+  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    const Fit& fit = found.fits[k];
+    const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
+    NamedEffect one;
+    one.effect = fit.effect;
+    one.name = hypothesis.name();
+    one.effect_class = hypothesis.kind().effect_class;
+    one.joint = hypothesis.joint_name();
+    one.gain = fit.gain;
+    one.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
+    one.explained_share = fit.gain / std::max(gain + left, 1e-300);
+    one.confusable = found.sets[k];
+    one.drives = drives_of(fit, *found.before.problem, n);
+    one.region = region_of(context, fit, *found.before.problem, one.drives);
+    out.named.push_back(std::move(one));
+  }
+  std::sort(out.named.begin(), out.named.end(), [](const NamedEffect& a, const NamedEffect& b) { return a.gain > b.gain; });
+  const bool set =
+      std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
+  if (!out.named.empty()) out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+  if (unexplained && (out.named.empty() || out.explained_share < kExplained)) {
+    out.verdict = DiagnosisVerdict::unknown_structure;
+    out.region = place_of(out, worst_drive);
+    if (!out.named.empty()) {
+      out.lines.push_back(fmt::format(
+          "The best of the catalogue, {} at {}, explains {:.0f} % of the structure only; a name for the rest would be a guess.",
+          out.named.front().name, out.named.front().joint, 100 * out.explained_share));
+    }
+  }
+
+  if (holdout != nullptr) {
+    const HoldoutProof proof = prove(context, found, *holdout, known);
+    DiagnosisTrace trace;
+    trace.file = holdout->log.file;
+    trace.holdout = true;
+    trace.t_s = holdout->t_s;
+    trace.q = holdout->q;
+    trace.qd = holdout->qd;
+    trace.torque = holdout->tau;
+    trace.before = proof.before;
+    trace.after = proof.after;
+    trace.usable.resize(holdout->rows(), n);
+    for (Index j = 0; j < n; ++j) trace.usable.col(j) = holdout->usable[static_cast<std::size_t>(j)];
+    out.traces.push_back(std::move(trace));
+    std::vector<int> touched;
+    for (NamedEffect& one : out.named) {
+      double before = 0, after = 0, floor = 0;
+      for (const int j : one.drives) {
+        before += proof.rms_before(j) * proof.rms_before(j);
+        after += proof.rms_after(j) * proof.rms_after(j);
+        floor += proof.floor(j) * proof.floor(j);
+        if (std::count(touched.begin(), touched.end(), j) == 0) touched.push_back(j);
+      }
+      const auto count = static_cast<double>(std::max<std::size_t>(1, one.drives.size()));
+      one.rms_before = std::sqrt(before / count);
+      one.rms_after = std::sqrt(after / count);
+      one.rms_floor = std::sqrt(floor / count);
+    }
+    if (!touched.empty()) {
+      shrink_of(proof, *holdout, touched, context.options.seed, out);
+      double gap = 0;
+      for (const int j : touched) gap = std::max(gap, proof.rms_before(j) / std::max(proof.floor(j), 1e-300));
+      if (out.verdict != DiagnosisVerdict::unknown_structure && gap > 1.05 && out.gap_shrink < kCarriesOver) {
+        out.verdict = DiagnosisVerdict::unknown_structure;
+        out.region = place_of(out, static_cast<std::size_t>(touched.front()));
+        out.lines.push_back(fmt::format(
+            "{} fits the training logs but closes {:.0f} % of the gap on the hold-out log only: it is not what is missing.",
+            out.named.front().name, 100 * out.gap_shrink));
+      }
+    }
+    if (out.verdict == DiagnosisVerdict::nothing_missing) {
+      for (Index j = 0; j < n; ++j) {
+        const double here = proof.rms_before(j) / std::max(proof.floor(j), 1e-300);
+        const double there =
+            out.drives[static_cast<std::size_t>(j)].rms / std::max(out.drives[static_cast<std::size_t>(j)].floor, 1e-300);
+        if (here > kHoldoutGap * std::max(1.0, there)) {
+          out.verdict = DiagnosisVerdict::not_testable;
+          out.region = fmt::format("drive {}", j + 1);
+          out.headline = fmt::format(
+              "Not testable: drive {} misses the hold-out log ({:.3g} times its floor), but the training logs cannot show why.",
+              j + 1, here);
+          out.lines.push_back("The hold-out log moves where the training logs did not: from these alone a name would be luck.");
+        }
+      }
+    }
+  } else {
+    for (NamedEffect& one : out.named) {
+      const auto j = static_cast<std::size_t>(one.drives.empty() ? 0 : one.drives.front());
+      one.rms_before = out.drives[j].rms;
+      one.rms_after = out.drives[j].rms_after;
+      one.rms_floor = out.drives[j].floor;
+    }
+    out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
+  }
+  if (found.before.problem->Q.cols() < context.base.count() + amplitude_count(known) &&
+      out.verdict == DiagnosisVerdict::nothing_missing) {
+    out.verdict = DiagnosisVerdict::not_testable;
+    out.headline = "Not testable: the motion does not even show all base parameters, so that an effect could hide behind them.";
+  }
+  if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
+    for (const NamedEffect& one : out.named) out.effects.push_back(one.effect);
+  } else if (out.verdict == DiagnosisVerdict::unknown_structure) {
+    // A candidate that does not suffice is shown, not added.
+    for (NamedEffect& one : out.named) one.why = "does not explain enough";
+  }
+  say(context, out);
+}
+
+}  // namespace deltadyn::detail

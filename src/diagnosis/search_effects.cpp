@@ -1,0 +1,266 @@
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <numeric>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
+constexpr double kFormError = 0.03;  // of a plain effect's gain: what the catalogue's form may leave of the true one
+constexpr std::size_t kBestForPairs = 10;
+constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined before they are compared
+constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
+constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
+constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
+constexpr double kBlock_s = 0.25;
+constexpr double kSkewSamples = 0.3;  // a smaller skew than this share of a sample is nobody's missing effect
+
+std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
+  std::vector<std::size_t> order(state.scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return search.worth(a, state.scores[a].gain, state) > search.worth(b, state.scores[b].gain, state);
+  });
+  return order;
+}
+
+/// The hypothesis that is worth most once shapes are refined.
+std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state) {
+  std::optional<Fit> best;
+  double best_worth = 0;
+  const auto order = by_worth(search, state);
+  for (std::size_t k = 0; k < std::min(kRefined, order.size()); ++k) {
+    if (!(state.scores[order[k]].gain > 0)) continue;
+    Fit fit = search.refine(state, order[k]);
+    const double worth = search.worth(order[k], fit.gain, state);
+    if (!best || worth > best_worth) {
+      best_worth = worth;
+      best = std::move(fit);
+    }
+  }
+  return best;
+}
+
+bool negligible_skew(const SearchContext& context, const Fit& fit) {
+  const EffectId id = fit.effect.id;
+  if (id != EffectId::time_skew && id != EffectId::current_lag) return false;
+  return std::abs(fit.effect.shape(0)) < kSkewSamples / context.logs.front().log.rate_hz;
+}
+
+/// A second effect where the first one sits already must be more than the error of the first one's form.
+bool form_error(const SearchContext& context, const SearchResult& found, const Fit& fit) {
+  const Hypothesis& one = context.search.hypotheses()[fit.hypothesis];
+  for (const Fit& earlier : found.fits) {
+    const Hypothesis& other = context.search.hypotheses()[earlier.hypothesis];
+    const bool near =
+        one.joint == other.joint || one.joint < 0 || other.joint < 0 || one.kind().effect_class == other.kind().effect_class;
+    if (near && fit.gain < kFormError * earlier.gain) return true;
+  }
+  return false;
+}
+
+/// Sum of squared differences a block of a quarter of a second: how robust is a gain?
+double block_std(const SearchContext& context, const WhiteProblem& problem, const VectorXd& difference) {
+  std::vector<double> blocks;
+  for (const WhiteSegment& segment : problem.segments) {
+    const LogRows& log = context.logs[segment.log];
+    double sum = 0, begin = -1e300;
+    const auto& source = segment.whitener.source();
+    for (std::size_t k = 0; k < source.size(); ++k) {
+      const double t = log.t_s(source[k]);
+      if (t - begin > kBlock_s) {
+        if (begin > -1e299) blocks.push_back(sum);
+        sum = 0;
+        begin = t;
+      }
+      sum += difference(segment.offset + static_cast<Index>(k));
+    }
+    blocks.push_back(sum);
+  }
+  const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / static_cast<double>(blocks.size());
+  double square = 0;
+  for (const double b : blocks) square += (b - mean) * (b - mean);
+  return std::sqrt(square);
+}
+
+EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit) {
+  const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
+  EffectCandidate out;
+  out.effect = fit.effect;
+  out.name = hypothesis.name();
+  out.effect_class = hypothesis.kind().effect_class;
+  out.joint = hypothesis.joint_name();
+  out.gain = fit.gain;
+  out.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
+  return out;
+}
+
+/// Everything that the data cannot tell from `best` beside the other effects (step 7).
+std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
+                                            const EffectSearch::State& state, const Fit& best) {
+  std::vector<EffectCandidate> set;
+  const WhiteProblem& problem = *state.problem;
+  const Index k = best.effect.amplitude.size();
+  if (best.white.cols < k) return set;
+  const MatrixXd C_best = best.white.projected(problem.Q, problem.segments, 0, k);
+  const VectorXd s_best = C_best * best.effect.amplitude;
+  const VectorXd r_best = problem.r - s_best;
+  const double best_worth = context.search.worth(best.hypothesis, best.gain, state);
+  const auto order = by_worth(context.search, state);
+  std::size_t looked_at = 0;
+  for (const std::size_t h : order) {
+    if (h == best.hypothesis) continue;
+    if (++looked_at > kRefined || state.scores[h].gain < 0.5 * best.gain) break;
+    const Fit other = context.search.refine(state, h);
+    const Index m = other.effect.amplitude.size();
+    if (other.white.cols < m || negligible_skew(context, other)) continue;
+    const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;
+    // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom leaves.
+    const VectorXd coefficients =
+        (C_best.transpose() * C_best).completeOrthogonalDecomposition().solve(C_best.transpose() * s_other);
+    const double distance = (s_other - C_best * coefficients).norm();
+    const double lead = best_worth - context.search.worth(h, other.gain, state);
+    const double z = (lead + distance * distance) / std::max(2 * distance, 1e-9);
+    const VectorXd r_other = problem.r - s_other;
+    const double spread = block_std(context, problem, r_other.cwiseAbs2() - r_best.cwiseAbs2());
+    const double raw_lead = r_other.squaredNorm() - r_best.squaredNorm();
+    const bool alike = z < kSetLikelihood;
+    const bool by_blocks = raw_lead < kSetBootstrap * spread && z < 2 * kSetLikelihood;
+    const bool by_form = lead < kSetForm * best.gain;
+    if (!alike && !by_blocks && !by_form) continue;
+    EffectCandidate candidate = candidate_of(context, found, other);
+    const double cosine = std::abs(s_best.dot(s_other)) / std::max(s_best.norm() * s_other.norm(), 1e-300);
+    candidate.why =
+        fmt::format("it explains {:.1f} % of what {} explains; in these motions their torques are alike to {:.1f} %",
+                    100 * other.gain / std::max(best.gain, 1e-300), candidate_of(context, found, best).name, 100 * cosine);
+    set.push_back(std::move(candidate));
+  }
+  return set;
+}
+
+bool counts(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
+  if (negligible_skew(context, fit)) return false;
+  const double grid = std::min(fit.grid_gain, fit.gain);
+  if (fit.gain < kMaterial * rows_per_drive(context, *state.problem)) return false;
+  return found.null.family_p(fit.hypothesis, grid) <= context.options.false_naming_rate;
+}
+
+}  // namespace
+
+double rows_per_drive(const SearchContext& context, const WhiteProblem& problem) {
+  return static_cast<double>(problem.rows) / static_cast<double>(context.logs.front().usable.size());
+}
+
+SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
+  const EffectSearch& search = context.search;
+  const DiagnosisOptions& options = context.options;
+  SearchResult found;
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+
+  // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this coarser.
+  found.noise = search.noise_beside({}, &found.floor);
+  EffectSearch::State state = search.state(found.noise, {}, nullptr);
+  const double pass_hz =
+      std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
+  const EncoderPilots pilots(context.model, context.base, context.logs, context.p, *state.problem, search.hypotheses(),
+                             state.signatures, context.position_noise, context.processing.cutoff_hz, pass_hz, options.seed,
+                             options.threads);
+  report(0.3);
+
+  // Provisional effects, so that the noise model is not made of what is missing.
+  std::vector<AcceptedEffect> provisional;
+  state = search.state(found.noise, provisional, &pilots);
+  for (int step = 0; step < options.max_effects; ++step) {
+    const std::optional<Fit> fit = best_fit(search, state);
+    if (!fit || search.worth(fit->hypothesis, fit->gain, state) < kProvisional) break;
+    provisional.push_back(search.accept(*fit));
+    found.noise = search.noise_beside(provisional, &found.floor);
+    state = search.state(found.noise, provisional, &pilots);
+    report(0.3 + 0.05 * (step + 1));
+  }
+
+  // The null, beside the base model, with that noise.
+  found.before = search.state(found.noise, {}, &pilots);
+  found.omnibus_before = Omnibus(*found.before.problem, context.basis);
+  found.structure_before = found.omnibus_before.gains(*found.before.problem, found.before.problem->r);
+  NullOptions null_options;
+  null_options.runs = options.null_runs;
+  null_options.seed = options.seed;
+  null_options.threads = options.threads;
+  null_options.progress = [&](double share) { report(0.45 + 0.4 * share); };
+  found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
+                              found.omnibus_before, null_options);
+  out.encoder_share = found.null.encoder_share;
+
+  // Forward.
+  state = search.state(found.noise, {}, &pilots);
+  while (static_cast<int>(found.accepted.size()) < options.max_effects) {
+    std::optional<Fit> fit = best_fit(search, state);
+    if (!fit || !counts(context, found, state, *fit) || form_error(context, found, *fit)) break;
+    // The first of two may have been a mixture: the best pair, if it is worth more than the best single and its follower.
+    found.accepted.push_back(search.accept(*fit));
+    found.fits.push_back(std::move(*fit));
+    state = search.state(found.noise, found.accepted, &pilots);
+  }
+  if (found.accepted.size() >= 2) {
+    const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
+    const double forward_gain =
+        found.before.problem->r.squaredNorm() -
+        search.state(found.noise, {found.accepted[0], found.accepted[1]}, nullptr).problem->r.squaredNorm();
+    const auto taken = [&](std::size_t h) { return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h; };
+    if (pair.gain > 1.02 * forward_gain && !(taken(pair.first) && taken(pair.second))) {
+      std::vector<AcceptedEffect> accepted;
+      std::vector<Fit> fits;
+      for (const std::size_t h : {pair.first, pair.second}) {
+        const EffectSearch::State beside = search.state(found.noise, accepted, &pilots);
+        fits.push_back(search.refine(beside, h));
+        accepted.push_back(search.accept(fits.back()));
+      }
+      found.accepted = std::move(accepted);
+      found.fits = std::move(fits);
+    }
+  }
+  // Backward: each must still count beside the others; then its shape, size and set beside them.
+  for (std::size_t k = 0; k < found.accepted.size();) {
+    std::vector<AcceptedEffect> others = found.accepted;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const EffectSearch::State beside = search.state(found.noise, others, &pilots);
+    Fit fit = search.refine(beside, found.accepted[k].hypothesis);
+    if (!others.empty() && !counts(context, found, beside, fit)) {
+      found.accepted = std::move(others);
+      found.fits.erase(found.fits.begin() + static_cast<std::ptrdiff_t>(k));
+      found.sets.clear();
+      k = 0;
+      continue;
+    }
+    // Another hypothesis may fit better now that the others are known.
+    if (const std::optional<Fit> best = best_fit(search, beside);
+        best && search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
+      fit = *best;
+    }
+    const VectorXd variance = fit.gram.completeOrthogonalDecomposition().pseudoInverse().diagonal();
+    fit.effect.amplitude_std = variance.cwiseMax(0.0).cwiseSqrt();
+    found.sets.push_back(confusable_set(context, found, beside, fit));
+    found.accepted[k] = search.accept(fit);
+    found.fits[k] = std::move(fit);
+    ++k;
+  }
+  found.after = search.state(found.noise, found.accepted, &pilots);
+  found.omnibus_after = Omnibus(*found.after.problem, context.basis);
+  found.structure_after = found.omnibus_after.gains(*found.after.problem, found.after.problem->r);
+  return found;
+}
+
+}  // namespace deltadyn::detail
