@@ -10,6 +10,8 @@
 
 #include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/inverse_dynamics_derivatives.hpp"
+#include "deltadyn/dynamics/joint_reactions.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/robot.hpp"
@@ -165,6 +167,51 @@ class RobotOf final : public Robot {
     return status;
   }
 
+  Status equations_of_motion(const ConstRef& q, const ConstRef& qd, const ConstRef& p, Coordinates coordinates,
+                             EquationTerms& terms) const override {
+    Motion<double, R> motion;
+    Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
+    if (status != Status::ok) return status;
+    EquationsOfMotion<double, N> found = deltadyn::equations_of_motion<Layout>(geometry_, motion, all_columns(p));
+    if (coordinates == Coordinates::task) {
+      const EquationsOfMotion<double, N> of_drives = found;
+      status = equations_in_task(geometry_, motion, of_drives, found);
+    }
+    if (status == Status::ok) terms = {found.M, found.C, found.g, found.f};
+    return status;
+  }
+
+  Status energies(const ConstRef& q, const ConstRef& qd, const ConstRef& p, Energies& energies) const override {
+    Motion<double, R> motion;
+    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
+    if (status != Status::ok) return status;
+    const auto all = all_columns(p);
+    energies = {kinetic_energy<Layout>(geometry_, motion, all), potential_energy<Layout>(geometry_, motion.posture, all)};
+    return status;
+  }
+
+  Status inverse_dynamics_derivatives(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
+                                      TorqueSlopes& slopes) const override {
+    Motion<double, R> motion;
+    Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status != Status::ok) return status;
+    TorqueDerivatives<double, N> found;
+    status = deltadyn::inverse_dynamics_derivatives<Layout>(geometry_, motion, all_columns(p), found);
+    if (status == Status::ok) slopes = {found.by_q, found.by_qd, found.by_qdd};
+    return status;
+  }
+
+  Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
+                         std::vector<JointReaction>& reactions) const override {
+    Motion<double, R> motion;
+    Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    if (status != Status::ok) return status;
+    JointReactions<double, R> found;
+    status = deltadyn::joint_reactions<Layout>(geometry_, motion, all_columns(p), found);
+    if (status == Status::ok) reactions = named_reactions(found);
+    return status;
+  }
+
   Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const override {
     Motion<double, R> motion;
     const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
@@ -178,6 +225,32 @@ class RobotOf final : public Robot {
     deltadyn::Vector<double, Layout::kColumns> full = deltadyn::Vector<double, Layout::kColumns>::Zero();
     for (std::size_t k = 0; k < columns_.size(); ++k) full(columns_[k]) = p(static_cast<Eigen::Index>(k));
     return full;
+  }
+
+  static std::vector<JointReaction> named_reactions(const JointReactions<double, R>& loads) {
+    std::vector<JointReaction> out;
+    const auto add = [&out](const std::string& joint, const std::string& from, const std::string& onto,
+                            const JointLoad<double>& load, double axial = 0) {
+      out.push_back({joint, from, onto, load.place, load.force, load.moment, axial});
+    };
+    for (int i = 0; i < R::kLimbs; ++i) {
+      const auto& limb = loads.limbs[i];
+      const std::string number = std::to_string(i + 1), arm = name(Body::upper_arm) + number;
+      add("drive" + number, "base", arm, limb.drive);
+      for (int k = 0; k < (kHasPlate<R> ? 2 : 0); ++k) {
+        const std::string strut = name(Body::strut) + number + (k == 0 ? 'a' : 'b');
+        add(strut + ".elbow", arm, strut, limb.elbow[k]);
+        add(strut + ".plate", strut, name(Body::platform), limb.plate[k], limb.axial[k]);
+      }
+    }
+    if constexpr (R::kTelescope) {
+      const char *upper = name(Body::telescope_upper), *lower = name(Body::telescope_lower), *tool = name(Body::tool);
+      add("telescope.base", "base", upper, loads.telescope_base);
+      add("telescope.slide", upper, lower, loads.telescope_slide);
+      add("telescope.tool", lower, tool, loads.telescope_tool);
+      add("tool.bearing", name(Body::platform), tool, loads.tool_bearing);
+    }
+    return out;
   }
 
   RobotDescription description_;

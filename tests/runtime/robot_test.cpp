@@ -74,6 +74,35 @@ TEST(Robot, ForwardsToTheFixedSizeCore) {
   EXPECT_EQ(robot->friction_joints(), 5);
 }
 
+TEST(Robot, GivesTheTermsOfTheEquationsOfMotion) {
+  const auto robot = make_robot(delta_description("delta4"), all_columns(4));
+  Random random(9);
+  const Eigen::VectorXd p = random_parameters<ParameterLayout<Delta4, Limbs::individual>>(random);
+  const auto task = random_task<Delta4>(random);
+  Eigen::VectorXd q(4), qd(4), qdd(4), tau(4);
+  ASSERT_EQ(robot->to_drives({task.z, task.zd, task.zdd}, q, qd, qdd), Status::ok);
+  ASSERT_EQ(robot->inverse_dynamics(q, qd, qdd, p, tau), Status::ok);
+  EquationTerms drives, plate;
+  ASSERT_EQ(robot->equations_of_motion(q, qd, p, Coordinates::drives, drives), Status::ok);
+  EXPECT_THAT((drives.M * qdd + drives.C * qd + drives.g + drives.f).eval(), IsNear(tau, 1e-9));
+  ASSERT_EQ(robot->equations_of_motion(q, qd, p, Coordinates::task, plate), Status::ok);
+  Eigen::MatrixXd J(4, 4);
+  ASSERT_EQ(robot->jacobian(q, J), Status::ok);
+  const Eigen::VectorXd force = plate.M * task.zdd + plate.C * task.zd + plate.g + plate.f;
+  EXPECT_THAT((J.transpose() * force).eval(), IsNear(tau, 1e-9));
+  Energies energies;
+  ASSERT_EQ(robot->energies(q, qd, p, energies), Status::ok);
+  EXPECT_NEAR(energies.kinetic, 0.5 * qd.dot(drives.M * qd), 1e-10);
+  TorqueSlopes slopes;
+  ASSERT_EQ(robot->inverse_dynamics_derivatives(q, qd, qdd, p, slopes), Status::ok);
+  EXPECT_THAT(slopes.by_qdd, IsNear(drives.M, 1e-10));
+  std::vector<JointReaction> reactions;
+  ASSERT_EQ(robot->joint_reactions(q, qd, qdd, p, reactions), Status::ok);
+  ASSERT_EQ(reactions.size(), 3U * 5U + 4U);
+  EXPECT_EQ(reactions[1].joint, "strut1a.elbow");
+  EXPECT_EQ(reactions.back().onto, "tool");
+}
+
 TEST(Robot, NamesItsColumnsInTheOrderOfTheRegressor) {
   const auto axis = make_robot(axis_description(DriveKind::revolute));
   EXPECT_THAT(axis->parameter_names(),

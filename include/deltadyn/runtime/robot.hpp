@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "deltadyn/core/status.hpp"
+#include "deltadyn/runtime/dynamics_terms.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -68,6 +69,16 @@ class Robot {
   /// torque (sign(0) = 0). out_of_range if M is not positive definite, i.e. p is not physically consistent.
   [[nodiscard]] virtual Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau, const ConstRef& p,
                                                 Eigen::Ref<Vector> qdd) const = 0;
+  /// The equations of motion (1) term by term.
+  [[nodiscard]] virtual Status equations_of_motion(const ConstRef& q, const ConstRef& qd, const ConstRef& p,
+                                                   Coordinates coordinates, EquationTerms& terms) const = 0;
+  [[nodiscard]] virtual Status energies(const ConstRef& q, const ConstRef& qd, const ConstRef& p, Energies& energies) const = 0;
+  /// Derivatives of the drive torques by q, qd and qdd, exact; Coulomb friction counts as constant.
+  [[nodiscard]] virtual Status inverse_dynamics_derivatives(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                                            const ConstRef& p, TorqueSlopes& slopes) const = 0;
+  /// Forces and moments in all joints, by Newton and Euler (dynamics/joint_reactions.hpp says what carries what).
+  [[nodiscard]] virtual Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
+                                               std::vector<JointReaction>& reactions) const = 0;
   /// Rates of the joints with friction: drives, then the telescope's prismatic joint if there is one [rad/s | m/s].
   [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const = 0;
   [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
