@@ -124,6 +124,21 @@ class Writer {
     element->SetAttribute("independent", true);
     axis_of(element, axis);
     limit_of(element, limits, !continuous);
+    dynamics_of(element, robot_file::drive_name(index));
+  }
+
+  [[nodiscard]] double value(const std::string& name) const {
+    const auto found = parameters_.find(name);
+    return found == parameters_.end() ? 0.0 : found->second;
+  }
+
+  /// Friction of a joint; plain URDF's `friction` is the Coulomb part.
+  void dynamics_of(XMLElement* element, const std::string& name) const {
+    const double viscous = value(name + ".viscous"), coulomb = value(name + ".coulomb");
+    if (viscous == 0 && coulomb == 0) return;
+    XMLElement* dynamics = child(element, "dynamics");
+    dynamics->SetAttribute("damping", text(viscous).c_str());
+    dynamics->SetAttribute("friction", text(coulomb).c_str());
   }
 
   static void mimic(XMLElement* element, const std::string& other) {
@@ -163,6 +178,10 @@ class Writer {
     if (!(p[0] > 0))
       throw Error(fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]),
                   "", "give the body a positive mass, or leave its parameters out");
+    set_inertial(body, p);
+  }
+
+  static void set_inertial(XMLElement* body, const std::array<double, kInertialParameters>& p) {
     const Vec c(p[1] / p[0], p[2] / p[0], p[3] / p[0]);
     Matrix3<double> I;
     I << p[4], p[7], p[9], p[7], p[5], p[8], p[9], p[8], p[6];
@@ -256,7 +275,11 @@ class Writer {
     reach += bar.p_WU.norm() + bar.p_BV.norm();  // the bar is never longer than that
 
     drive(robot_.limbs.size(), "telescope_yoke", DriveKind::revolute, Vec::UnitZ(), bar.p_WU, Vec::Zero());
-    link("telescope_yoke");
+    XMLElement* yoke = link("telescope_yoke");
+    if (const double rotor = value(robot_file::drive_name(robot_.limbs.size()) + ".rotor_inertia"); rotor > 0) {
+      // A ring of radius 0.1 m about the drive's axis. Its mass rests on the base and moves nothing.
+      set_inertial(yoke, {100 * rotor, 0, 0, 0, rotor / 2, rotor / 2, rotor, 0, 0, 0});
+    }
     passive("telescope_x", "telescope_yoke", "telescope_cross", Vec::UnitX(), Vec::Zero());
     link("telescope_cross");
     passive("telescope_y", "telescope_cross", "telescope_upper", Vec::UnitY(), Vec::Zero());
@@ -271,6 +294,7 @@ class Writer {
     range.upper = reach;
     range.effort = 0;
     limit_of(slide, range, true);
+    dynamics_of(slide, "telescope");
     XMLElement* lower = link("telescope_lower");
     visual(lower, Vec::Zero(), Vec(0, 0, 0.4 * reach), 0.014);
     inertial(lower, "telescope_lower");

@@ -1,0 +1,337 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "deltadyn/kinematics/forward.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/workspace.hpp"
+
+#include "export_parts.hpp"
+#include "robot_file_format.hpp"
+
+namespace deltadyn {
+namespace {
+
+using model_export::Parts;
+using model_export::text;
+using tinyxml2::XMLElement;
+using Vec = Vector3<double>;
+using Rotation = Eigen::Matrix3d;
+
+// The stiffest that MuJoCo takes: impedance at its upper bound, time constant two steps.
+constexpr const char* kTimestep = "0.0005";
+constexpr const char* kStiff = "0.001 1";
+constexpr const char* kImpedance = "0.9999 0.9999 0.001 0.5 2";
+// A body that turns about an axis needs some inertia about it; this radius of gyration is far below what torque could show.
+constexpr double kSmallestGyration = 1e-5;  // [m]
+
+/// Joint angles of the home pose, from the library's own kinematics.
+struct Home {
+  Eigen::VectorXd q;
+  std::vector<Vec> strut;                       ///< beta, gamma, unused
+  Vec plate = Vec::Zero();                      ///< place of its centre
+  double bar_a = 0, bar_b = 0, bar_length = 0;  ///< of the telescope
+};
+
+template <class R>
+Home home_of(const RobotDescription& description, const Eigen::VectorXd& q) {
+  Posture<double, R> posture;
+  const auto geometry = geometry_of<double, R>(description);
+  if (posture_from_drives<double, R>(geometry, q, posture) != Status::ok)
+    throw Error("the home pose is singular", description.name, "check the lengths in the robot file");
+  Home home;
+  home.q = q;
+  home.plate = posture.z.template head<3>();
+  for (const auto& limb : posture.limbs)
+    home.strut.emplace_back(std::atan2(limb.beta.sin, limb.beta.cos), std::atan2(limb.gamma.sin, limb.gamma.cos), 0);
+  if (R::kTelescope) {
+    home.bar_a = std::atan2(posture.telescope.a.sin, posture.telescope.a.cos);
+    home.bar_b = std::atan2(posture.telescope.b.sin, posture.telescope.b.cos);
+    home.bar_length = posture.telescope.length;
+  }
+  return home;
+}
+
+Home find_home(const Robot& robot) {
+  const RobotDescription& description = robot.description();
+  Home home;
+  home.q = Eigen::VectorXd::Zero(robot.drives());
+  if (description.parts.empty()) return home;
+  const WorkspaceSampler sampler(robot);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives());
+  z.head<3>() = sampler.ball().centre;
+  if (robot.inverse_kinematics(z, home.q) != Status::ok)
+    throw Error("no home pose was found", description.name, "check the lengths in the robot file");
+  if (description.type == Delta3::kName) return home_of<Delta3>(description, home.q);
+  if (description.type == LinearDelta3::kName) return home_of<LinearDelta3>(description, home.q);
+  if (description.type == Delta4::kName) return home_of<Delta4>(description, home.q);
+  throw Error(fmt::format("robots of type {} cannot be written as MJCF", description.type), description.name, "");
+}
+
+Rotation about(const Vec& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+class Mjcf {
+ public:
+  Mjcf(const Robot& robot, Parts parts) : robot_(robot.description()), parts_(std::move(parts)), home_(find_home(robot)) {}
+
+  ExportedModel run() {
+    root_ = document_.NewElement("mujoco");
+    document_.InsertEndChild(root_);
+    root_->SetAttribute("model", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
+    const std::string words = fmt::format(
+        "\n  {} written by deltadyn: identified parameters, loops closed by equality constraints.\n  SI units, angles in rad. "
+        "Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
+        robot_.type, model_export::left_out_comment(parts_.left_out, "  "));
+    root_->InsertNewComment(words.c_str());
+    settings();
+    world_ = child(root_, "worldbody");
+    light_and_base();
+    equality_ = document_.NewElement("equality");
+    actuator_ = document_.NewElement("actuator");
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i) limb(i);
+    if (robot_.telescope) {
+      telescope();
+    } else if (!robot_.parts.empty()) {
+      XMLElement* plate = body(world_, "platform", home_.plate, Rotation::Identity());
+      child(plate, "freejoint")->SetAttribute("name", "platform");
+      fill_platform(plate);
+    }
+    if (equality_->FirstChild() != nullptr) root_->InsertEndChild(equality_);
+    root_->InsertEndChild(actuator_);
+    tinyxml2::XMLPrinter printer;
+    document_.Print(&printer);
+    return {printer.CStr(), parts_.left_out};
+  }
+
+ private:
+  static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
+  static void set(XMLElement* element, const char* name, const std::string& value) { element->SetAttribute(name, value.c_str()); }
+
+  void settings() {
+    XMLElement* compiler = child(root_, "compiler");
+    set(compiler, "angle", "radian");
+    set(compiler, "autolimits", "true");
+    XMLElement* option = child(root_, "option");
+    // First-order integrators err by about 1 % of the torque when the fourth drive turns fast.
+    set(option, "integrator", "RK4");
+    set(option, "timestep", kTimestep);
+    set(option, "gravity", text(robot_.gravity));
+    set(option, "tolerance", "1e-12");
+    set(option, "iterations", "100");
+    XMLElement* defaults = child(root_, "default");
+    XMLElement* equality = child(defaults, "equality");
+    set(equality, "solref", kStiff);
+    set(equality, "solimp", kImpedance);
+    XMLElement* joint = child(defaults, "joint");
+    set(joint, "solreffriction", kStiff);
+    set(joint, "solimpfriction", kImpedance);
+    XMLElement* geom = child(defaults, "geom");  // to be looked at only
+    set(geom, "contype", "0");
+    set(geom, "conaffinity", "0");
+    set(geom, "mass", "0");
+    set(geom, "rgba", "0.6 0.65 0.7 1");
+  }
+
+  void light_and_base() {
+    XMLElement* light = child(world_, "light");
+    set(light, "pos", "0 -1 1.5");
+    set(light, "dir", "0 0.6 -1");
+    double radius = 0;
+    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_WD.head<2>().norm());
+    if (radius <= 0) return;
+    XMLElement* plate = child(world_, "geom");
+    set(plate, "type", "cylinder");
+    set(plate, "fromto", fmt::format("0 0 0.02 0 0 0.04"));
+    set(plate, "size", text(radius));
+  }
+
+  static XMLElement* body(XMLElement* parent, const std::string& name, const Vec& place, const Rotation& R) {
+    XMLElement* element = child(parent, "body");
+    set(element, "name", name);
+    set(element, "pos", text(place));
+    const Eigen::Quaterniond turn(R);
+    if (!R.isIdentity(0))
+      set(element, "quat", fmt::format("{} {} {} {}", text(turn.w()), text(turn.x()), text(turn.y()), text(turn.z())));
+    return element;
+  }
+
+  static XMLElement* joint(XMLElement* parent, const std::string& name, const char* type, const Vec& axis, double reference,
+                           const Vec& place = Vec::Zero()) {
+    XMLElement* element = child(parent, "joint");
+    set(element, "name", name);
+    set(element, "type", type);
+    set(element, "axis", text(axis));
+    if (place.norm() > 0) set(element, "pos", text(place));
+    if (reference != 0) set(element, "ref", text(reference));
+    return element;
+  }
+
+  void friction(XMLElement* element, const std::string& name) const {
+    if (const double viscous = parts_.value(name + ".viscous"); viscous != 0) set(element, "damping", text(viscous));
+    if (const double coulomb = parts_.value(name + ".coulomb"); coulomb != 0) set(element, "frictionloss", text(coulomb));
+  }
+
+  void drive(XMLElement* element, std::size_t index) {
+    const std::string name = robot_file::drive_name(index);
+    friction(element, name);
+    if (const double rotor = parts_.value(name + ".rotor_inertia"); rotor != 0) set(element, "armature", text(rotor));
+    const DriveLimits& limits = robot_.limits[index];
+    if (std::isfinite(limits.lower) && std::isfinite(limits.upper))
+      set(element, "range", text(limits.lower) + " " + text(limits.upper));
+    const double offset = parts_.value(name + ".offset");
+    XMLElement* motor = actuator_->InsertNewChildElement(offset != 0 ? "general" : "motor");
+    set(motor, "name", name);
+    set(motor, "joint", name);
+    if (offset != 0) {  // the measured torque holds the offset, the shaft does not feel it
+      set(motor, "biastype", "affine");
+      set(motor, "biasprm", text(-offset) + " 0 0");
+    }
+    if (std::isfinite(limits.effort)) set(motor, "ctrlrange", text(-limits.effort) + " " + text(limits.effort));
+  }
+
+  /// \param gyration  radius of gyration for a body whose parameters say nothing of its inertia [m]
+  void inertial(XMLElement* element, InertialVector<double> p, const std::string& name, double gyration = kSmallestGyration) {
+    if (!(p(0) > 0)) throw Error(fmt::format("body {} has no mass", name), "", "MuJoCo needs one for every body that moves");
+    const bool point = p.tail<6>().cwiseAbs().maxCoeff() <= 0;
+    const Vec c = p.segment<3>(1) / p(0);
+    const auto about_origin = to_pseudo_inertia(p);
+    // Second moments about the centre of mass; MuJoCo refuses a body that is infinitely thin.
+    Eigen::Matrix3d second = about_origin.topLeftCorner<3, 3>() - p(0) * c * c.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(second);
+    const double least = p(0) * std::pow(point ? gyration : kSmallestGyration, 2);
+    if (solver.eigenvalues()(0) < -1e-6 * (second.trace() + p(0) * c.squaredNorm()))
+      throw Error(fmt::format("the parameters of body {} are not physically consistent", name), "",
+                  "take those of delta-identify; no simulator can run others");
+    second = solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() * solver.eigenvectors().transpose();
+    const Eigen::Matrix3d I = second.trace() * Eigen::Matrix3d::Identity() - second;
+    XMLElement* inertia = child(element, "inertial");
+    set(inertia, "pos", text(c));
+    set(inertia, "mass", text(p(0)));
+    set(inertia, "fullinertia",
+        fmt::format("{} {} {} {} {} {}", text(I(0, 0)), text(I(1, 1)), text(I(2, 2)), text(I(0, 1)), text(I(0, 2)),
+                    text(I(1, 2))));
+  }
+
+  static void capsule(XMLElement* element, const Vec& from, const Vec& to, double radius) {
+    if ((to - from).norm() <= radius) return;
+    XMLElement* geom = child(element, "geom");
+    set(geom, "type", "capsule");
+    set(geom, "fromto", text(from) + " " + text(to));
+    set(geom, "size", text(radius));
+  }
+
+  static void site(XMLElement* element, const std::string& name, const Vec& place) {
+    XMLElement* mark = child(element, "site");
+    set(mark, "name", name);
+    set(mark, "pos", text(place));
+    set(mark, "size", "0.005");
+  }
+
+  void limb(std::size_t i) {
+    const LimbGeometry<double>& limb = robot_.limbs[i];
+    const std::string arm = fmt::format("upper_arm{}", i + 1);
+    const bool revolute = robot_.drive_kind == DriveKind::revolute;
+    const double q = home_.q(static_cast<Eigen::Index>(i));
+    const Rotation R_WL = about(Vec::UnitZ(), limb.azimuth);
+    XMLElement* upper = revolute ? body(world_, arm, limb.p_WD, R_WL * about(Vec::UnitY(), q))
+                                 : body(world_, arm, limb.p_WD + R_WL * (q * limb.axis_L), R_WL);
+    drive(joint(upper, robot_file::drive_name(i), revolute ? "hinge" : "slide", limb.axis_L, q), i);
+    inertial(upper, parts_.body("upper_arm", arm), arm);
+    capsule(upper, Vec::Zero(), limb.p_DE_0, 0.025);
+    if (robot_.parts.empty()) return;
+    const double y_angle = home_.strut[i].x() - (revolute ? q : 0), z_angle = home_.strut[i].y();
+    for (const bool first : {true, false}) {
+      const std::string name = robot_file::strut_name(i, first);
+      const Vec elbow = limb.p_DE_0 + Vec(0, (first ? 0.5 : -0.5) * limb.strut_spacing, 0);
+      const Rotation turn = about(Vec::UnitZ(), z_angle);
+      XMLElement* strut = body(upper, name, elbow, about(Vec::UnitY(), y_angle) * turn);
+      joint(strut, name + "_y", "hinge", turn.transpose() * Vec::UnitY(), y_angle);
+      joint(strut, name + "_z", "hinge", Vec::UnitZ(), z_angle);
+      inertial(strut, parts_.body("strut", fmt::format("strut{}", i + 1)), name);
+      const Vec end(limb.strut, 0, 0);
+      capsule(strut, Vec::Zero(), end, 0.008);
+      site(strut, name + "_end", end);
+      XMLElement* connect = equality_->InsertNewChildElement("connect");
+      set(connect, "name", name);
+      set(connect, "site1", name + "_end");
+      set(connect, "site2", "platform_" + name);
+    }
+  }
+
+  void fill_platform(XMLElement* plate) {
+    double radius = 0;
+    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.norm());
+    // The plate never turns, so its inertia moves nothing; the simulation needs one all the same: a disc of its size.
+    inertial(plate, platform_parameters(), "platform", std::max(0.02, radius) / 2);
+    XMLElement* geom = child(plate, "geom");
+    set(geom, "type", "cylinder");
+    set(geom, "size", text(std::max(0.02, radius)) + " 0.01");
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
+      const LimbGeometry<double>& limb = robot_.limbs[i];
+      for (const bool first : {true, false}) {
+        const Vec across = (first ? 0.5 : -0.5) * limb.strut_spacing * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
+        site(plate, "platform_" + robot_file::strut_name(i, first), limb.p_BA + across);
+      }
+    }
+  }
+
+  /// A robot without a tool still has a body that turns at the bar's end: a tenth of the plate's mass, which moves alike.
+  [[nodiscard]] bool tool_is_borrowed() const { return robot_.telescope && !(parts_.value("tool.m") > 0); }
+  [[nodiscard]] InertialVector<double> platform_parameters() const {
+    return (tool_is_borrowed() ? 0.9 : 1.0) * parts_.body("platform");
+  }
+  [[nodiscard]] InertialVector<double> tool_parameters() const {
+    if (!tool_is_borrowed()) return parts_.body("tool");
+    InertialVector<double> p = InertialVector<double>::Zero();
+    p(0) = 0.1 * parts_.value("platform.m");
+    return p;
+  }
+
+  void telescope() {
+    const TelescopeGeometry<double>& bar = *robot_.telescope;
+    const Rotation R_b = about(Vec::UnitY(), home_.bar_b);
+    const Rotation R = about(Vec::UnitX(), home_.bar_a) * R_b;
+    XMLElement* upper = body(world_, "telescope_upper", bar.p_WU, R);
+    drive(joint(upper, robot_file::drive_name(robot_.limbs.size()), "hinge", R.transpose() * Vec::UnitZ(), 0),
+          robot_.limbs.size());
+    joint(upper, "telescope_x", "hinge", R_b.transpose() * Vec::UnitX(), home_.bar_a);
+    joint(upper, "telescope_y", "hinge", Vec::UnitY(), home_.bar_b);
+    inertial(upper, parts_.body("telescope_upper"), "telescope_upper");
+    capsule(upper, Vec(0, 0, -0.6 * home_.bar_length), Vec::Zero(), 0.008);
+    XMLElement* lower = body(upper, "telescope_lower", Vec(0, 0, -home_.bar_length), Rotation::Identity());
+    friction(joint(lower, "telescope", "slide", -Vec::UnitZ(), home_.bar_length), "telescope");
+    inertial(lower, parts_.body("telescope_lower"), "telescope_lower");
+    capsule(lower, Vec::Zero(), Vec(0, 0, 0.6 * home_.bar_length), 0.012);
+    // The lower joint undoes the upper one's angles, so that the tool stands upright; the plate hangs on the tool's bearing.
+    const Vec joint_place(0, 0, bar.p_BV.z());
+    XMLElement* tool = body(lower, "tool", -(R.transpose() * joint_place), R.transpose());
+    joint(tool, "tool_y", "hinge", R * Vec::UnitY(), -home_.bar_b, joint_place);
+    joint(tool, "tool_x", "hinge", Vec::UnitX(), -home_.bar_a, joint_place);
+    inertial(tool, tool_parameters(), "tool");
+    capsule(tool, Vec(0, 0, -0.06), Vec::Zero(), 0.015);
+    const Vec axis_place(bar.p_BV.x(), bar.p_BV.y(), 0);
+    XMLElement* plate = body(tool, "platform", -axis_place, Rotation::Identity());
+    joint(plate, "platform", "hinge", Vec::UnitZ(), 0, axis_place);
+    fill_platform(plate);
+  }
+
+  const RobotDescription& robot_;
+  Parts parts_;
+  Home home_;
+  tinyxml2::XMLDocument document_;
+  XMLElement *root_ = nullptr, *world_ = nullptr, *equality_ = nullptr, *actuator_ = nullptr;
+};
+
+}  // namespace
+
+ExportedModel export_mjcf(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
+  return Mjcf(robot, model_export::collect(robot, p, effects)).run();
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,38 @@
+#pragma once
+
+/// \file
+/// What all exporters share: the parameters by name with the effects that are parameters worked in, and what is left.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "deltadyn/io/model_export.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/model/inertial_parameters.hpp"
+
+namespace deltadyn::model_export {
+
+struct Parts {
+  NamedValues values;                 ///< parameters, with the effects that are one added
+  std::vector<std::string> left_out;  ///< effects that are no parameter
+
+  [[nodiscard]] double value(const std::string& name) const;
+  /// The ten parameters of a body: of its own name ("strut2") if the set has individual limbs, else of the shared one ("strut").
+  [[nodiscard]] InertialVector<double> body(const std::string& shared, const std::string& own = {}) const;
+};
+
+/// Throws Error if `p` has not the robot's size, a number is not finite, or a body has inertia without mass.
+[[nodiscard]] Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects);
+
+/// "effect stribeck at drive2 (...)".
+[[nodiscard]] std::string describe(const Effect& effect, const RobotDescription& robot);
+
+/// The number of a text that reads back exactly; no "-0" in a file that people read.
+[[nodiscard]] std::string text(double value);
+[[nodiscard]] std::string text(const Eigen::Vector3d& v);
+
+/// Lines of a comment with what the format does not hold; empty if nothing.
+[[nodiscard]] std::string left_out_comment(const std::vector<std::string>& left_out, const std::string& prefix);
+
+}  // namespace deltadyn::model_export

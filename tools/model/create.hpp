@@ -1,0 +1,255 @@
+#pragma once
+
+/// \file
+/// `delta-model create`: a robot file from a few lengths.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/runtime/workspace.hpp"
+
+#include "tool_support.hpp"
+
+namespace deltadyn::tools {
+
+[[noreturn]] inline void refuse_usage(const std::string& what, const std::string& mend) {
+  throw Error(what, "", mend, ExitCode::usage);
+}
+
+inline Eigen::Vector3d vector_of(const std::vector<double>& values, const std::string& flag) {
+  if (values.size() != 3) refuse_usage(fmt::format("{} has {} numbers", flag, values.size()), "give three, separated by commas");
+  return {values[0], values[1], values[2]};
+}
+
+inline Eigen::Vector3d direction_of(const std::vector<double>& values, const std::string& flag) {
+  const Eigen::Vector3d v = vector_of(values, flag);
+  if (!(v.norm() > 1e-9 && v.allFinite())) refuse_usage(flag + " is no direction", "give a vector that is not zero");
+  return v.normalized();
+}
+
+class Create {
+ public:
+  void add_to(CLI::App& app, ToolRun& run) {
+    command_ = app.add_subcommand("create", "Make a robot file (URDF with URDF+ loops) from a few lengths.");
+    CLI::App& c = *command_;
+    set_example(c,
+                "delta-model create delta4 --base-radius 0.2 --platform-radius 0.05 --upper-arm 0.525 --strut 1.106 \\\n"
+                "      --strut-spacing 0.1 --drive-velocity-rad-s 6,6,6,48 -o robot.urdf\n"
+                "  delta-model create linear-delta3 --base-radius 0.3 --platform-radius 0.06 --strut 0.8 --drive-range-m "
+                "0,0.9 -o l.urdf\n"
+                "  delta-model create axis --drive-kind prismatic --axis-direction 1,0,0 -o axis.urdf");
+    c.add_option("type", type_, "delta3, linear-delta3, delta4 or axis")->required()->type_name("TYPE");
+    c.add_option("-o,--output", output_, "robot file to write [standard output]")->type_name("FILE");
+    c.add_option("--name", name_, "name of the robot [its type]");
+    flag("--base-radius", base_radius_, "drive i at this distance from z, at azimuth 0, 120, 240 deg [m]",
+         "delta3 linear-delta3 delta4");
+    flag("--platform-radius", platform_radius_, "attachments of the limbs from the plate's centre [m]",
+         "delta3 linear-delta3 delta4");
+    flag("--upper-arm", upper_arm_, "drive axis to elbow [m]", "delta3 delta4");
+    flag("--strut", strut_, "strut, ball centre to ball centre [m]", "delta3 linear-delta3 delta4");
+    flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1", "delta3 linear-delta3 delta4");
+    flag("--elbow", elbow_, "outwards (default) or inwards; of carriages: above (default) or below",
+         "delta3 linear-delta3 delta4");
+    list("--telescope-base-m", telescope_base_, "upper joint of the telescope bar from the base origin x,y,z [m], default 0,0,0",
+         "delta4");
+    list("--telescope-platform-m", telescope_platform_, "lower joint from the plate's centre x,y,z [m], default 0,0,0", "delta4");
+    list("--rail-axis-limb", rail_axis_,
+         "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down", "linear-delta3");
+    flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", "linear-delta3");
+    flag("--drive-kind", drive_kind_, "revolute (default) or prismatic", "axis");
+    flag("--arm", arm_, "length of the arm on a revolute drive [m]", "axis");
+    list("--axis-direction", axis_direction_,
+         "axis of the drive x,y,z; revolute: horizontal, default 0,1,0; prismatic: default 1,0,0", "axis");
+    const char* count = "; one for all, or one a drive";
+    flag("--drive-range-rad", range_rad_, "position limits lo,hi or lo,hi;lo,hi;... [rad]", "delta3 delta4 axis");
+    flag("--drive-range-m", range_m_, "the same of prismatic drives [m]", "linear-delta3 axis");
+    list("--drive-velocity-rad-s", velocity_rad_, std::string("velocity limits [rad/s]") + count, "delta3 delta4 axis");
+    list("--drive-velocity-m-s", velocity_m_, std::string("of prismatic drives [m/s]") + count, "linear-delta3 axis");
+    list("--drive-acceleration-rad-s2", acceleration_rad_, std::string("acceleration limits [rad/s^2]") + count,
+         "delta3 delta4 axis");
+    list("--drive-acceleration-m-s2", acceleration_m_, std::string("of prismatic drives [m/s^2]") + count, "linear-delta3 axis");
+    list("--drive-effort-Nm", effort_Nm_, std::string("torque limits [N m]") + count, "delta3 delta4 axis");
+    list("--drive-effort-N", effort_N_, std::string("force limits of prismatic drives [N]") + count, "linear-delta3 axis");
+    c.add_option("--gravity-m-s2", gravity_, "size of gravity [m/s^2]")->capture_default_str();
+    c.add_option("--gravity-direction", gravity_direction_, "direction x,y,z in the base frame, default 0,0,-1")
+        ->delimiter(',')
+        ->type_name("X,Y,Z");
+    run.on(c, [this, &run] { execute(run); });
+  }
+
+ private:
+  struct Flag {
+    CLI::Option* option;
+    std::string name, types;
+  };
+
+  template <class T>
+  void flag(const std::string& name, std::optional<T>& value, const std::string& help, const std::string& types) {
+    flags_.push_back({command_->add_option(name, value, help + " (" + types + ")"), name, types});
+  }
+  void list(const std::string& name, std::vector<double>& value, const std::string& help, const std::string& types) {
+    flags_.push_back(
+        {command_->add_option(name, value, help + " (" + types + ")")->delimiter(',')->type_name("FLOAT,..."), name, types});
+  }
+
+  void execute(ToolRun& run) {
+    if (type_ == "h4" || type_ == "i4" || type_ == "par4")
+      refuse_usage(fmt::format("robots of type {} cannot be created yet", type_), "use delta3, linear-delta3, delta4 or axis");
+    if (type_ != "delta3" && type_ != "linear-delta3" && type_ != "delta4" && type_ != "axis")
+      refuse_usage(fmt::format("'{}' is not a robot type", type_), "use delta3, linear-delta3, delta4 or axis");
+    for (const Flag& f : flags_)
+      if (f.option->count() > 0 && (" " + f.types + " ").find(" " + type_ + " ") == std::string::npos)
+        refuse_usage(fmt::format("{} does not belong to a {}", f.name, type_), "leave it out; it is for " + f.types);
+    run.check_files({output_}, {});
+    RobotDescription robot;
+    robot.type = type_;
+    robot.name = name_.empty() ? type_ : name_;
+    if (!(std::isfinite(gravity_) && gravity_ >= 0))
+      refuse_usage("--gravity-m-s2 must not be negative", "give the direction by --gravity-direction");
+    robot.gravity = gravity_direction_.empty()
+                        ? Eigen::Vector3d(0, 0, -gravity_)
+                        : Eigen::Vector3d(gravity_ * direction_of(gravity_direction_, "--gravity-direction"));
+    if (type_ == "axis") {
+      add_axis(robot);
+    } else {
+      add_limbs(robot);
+    }
+    add_limits(robot);
+    try {
+      robot.validate("");
+      const auto closes = make_robot(robot);
+      const WorkspaceSampler sampler(*closes);  // refuses lengths that do not close
+    } catch (const Error& e) {
+      refuse_usage(e.problem(), "check the lengths and limits given");  // they are the flags here, not a file's
+    }
+    if (output_.empty()) {
+      fmt::print("{}", robot_to_urdf(robot));
+    } else {
+      write_robot_file(output_, robot);
+      fmt::print("wrote {}: {} with {} drive{}\n", output_, robot.type, robot.drives(), robot.drives() == 1 ? "" : "s");
+    }
+    run.summary.add("type", robot.type);
+    run.summary.add("drives", robot.drives());
+  }
+
+  static double required(const std::optional<double>& value, const std::string& name) {
+    constexpr double kLargest_m = 10;  // no Delta is that large; such a number is in millimetres
+    if (!value) refuse_usage(fmt::format("{} is needed for this type", name), "give it in metres");
+    if (!(std::isfinite(*value) && *value >= 0)) refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
+    if (*value > kLargest_m) refuse_usage(fmt::format("{} {} looks like millimetres", name, *value), "give it in metres");
+    return *value;
+  }
+
+  double elbow() const {
+    const std::string word = elbow_.value_or("outwards");
+    if (word == "outwards" || word == "above") return 1;
+    if (word == "inwards" || word == "below") return -1;
+    refuse_usage(fmt::format("--elbow {} is not known", word), "use outwards or inwards");
+  }
+
+  Eigen::Vector3d rail() const {
+    if (!rail_axis_.empty() && rail_tilt_)
+      refuse_usage("--rail-axis-limb and --rail-tilt-rad exclude each other", "give one of them");
+    if (!rail_axis_.empty()) return direction_of(rail_axis_, "--rail-axis-limb");
+    const double tilt = rail_tilt_.value_or(0);
+    return {std::sin(tilt), 0, -std::cos(tilt)};
+  }
+
+  void add_limbs(RobotDescription& robot) const {
+    const bool linear = type_ == "linear-delta3";
+    robot.drive_kind = linear ? DriveKind::prismatic : DriveKind::revolute;
+    const double base = required(base_radius_, "--base-radius");
+    const double plate = required(platform_radius_, "--platform-radius");
+    for (int i = 0; i < 3; ++i) {
+      LimbGeometry<double> limb;
+      limb.azimuth = 2 * std::numbers::pi / 3 * i;
+      const Eigen::Vector3d radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
+      limb.p_WD = base * radial;
+      limb.p_BA = plate * radial;
+      limb.strut = required(strut_, "--strut");
+      limb.strut_spacing = spacing_.value_or(0.1);
+      limb.elbow = elbow();
+      if (linear) {
+        limb.axis_L = rail();
+      } else {
+        limb.p_DE_0 = Eigen::Vector3d(required(upper_arm_, "--upper-arm"), 0, 0);
+      }
+      robot.limbs.push_back(limb);
+    }
+    robot.parts.emplace_back();
+    if (type_ == "delta4") {
+      robot.telescope.emplace();
+      if (!telescope_base_.empty()) robot.telescope->p_WU = vector_of(telescope_base_, "--telescope-base-m");
+      if (!telescope_platform_.empty()) robot.telescope->p_BV = vector_of(telescope_platform_, "--telescope-platform-m");
+    }
+  }
+
+  void add_axis(RobotDescription& robot) const {
+    const std::string kind = drive_kind_.value_or("revolute");
+    if (kind != "revolute" && kind != "prismatic")
+      refuse_usage(fmt::format("--drive-kind {} is not known", kind), "use revolute or prismatic");
+    LimbGeometry<double> limb;
+    if (kind == "prismatic") {
+      if (arm_) refuse_usage("--arm belongs to a revolute drive", "leave it out");
+      robot.drive_kind = DriveKind::prismatic;
+      limb.axis_L = axis_direction_.empty() ? Eigen::Vector3d(1, 0, 0) : direction_of(axis_direction_, "--axis-direction");
+    } else {
+      const Eigen::Vector3d axis =
+          axis_direction_.empty() ? Eigen::Vector3d(0, 1, 0) : direction_of(axis_direction_, "--axis-direction");
+      if (std::abs(axis.z()) > 1e-9)
+        refuse_usage("the axis of a revolute drive is horizontal in the base frame",
+                     "turn gravity instead by --gravity-direction");
+      limb.azimuth = std::atan2(-axis.x(), axis.y());  // the axis is +y of the limb frame
+      limb.p_DE_0 = Eigen::Vector3d(arm_.value_or(0), 0, 0);
+    }
+    robot.limbs.push_back(limb);
+  }
+
+  void add_limits(RobotDescription& robot) const {
+    const std::size_t n = robot.limbs.size() + (robot.telescope ? 1U : 0U);
+    robot.limits.assign(n, DriveLimits());
+    const bool linear = robot.drive_kind == DriveKind::prismatic;
+    const auto wrong_unit = [&](bool given, const char* name) {
+      if (given)
+        refuse_usage(fmt::format("{} does not fit {} drives", name, linear ? "prismatic" : "revolute"),
+                     "use the flag with the other unit");
+    };
+    wrong_unit((linear ? range_rad_ : range_m_).has_value(), linear ? "--drive-range-rad" : "--drive-range-m");
+    wrong_unit(!(linear ? velocity_rad_ : velocity_m_).empty(), linear ? "--drive-velocity-rad-s" : "--drive-velocity-m-s");
+    wrong_unit(!(linear ? acceleration_rad_ : acceleration_m_).empty(),
+               linear ? "--drive-acceleration-rad-s2" : "--drive-acceleration-m-s2");
+    wrong_unit(!(linear ? effort_Nm_ : effort_N_).empty(), linear ? "--drive-effort-Nm" : "--drive-effort-N");
+    if (const auto& range = linear ? range_m_ : range_rad_) {
+      const auto ranges = spread_ranges(*range, n, linear ? "--drive-range-m" : "--drive-range-rad");
+      for (std::size_t i = 0; i < n; ++i) std::tie(robot.limits[i].lower, robot.limits[i].upper) = ranges[i];
+    }
+    const auto set = [&](const std::vector<double>& values, const char* name, double DriveLimits::*member) {
+      if (values.empty()) return;
+      const std::vector<double> all = spread(values, n, name);
+      for (std::size_t i = 0; i < n; ++i) robot.limits[i].*member = all[i];
+    };
+    set(linear ? velocity_m_ : velocity_rad_, "--drive-velocity", &DriveLimits::velocity);
+    set(linear ? acceleration_m_ : acceleration_rad_, "--drive-acceleration", &DriveLimits::acceleration);
+    set(linear ? effort_N_ : effort_Nm_, "--drive-effort", &DriveLimits::effort);
+  }
+
+  CLI::App* command_ = nullptr;
+  std::vector<Flag> flags_;
+  std::string type_, output_, name_;
+  std::optional<double> base_radius_, platform_radius_, upper_arm_, strut_, spacing_, rail_tilt_, arm_;
+  std::optional<std::string> elbow_, drive_kind_, range_rad_, range_m_;
+  std::vector<double> telescope_base_, telescope_platform_, rail_axis_, axis_direction_;
+  std::vector<double> velocity_rad_, velocity_m_, acceleration_rad_, acceleration_m_, effort_Nm_, effort_N_;
+  double gravity_ = 9.81;
+  std::vector<double> gravity_direction_;
+};
+
+}  // namespace deltadyn::tools

@@ -1,0 +1,199 @@
+#pragma once
+
+/// \file
+/// `delta-model info`: geometry, workspace, drives, parameter and base-parameter counts of a robot file.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/plot.hpp"
+#include "deltadyn/runtime/reach.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+#include "tool_support.hpp"
+
+namespace deltadyn::tools {
+
+class Info {
+ public:
+  void add_to(CLI::App& app, ToolRun& run) {
+    CLI::App& c = *app.add_subcommand("info", "Print geometry, workspace, drives, parameter and base-parameter counts.");
+    set_example(c, "delta-model info robot.urdf --plot workspace.png --summary info.csv");
+    c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
+    c.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
+    c.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
+    c.add_option("--plot", plot_, "picture of the workspace (PNG)")->type_name("FILE");
+    run.on(c, [this, &run] { execute(run); });
+  }
+
+ private:
+  void execute(ToolRun& run) {
+    run.check_files({plot_}, {robot_file_});
+    const RobotDescription description = read_robot_file(robot_file_);
+    ParameterOptions options;
+    options.tool = !without_tool_;
+    options.individual_limbs = individual_limbs_;
+    const auto robot = make_robot(description, options);
+    fmt::print("{}: {} ({})\n", robot_file_, description.name, description.type);
+    geometry(description, run.summary);
+    drives(description, run.summary);
+    if (!description.parts.empty()) workspace(*robot, run.summary);
+    parameters(*robot, run);
+  }
+
+  static void geometry(const RobotDescription& robot, Summary& summary) {
+    fmt::print("\ngeometry\n");
+    for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
+      const auto& limb = robot.limbs[i];
+      const auto name = [&](const char* key) { return fmt::format("limb{}_{}", i + 1, key); };
+      fmt::print("  limb {}: azimuth {:.6g} deg, drive at ({:.6g}, {:.6g}, {:.6g}) m", i + 1,
+                 limb.azimuth * 180 / std::numbers::pi, limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
+      summary.add(name("azimuth"), limb.azimuth, "rad");
+      summary.add(name("base_radius"), limb.p_WD.head<2>().norm(), "m");
+      if (robot.drive_kind == DriveKind::prismatic) {
+        fmt::print(", rail along ({:.6g}, {:.6g}, {:.6g})", limb.axis_L.x(), limb.axis_L.y(), limb.axis_L.z());
+      } else {
+        fmt::print(", upper arm {:.6g} m", limb.p_DE_0.norm());
+        summary.add(name("upper_arm"), limb.p_DE_0.norm(), "m");
+      }
+      if (!robot.parts.empty()) {
+        fmt::print(", struts {:.6g} m, {:.6g} m apart, plate radius {:.6g} m", limb.strut, limb.strut_spacing,
+                   limb.p_BA.head<2>().norm());
+        summary.add(name("strut"), limb.strut, "m");
+        summary.add(name("strut_spacing"), limb.strut_spacing, "m");
+        summary.add(name("platform_radius"), limb.p_BA.head<2>().norm(), "m");
+      }
+      fmt::print("\n");
+    }
+    if (robot.telescope) {
+      const auto& u = robot.telescope->p_WU;
+      const auto& v = robot.telescope->p_BV;
+      fmt::print("  telescope: from ({:.6g}, {:.6g}, {:.6g}) m on the base to ({:.6g}, {:.6g}, {:.6g}) m on the plate\n", u.x(),
+                 u.y(), u.z(), v.x(), v.y(), v.z());
+    }
+    fmt::print("  gravity ({:.6g}, {:.6g}, {:.6g}) m/s^2\n", robot.gravity.x(), robot.gravity.y(), robot.gravity.z());
+    summary.add("gravity", robot.gravity.norm(), "m/s^2");
+  }
+
+  static void drives(const RobotDescription& robot, Summary& summary) {
+    fmt::print("\ndrives\n");
+    summary.add("drives", robot.drives());
+    for (int i = 0; i < robot.drives(); ++i) {
+      const DriveLimits& limits = robot.limits[static_cast<std::size_t>(i)];
+      const bool linear = robot.kind_of_drive(i) == DriveKind::prismatic;
+      const std::string unit = linear ? "m" : "rad";
+      const auto words = [](double value, const std::string& of) {
+        return std::isfinite(value) ? fmt::format("{:.6g} {}", value, of) : std::string("unlimited");
+      };
+      const std::string range = std::isfinite(limits.lower) || std::isfinite(limits.upper)
+                                    ? fmt::format("{} to {}", words(limits.lower, unit), words(limits.upper, unit))
+                                    : "unlimited";
+      fmt::print("  drive {} ({}): range {}, velocity {}, acceleration {}, {} {}\n", i + 1, linear ? "prismatic" : "revolute",
+                 range, words(limits.velocity, unit + "/s"), words(limits.acceleration, unit + "/s^2"),
+                 linear ? "force" : "torque", words(limits.effort, linear ? "N" : "N m"));
+    }
+  }
+
+  void workspace(const Robot& robot, Summary& summary) const {
+    const Reach reach = find_reach(robot);
+    fmt::print(
+        "\nworkspace (poses of the plate's centre that are in reach, inside the drives' ranges, not singular; to {:.2g} m)\n",
+        reach.cell);
+    fmt::print("  radius {:.3f} m, height {:.3f} to {:.3f} m, volume {:.3f} m^3, home pose ({:.3f}, {:.3f}, {:.3f}) m\n",
+               reach.radius, reach.lower.z(), reach.upper.z(), reach.volume, reach.home.x(), reach.home.y(), reach.home.z());
+    fmt::print("  condition number of the Jacobian: best {:.2f}, half of the workspace below {:.2f}, 95 % below {:.2f}\n",
+               reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
+    const auto& limits = robot.description().limits;
+    if (std::isinf(limits.front().lower) || std::isinf(limits.front().upper))
+      fmt::print("  the drives have no position limits in the robot file; the real workspace is smaller\n");
+    summary.add("workspace_radius", reach.radius, "m");
+    summary.add("workspace_lowest", reach.lower.z(), "m");
+    summary.add("workspace_highest", reach.upper.z(), "m");
+    summary.add("workspace_volume", reach.volume, "m^3");
+    summary.add("jacobian_condition_best", reach.condition_best);
+    summary.add("jacobian_condition_median", reach.condition_median);
+    summary.add("jacobian_condition_95", reach.condition_worst_of_95);
+    if (!plot_.empty()) {
+      draw(robot.description(), reach);
+      fmt::print("  picture: {}\n", plot_);
+    }
+  }
+
+  /// Side view of the plane y = 0 and top view at the height of the home pose, coloured by the condition number.
+  void draw(const RobotDescription& robot, const Reach& reach) const {
+    const auto slice = [&](int normal, double place, int horizontal, int vertical, const std::string& title) {
+      PlotSpec spec;
+      spec.title = title;
+      spec.x_label = horizontal == 0 ? "x [m]" : "y [m]";
+      spec.y_label = vertical == 2 ? "z [m]" : "y [m]";
+      const struct {
+        double low, high;
+        const char* label;
+        PlotColor color;
+      } bands[] = {{0, 3, "condition below 3", PlotColor::green},
+                   {3, 8, "3 to 8", PlotColor::sky},
+                   {8, 1e9, "above 8", PlotColor::orange}};
+      for (const auto& band : bands) {
+        std::vector<double> x, y;
+        for (Eigen::Index k = 0; k < reach.points.rows(); ++k) {
+          if (std::abs(reach.points(k, normal) - place) > 0.5001 * reach.cell) continue;
+          if (reach.condition(k) < band.low || reach.condition(k) >= band.high) continue;
+          x.push_back(reach.points(k, horizontal));
+          y.push_back(reach.points(k, vertical));
+        }
+        if (x.empty()) continue;
+        const auto n = static_cast<Eigen::Index>(x.size());
+        spec.series.push_back({band.label,
+                               Eigen::Map<Eigen::VectorXd>(x.data(), n),
+                               Eigen::Map<Eigen::VectorXd>(y.data(), n),
+                               SeriesStyle::points,
+                               {},
+                               band.color});
+      }
+      Eigen::VectorXd x(robot.limbs.size()), y(robot.limbs.size());
+      for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
+        x(static_cast<Eigen::Index>(i)) = robot.limbs[i].p_WD(horizontal);
+        y(static_cast<Eigen::Index>(i)) = robot.limbs[i].p_WD(vertical);
+      }
+      spec.series.push_back({"drives", x, y, SeriesStyle::points, {}, PlotColor::black});
+      spec.width = 700;
+      spec.height = 480;
+      return spec;
+    };
+    render_png({slice(1, 0, 0, 2, "side view, y = 0"),
+                slice(2, reach.home.z(), 0, 1, fmt::format("top view, z = {:.2f} m", reach.home.z()))},
+               plot_);
+  }
+
+  static void parameters(const Robot& robot, ToolRun& run) {
+    BaseParameterOptions options;
+    options.seed = run.seed;
+    const BaseParameters base = find_base_parameters(robot, options);
+    const std::string gap = base.rank_gap > 1e15 ? "above 1e15" : fmt::format("{:.1e}", base.rank_gap);
+    fmt::print("\nparameters\n  {} columns, of which the drives can show {} base parameters (gap in the rank decision: {})\n",
+               robot.parameters(), base.count(), gap);
+    fmt::print("  condition number of the base regressor over random states: {:.3g}\n", base.condition_number);
+    run.summary.add("columns", robot.parameters());
+    run.summary.add("base_parameters", base.count());
+    run.summary.add("rank_gap", base.rank_gap);
+    run.summary.add("condition_number", base.condition_number);
+    std::vector<std::string> bodies;
+    for (const std::string& name : robot.parameter_names()) {
+      const std::string body = name.substr(0, name.find('.'));
+      if (bodies.empty() || bodies.back() != body) bodies.push_back(body);
+    }
+    fmt::print("  groups: {}\n", fmt::join(bodies, " "));
+  }
+
+  std::string robot_file_, plot_;
+  bool without_tool_ = false, individual_limbs_ = false;
+};
+
+}  // namespace deltadyn::tools

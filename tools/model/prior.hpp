@@ -1,0 +1,115 @@
+#pragma once
+
+/// \file
+/// `delta-model prior`: nominal parameters from simple shapes and materials.
+
+#include <fmt/format.h>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/nominal_parameters.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+#include "tool_support.hpp"
+
+namespace deltadyn::tools {
+
+class Prior {
+ public:
+  void add_to(CLI::App& app, ToolRun& run) {
+    CLI::App& c =
+        *app.add_subcommand("prior", "Nominal parameters from simple shapes and materials, scaled from the paper's robot.");
+    set_example(c, "delta-model prior robot.urdf --platform-mass-kg 1.0 --tool-mass-kg 0.4 -o prior.csv");
+    c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
+    c.add_option("-o,--output", output_, "parameter file to write (CSV name,value,unit,std)")->required()->type_name("FILE");
+    c.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
+    c.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
+    for (Shape& shape : shapes_) c.add_option(shape.flag, shape.value, shape.help)->group("Shapes, masses, friction");
+    run.on(c, [this, &run] { execute(run); });
+  }
+
+ private:
+  void execute(ToolRun& run) {
+    run.check_files({output_}, {robot_file_});
+    const RobotDescription description = read_robot_file(robot_file_);
+    ParameterOptions options;
+    options.tool = !without_tool_;
+    options.individual_limbs = individual_limbs_;
+    const auto robot = make_robot(description, options);
+    PartShapes shapes(description);
+    for (const Shape& shape : shapes_)
+      if (shape.value) shapes.*shape.member = *shape.value;
+    const NominalParameters nominal = nominal_parameters(*robot, shapes);
+    ParameterTable table;
+    for (int k = 0; k < robot->parameters(); ++k) {
+      ParameterEntry entry;
+      entry.name = robot->parameter_names()[static_cast<std::size_t>(k)];
+      entry.unit = robot->parameter_units()[static_cast<std::size_t>(k)];
+      entry.value = nominal.value(k);
+      entry.std = nominal.std(k);
+      if (entry.name.size() > 2 && entry.name.compare(entry.name.size() - 2, 2, ".m") == 0) {
+        fmt::print("  {:<18} {:8.3f} kg\n", entry.name.substr(0, entry.name.size() - 2), entry.value);
+        run.summary.add("mass_" + entry.name.substr(0, entry.name.size() - 2), entry.value, "kg");
+      }
+      table.entries.push_back(std::move(entry));
+    }
+    write_parameters(output_, table);
+    fmt::print("wrote {}: {} nominal parameters\n", output_, table.entries.size());
+    run.summary.add("columns", robot->parameters());
+  }
+
+  struct Shape {
+    std::string flag, help;
+    double PartShapes::*member;
+    std::optional<double> value = {};
+  };
+
+  std::string robot_file_, output_;
+  bool without_tool_ = false, individual_limbs_ = false;
+  std::vector<Shape> shapes_ = {
+      {"--upper-arm-outer-diameter-m", "tube of the upper arm [m]", &PartShapes::upper_arm_outer_diameter},
+      {"--upper-arm-wall-m", "its wall [m]", &PartShapes::upper_arm_wall},
+      {"--upper-arm-density-kg-m3", "its density [kg/m^3], carbon fibre 1600", &PartShapes::upper_arm_density},
+      {"--upper-arm-hub-mass-kg", "hub about the drive axis [kg], 0: none", &PartShapes::upper_arm_hub_mass},
+      {"--upper-arm-hub-diameter-m", "its diameter [m]", &PartShapes::upper_arm_hub_diameter},
+      {"--upper-arm-hub-width-m", "its width along the axis [m]", &PartShapes::upper_arm_hub_width},
+      {"--carriage-mass-kg", "carriage of a prismatic drive [kg]", &PartShapes::carriage_mass},
+      {"--carriage-diameter-m", "its diameter [m]", &PartShapes::carriage_diameter},
+      {"--carriage-length-m", "its length along the rail [m]", &PartShapes::carriage_length},
+      {"--strut-outer-diameter-m", "tube of a strut [m]", &PartShapes::strut_outer_diameter},
+      {"--strut-wall-m", "its wall [m]", &PartShapes::strut_wall},
+      {"--strut-density-kg-m3", "its density [kg/m^3]", &PartShapes::strut_density},
+      {"--strut-sockets-mass-kg", "both sockets of one strut [kg], 0: none; default as heavy as the tube",
+       &PartShapes::strut_sockets_mass},
+      {"--strut-socket-diameter-m", "their diameter [m]", &PartShapes::strut_socket_diameter},
+      {"--strut-socket-length-m", "their length [m]", &PartShapes::strut_socket_length},
+      {"--platform-mass-kg", "travelling plate [kg]", &PartShapes::platform_mass},
+      {"--platform-diameter-m", "its diameter [m]", &PartShapes::platform_diameter},
+      {"--platform-thickness-m", "its thickness [m]", &PartShapes::platform_thickness},
+      {"--tool-mass-kg", "tool [kg]", &PartShapes::tool_mass},
+      {"--tool-diameter-m", "its diameter [m]", &PartShapes::tool_diameter},
+      {"--tool-length-m", "its length below the plate's centre [m]", &PartShapes::tool_length},
+      {"--telescope-mass-kg", "both parts of the telescope bar [kg]", &PartShapes::telescope_mass},
+      {"--telescope-upper-share", "share of the upper part in that mass, the paper's is 0.6", &PartShapes::telescope_upper_share},
+      {"--telescope-upper-length-m", "solid rod of the upper part [m]", &PartShapes::telescope_upper_length},
+      {"--telescope-upper-diameter-m", "its diameter [m]", &PartShapes::telescope_upper_diameter},
+      {"--telescope-lower-length-m", "tube of the lower part [m]", &PartShapes::telescope_lower_length},
+      {"--telescope-lower-outer-diameter-m", "its outer diameter [m]", &PartShapes::telescope_lower_outer_diameter},
+      {"--telescope-lower-inner-diameter-m", "its inner diameter [m]", &PartShapes::telescope_lower_inner_diameter},
+      {"--drive-viscous", "friction of a limb's drive [N m s/rad or N s/m]", &PartShapes::drive_viscous},
+      {"--drive-coulomb", "the same [N m or N]", &PartShapes::drive_coulomb},
+      {"--telescope-drive-viscous-Nm-s-rad", "friction of the telescope's drive [N m s/rad]",
+       &PartShapes::telescope_drive_viscous},
+      {"--telescope-drive-coulomb-Nm", "the same [N m]", &PartShapes::telescope_drive_coulomb},
+      {"--telescope-viscous-N-s-m", "friction of the sliding bar [N s/m]", &PartShapes::telescope_viscous},
+      {"--telescope-coulomb-N", "the same [N]", &PartShapes::telescope_coulomb},
+      {"--body-std", "assumed standard deviation of masses and moments as a share of the value, default 0.5",
+       &PartShapes::body_std},
+      {"--friction-std", "of the friction, default 1", &PartShapes::friction_std},
+  };
+};
+
+}  // namespace deltadyn::tools
