@@ -243,17 +243,14 @@ Fit EffectSearch::refine(const State& state, std::size_t h) const {
   best.effect.amplitude = start.amplitude;
   best.rows = columns_of(rows_[h], static_cast<Index>(start.shape) * k, k);
   const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
-  // Share of the Gram matrix that is not encoder noise in the columns.
-  const Signature& own = state.signatures[h];
-  const double whole = own.white.cols > 0 ? own.white.gram(static_cast<Index>(start.shape) * k, k).trace() : 0.0;
-  const double kept_gram = whole > 0 ? std::clamp(own.gram[start.shape].trace() / whole, 0.0, 1.0) : 1.0;
+  const double clean = state.signatures[h].clean[start.shape];
   const auto evaluate = [&](const VectorXd& shape, Fit& into) {
     Hypothesis one = hypothesis;
     one.shapes = {shape};
     into.rows.clear();
     for (const LogRows& log : logs_) into.rows.push_back(hypothesis_rows(model_, log, log.signals, one));
     Signature signature = make_signature(*state.problem, one, into.rows);
-    for (MatrixXd& gram : signature.gram) gram *= kept_gram;
+    std::fill(signature.clean.begin(), signature.clean.end(), clean);
     VectorXd inner = signature.white.cols > 0
                          ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0, signature.white.cols)
                          : VectorXd(0);
@@ -308,7 +305,7 @@ Fit EffectSearch::refine(const State& state, std::size_t h) const {
     }
   }
   best.white = state.problem->whiten(best.rows);
-  best.gram = best.white.cols >= k ? MatrixXd(kept_gram * best.white.gram(0, k)) : MatrixXd::Zero(k, k);
+  best.gram = best.white.cols >= k ? MatrixXd(best.white.gram(0, k)) : MatrixXd::Zero(k, k);
   return best;
 }
 

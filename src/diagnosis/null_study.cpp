@@ -330,7 +330,7 @@ void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>&
     }
     for (std::size_t s = 0; s < noise.size(); ++s) {
       const double share = noise[s].trace() / std::max(signature.gram[s].trace(), 1e-300);
-      signature.gram[s] *= std::max(kLeastGram, 1 - share);
+      signature.clean[s] = std::max(kLeastGram, 1 - share);
     }
   }
 }

@@ -163,10 +163,12 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
     const Index first = static_cast<Index>(s) * k;
     if (out.white.cols < first + k) {  // nowhere in these logs
       out.gram.push_back(MatrixXd::Zero(k, k));
+      out.clean.push_back(1);
       out.kept.push_back(0);
       continue;
     }
     out.gram.push_back(out.white.gram(first, k));
+    out.clean.push_back(1);
     const MatrixXd raw = out.white.raw_gram(first, k);
     const double whole = raw.trace();
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
@@ -194,10 +196,20 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
     Gain gain;
     if (kind.tied) {
       const double amount = hypothesis.shapes[s](0);
-      gain.gain = 2 * amount * u(0) - amount * amount * signature.gram[s](0, 0);
+      // Noise in the column would make the amplitude, here fixed, come out too large for the data.
+      gain.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
       gain.amplitude = VectorXd::Constant(1, amount);
     } else {
       gain = constrained_gain(signature.gram[s], u, positive);
+      const double largest = kind.amplitudes.front().largest;
+      if (k == 1 && std::abs(gain.amplitude(0)) > largest) {
+        const double amount = gain.amplitude(0) > 0 ? largest : -largest;
+        gain.amplitude(0) = amount;
+        gain.gain = 2 * amount * u(0) - amount * amount * signature.gram[s](0, 0);
+      } else {
+        // ... and a fitted one too small.
+        gain.amplitude = (gain.amplitude / signature.clean[s]).cwiseMin(largest).cwiseMax(-largest);
+      }
     }
     if (gain.gain > best.gain) best = {gain.gain, s, gain.amplitude};
   }

@@ -72,7 +72,7 @@ class EncoderPilots {
                                                       Eigen::VectorXd& r) const;
   /// Mean of C_perp^T r that encoder noise makes, one vector a hypothesis (empty: none).
   [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem, const std::vector<Signature>& signatures) const;
-  /// Takes the squares that encoder noise adds to the sensitive columns off their Gram matrices: without it amplitudes come out small.
+  /// Fills Signature::clean: the squares that encoder noise adds to the sensitive columns would make amplitudes come out small.
   void correct(const WhiteProblem& problem, std::vector<Signature>& signatures) const;
   /// Filter taps, one vector a segment, that turn white noise into the torque's own noise: what is left when the encoder's part is
   /// taken from the unit spectrum of the white residual. \param share  the encoder's share of the variance

@@ -80,7 +80,8 @@ struct Gain {
 struct Signature {
   WhiteColumns white;
   std::vector<Eigen::MatrixXd> gram;  ///< of each shape, projected
-  std::vector<double> kept;           ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
+  std::vector<double> clean;  ///< of each shape: share of gram that is not encoder noise in the columns (1: none is known)
+  std::vector<double> kept;   ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
 };
 
 [[nodiscard]] Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,

@@ -77,8 +77,9 @@ struct EffectShape {
 /// A parameter in which the effect is linear.
 struct EffectAmplitude {
   std::string name;
-  std::string unit;  ///< as in EffectShape
-  bool positive;     ///< physics fixes the sign
+  std::string unit;        ///< as in EffectShape
+  bool positive;           ///< physics fixes the sign
+  double largest = 1e300;  ///< largest size that makes sense
 };
 
 struct EffectKind {

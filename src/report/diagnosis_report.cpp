@@ -1,0 +1,333 @@
+#include "deltadyn/report/diagnosis_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+
+#include "deltadyn/report/format.hpp"
+#include "deltadyn/report/html_report.hpp"
+
+namespace deltadyn {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kBins = 40;
+constexpr Index kMostPoints = 1500;  // of a curve over time: more than a screen shows
+
+std::string torque_unit(const Robot& robot, int drive) {
+  return robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
+}
+std::string position_unit(const Robot& robot, int drive) {
+  return robot.description().kind_of_drive(drive) == DriveKind::revolute ? "rad" : "m";
+}
+
+std::string p_text(double p) {
+  return p < 1e-4 ? "below 0.0001" : format_number(p, 2);
+}
+
+Verdict tone_of(const Diagnosis& d) {
+  switch (d.verdict) {
+    case DiagnosisVerdict::nothing_missing: return Verdict::good;
+    case DiagnosisVerdict::named: return d.gap_shrink > 0.5 || std::isnan(d.gap_shrink) ? Verdict::good : Verdict::caution;
+    default: return Verdict::caution;
+  }
+}
+
+/// Means of the residual in bins of a coordinate, with the standard error of each.
+struct BinnedResidual {
+  VectorXd x, before, after, error;
+};
+
+BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
+                      const std::function<double(const DiagnosisTrace&, Index)>& coordinate) {
+  std::vector<std::array<double, 4>> points;  // x, before, after
+  for (const DiagnosisTrace& trace : d.traces) {
+    if (trace.holdout != holdout) continue;
+    for (Index k = 0; k < trace.t_s.size(); ++k) {
+      if (trace.usable(k, drive)) points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
+    }
+  }
+  std::sort(points.begin(), points.end());
+  const auto bins = static_cast<std::size_t>(std::min<std::size_t>(kBins, points.size() / 10));
+  BinnedResidual out;
+  for (VectorXd* v : {&out.x, &out.before, &out.after, &out.error}) *v = VectorXd::Zero(static_cast<Index>(bins));
+  for (std::size_t b = 0; b < bins; ++b) {
+    const std::size_t first = b * points.size() / bins, last = (b + 1) * points.size() / bins;
+    const auto count = static_cast<double>(last - first);
+    const auto at = static_cast<Index>(b);
+    double square = 0;
+    for (std::size_t k = first; k < last; ++k) {
+      out.x(at) += points[k][0] / count;
+      out.before(at) += points[k][1] / count;
+      out.after(at) += points[k][2] / count;
+      square += points[k][1] * points[k][1] / count;
+    }
+    out.error(at) = std::sqrt(std::max(0.0, square - out.before(at) * out.before(at)) / count);
+  }
+  return out;
+}
+
+PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::string& x_label, const std::string& title,
+                const std::function<double(const DiagnosisTrace&, Index)>& coordinate) {
+  const BinnedResidual bins = binned(d, drive, false, coordinate);
+  PlotSpec plot;
+  plot.title = title;
+  plot.x_label = x_label;
+  plot.y_label = "mean residual [" + torque_unit(robot, drive) + "]";
+  plot.height = 230;
+  Series before{"model as it is, with standard error", bins.x, bins.before, SeriesStyle::errorbars};
+  before.y_error = bins.error;
+  before.color = PlotColor::vermillion;
+  plot.series.push_back(before);
+  if (!d.named.empty()) {
+    Series after{"with the named effect", bins.x, bins.after, SeriesStyle::line};
+    after.color = PlotColor::blue;
+    plot.series.push_back(after);
+  }
+  plot.horizontal_markers.push_back({0.0, ""});
+  return plot;
+}
+
+/// The drives worth a picture: those with structure, or else all of them in one.
+std::vector<int> drives_to_show(const Diagnosis& d) {
+  std::vector<int> out;
+  for (std::size_t j = 0; j < d.drives.size(); ++j) {
+    const bool reached = std::any_of(d.named.begin(), d.named.end(), [j](const NamedEffect& one) {
+      return std::count(one.drives.begin(), one.drives.end(), static_cast<int>(j)) > 0;
+    });
+    if (reached || (d.named.empty() && d.drives[j].structure > 0.1)) out.push_back(static_cast<int>(j));
+  }
+  if (out.empty() && !d.drives.empty()) out.push_back(0);
+  return out;
+}
+
+VectorXd thinned(const VectorXd& x, Index step) {
+  VectorXd out((x.size() + step - 1) / step);
+  for (Index k = 0; k < out.size(); ++k) out(k) = x(k * step);
+  return out;
+}
+
+void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
+  report.heading("1. Does the model fit?");
+  report.paragraph(
+      "For each drive: what the model leaves of the torque on the training logs, beside the noise floor: what would be left if "
+      "anything that depends on the motion were known. Rows near velocity reversals are left out.");
+  Table table({{"drive", Align::left},
+               {"residual", Align::right},
+               {"noise floor", Align::right},
+               {"share of the residual that follows the motion", Align::right},
+               {"chance of that by noise", Align::right},
+               {"follows", Align::left}});
+  for (std::size_t j = 0; j < d.drives.size(); ++j) {
+    const DriveFit& drive = d.drives[j];
+    const std::string unit = torque_unit(robot, static_cast<int>(j));
+    const bool fits = drive.structure < 0.12;
+    std::string follows;
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, drive.follows.size()) && !fits; ++k)
+      follows += (k > 0 ? ", " : "") + drive.follows[k].first;
+    table.row({std::to_string(j + 1), format_number(drive.rms, unit, 3), format_number(drive.floor, unit, 3),
+               format_percent(drive.structure), p_text(drive.p_value), follows},
+              fits ? Tone::plain : Tone::caution);
+  }
+  report.table(table);
+}
+
+void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
+  report.heading("2. Where does it fail?");
+  report.paragraph(
+      "Mean residual of the training logs over speed, position and time of the drives concerned. Noise alone stays within "
+      "the bars around zero; a curve is physics that the model lacks.");
+  for (const int j : drives_to_show(d)) {
+    const std::string name = "drive " + std::to_string(j + 1), unit = position_unit(robot, j);
+    report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
+                       [j](const DiagnosisTrace& trace, Index k) { return trace.qd(k, j); }));
+    report.plot(map_of(d, robot, j, "position of " + name + " [" + unit + "]", name + ": residual over its position",
+                       [j](const DiagnosisTrace& trace, Index k) { return trace.q(k, j); }));
+    report.plot(map_of(d, robot, j, "time in the log [s]", name + ": residual over time",
+                       [](const DiagnosisTrace& trace, Index k) { return trace.t_s(k); }));
+  }
+}
+
+void step_3(HtmlReport& report, const Diagnosis& d) {
+  report.heading("3. What could it be?");
+  std::vector<const ConsideredEffect*> order;
+  for (const ConsideredEffect& one : d.considered) order.push_back(&one);
+  std::sort(order.begin(), order.end(),
+            [](const ConsideredEffect* a, const ConsideredEffect* b) { return a->gain_alone > b->gain_alone; });
+  report.paragraph(
+      fmt::format("{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
+                  "sign that physics "
+                  "allows, against {} simulated logs of this motion that miss nothing.",
+                  d.considered.size(), d.null_runs));
+  const auto fill = [](Table& table, const ConsideredEffect& one) {
+    const Tone tone = one.ruling == "found" ? Tone::strong : (one.ruling == "no evidence" ? Tone::muted : Tone::plain);
+    table.row({one.name, one.joint, one.effect_class, format_number(one.gain_alone, 4), p_text(one.p_alone), p_text(one.p_left),
+               one.ruling},
+              tone);
+  };
+  const std::vector<TableColumn> columns = {{"effect", Align::left},        {"at", Align::left},
+                                            {"class", Align::left},         {"explains [chi²]", Align::right},
+                                            {"chance alone", Align::right}, {"chance beside the found", Align::right},
+                                            {"ruling", Align::left}};
+  Table top(columns);
+  for (std::size_t k = 0; k < std::min<std::size_t>(12, order.size()); ++k) fill(top, *order[k]);
+  report.table(top, "The twelve that explain most of the residual, each alone.");
+  report.details("All effects considered", [&](HtmlReport& inner) {
+    Table all(columns);
+    for (const ConsideredEffect* one : order) fill(all, *one);
+    inner.table(all);
+  });
+  report.details(
+      "What these logs can show and tell apart (from the motion, before any torque is looked at)", [&](HtmlReport& inner) {
+        inner.paragraph(
+            "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. Smallest size: the "
+            "amplitude that would be named at the noise of these logs. Hardly told from: effects whose torques are alike in "
+            "these motions, with the cosine between them.");
+        Table table({{"effect", Align::left},
+                     {"at", Align::left},
+                     {"visible", Align::right},
+                     {"smallest size", Align::right},
+                     {"hardly told from", Align::left}});
+        for (const ConsideredEffect& one : d.considered) {
+          std::string like;
+          for (const std::string& other : one.like) like += (like.empty() ? "" : "; ") + other;
+          table.row(
+              {one.name, one.joint, format_percent(one.kept, 2), format_number(one.detectable, pretty_unit(one.unit), 3), like},
+              one.kept < 0.002 ? Tone::muted : Tone::plain);
+        }
+        inner.table(table);
+      });
+}
+
+void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
+  report.heading("4. What is it, and how large?");
+  if (d.named.empty()) {
+    report.paragraph(d.headline);
+    return;
+  }
+  for (const NamedEffect& one : d.named) {
+    const EffectKind& kind = effect_kind(one.effect.id);
+    report.subheading(one.name + " at " + one.joint);
+    report.paragraph("In words: " + kind.meaning + ". It acts at " + one.region + ".");
+    Table table({{"parameter", Align::left}, {"value", Align::right}, {"95 % interval", Align::right}});
+    for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
+      const auto at = static_cast<Index>(k);
+      const std::string unit = pretty_unit(effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
+      const double value = one.effect.amplitude(at),
+                   half = 1.96 * (one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0);
+      table.row({kind.amplitudes[k].name, format_with_uncertainty(value, half / 1.96, unit),
+                 format_interval(value - half, value + half, unit)});
+    }
+    for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
+      const std::string unit = pretty_unit(effect_unit(kind.shapes[k].unit, one.effect.joint, robot.description()));
+      table.row({kind.shapes[k].name, format_number(one.effect.shape(static_cast<Index>(k)), unit), "shape, fitted along"});
+    }
+    report.table(table);
+    report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.", p_text(one.p_value),
+                            format_percent(one.explained_share)));
+    if (one.confusable.empty()) {
+      report.paragraph("Nothing else in the catalogue explains it as well.");
+    } else {
+      std::vector<std::string> items;
+      for (const EffectCandidate& other : one.confusable) items.push_back(other.name + " at " + other.joint + ": " + other.why);
+      report.paragraph("It could also be:");
+      report.list(items);
+    }
+  }
+}
+
+void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
+  report.heading("5. Does it hold on a log that took no part?");
+  const auto held = std::find_if(d.traces.begin(), d.traces.end(), [](const DiagnosisTrace& t) { return t.holdout; });
+  if (held == d.traces.end()) {
+    report.paragraph("There was no hold-out log (--holdout), so nothing can be proven.");
+    return;
+  }
+  if (!d.named.empty()) {
+    Table table({{"effect", Align::left}, {"residual before", Align::right}, {"after", Align::right}, {"floor", Align::right}});
+    for (const NamedEffect& one : d.named) {
+      const std::string unit = torque_unit(robot, one.drives.empty() ? 0 : one.drives.front());
+      table.row({one.name + " at " + one.joint, format_number(one.rms_before, unit, 3), format_number(one.rms_after, unit, 3),
+                 format_number(one.rms_floor, unit, 3)});
+    }
+    report.table(table, "Root mean square residual of the drives that the effect reaches, on " + held->file + ".");
+    report.paragraph(fmt::format("Of the gap between model and floor, {} is closed (95 % interval {} to {}).",
+                                 format_percent(d.gap_shrink), format_percent(d.gap_low), format_percent(d.gap_high)));
+  }
+  for (const int j : drives_to_show(d)) {
+    const Index step = std::max<Index>(1, held->t_s.size() / kMostPoints);
+    const VectorXd t = thinned(held->t_s, step);
+    PlotSpec torque;
+    torque.title = fmt::format("Drive {}: torque on the hold-out log", j + 1);
+    torque.x_label = "time [s]";
+    torque.y_label = "torque [" + torque_unit(robot, j) + "]";
+    torque.height = 240;
+    torque.series.push_back({"measured", t, thinned(held->torque.col(j), step)});
+    torque.series.push_back({"model before", t, thinned(held->torque.col(j) - held->before.col(j), step)});
+    torque.series.push_back({"model after", t, thinned(held->torque.col(j) - held->after.col(j), step)});
+    torque.series[0].color = PlotColor::grey;
+    torque.series[1].color = PlotColor::vermillion;
+    torque.series[2].color = PlotColor::blue;
+    torque.series[2].dashed = true;
+    PlotSpec residual;
+    residual.title = fmt::format("Drive {}: residual", j + 1);
+    residual.x_label = "time [s]";
+    residual.y_label = "residual [" + torque_unit(robot, j) + "]";
+    residual.height = 240;
+    VectorXd before = held->before.col(j), after = held->after.col(j);
+    for (Index k = 0; k < before.size(); ++k) {
+      if (!held->usable(k, j)) before(k) = after(k) = std::nan("");  // near reversals nothing is claimed
+    }
+    residual.series.push_back({"before", t, thinned(before, step)});
+    residual.series.push_back({"after", t, thinned(after, step)});
+    residual.series[0].color = PlotColor::vermillion;
+    residual.series[1].color = PlotColor::blue;
+    report.plot({torque, residual});
+  }
+}
+
+}  // namespace
+
+std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const ReportContext& context) {
+  HtmlReport report("What is the model missing?", context.robot_file);
+  std::vector<std::string> lines = d.lines;
+  for (const std::string& next : d.next) lines.push_back("Next: " + next);
+  report.verdict(tone_of(d), d.headline, lines);
+  std::vector<KeyFigure> figures = {{"verdict", verdict_name(d.verdict)}};
+  if (!d.named.empty()) {
+    figures.push_back({"effect", d.named.front().name, "at " + d.named.front().joint});
+    figures.push_back({"chance of a false name", p_text(d.named.front().p_value)});
+    if (std::isfinite(d.gap_shrink)) {
+      figures.push_back({"gap closed on the hold-out log", format_percent(d.gap_shrink),
+                         format_percent(d.gap_low, 2) + " to " + format_percent(d.gap_high, 2)});
+    }
+  }
+  report.key_figures(figures);
+  if (!d.drives.empty()) {
+    step_1(report, d, robot);
+    step_2(report, d, robot);
+    step_3(report, d);
+    step_4(report, d, robot);
+    step_5(report, d, robot);
+  }
+  report.heading("6. What to do next");
+  report.list(d.next);
+  if (!d.notes.empty()) report.list(d.notes);
+  report.heading("How this was done");
+  std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
+  for (const DiagnosisTrace& trace : d.traces) facts.emplace_back(trace.holdout ? "hold-out log" : "training log", trace.file);
+  facts.emplace_back("cut-off of the motion", format_number(d.cutoff_hz, "Hz"));
+  facts.emplace_back("simulated clean logs", std::to_string(d.null_runs));
+  facts.emplace_back("share of the residual that encoder noise makes", format_percent(d.encoder_share));
+  facts.emplace_back("time", format_duration(d.total_time_s));
+  report.facts(facts);
+  report.footer(context.command_line);
+  return report.str();
+}
+
+}  // namespace deltadyn

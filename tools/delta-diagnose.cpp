@@ -1,0 +1,270 @@
+/// \file
+/// delta-diagnose: where a model and its logs disagree, the name of what is missing, the model with it, and the proof.
+
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltadyn/diagnosis/diagnose.hpp"
+#include "deltadyn/diagnosis/next_experiment.hpp"
+#include "deltadyn/io/effect_file.hpp"
+#include "deltadyn/io/log_file.hpp"
+#include "deltadyn/io/output_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/io/trajectory_file.hpp"
+#include "deltadyn/report/diagnosis_report.hpp"
+#include "deltadyn/report/plot.hpp"
+#include "deltadyn/runtime/nominal_parameters.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+#include "processing_flags.hpp"
+#include "tool_support.hpp"
+
+namespace {
+
+using namespace deltadyn;
+using tools::ToolRun;
+
+class Diagnose {
+ public:
+  Diagnose(int argc, char** argv) : command_line_(tools::command_line(argc, argv)) {}
+
+  void add_to(CLI::App& app, ToolRun& run) {
+    app.add_option("robot", robot_file_, "robot file (URDF)")->type_name("ROBOT");
+    app.add_option("logs", log_files_, "training logs of this robot (CSV t_s, q1_rad.., tau1_Nm..)")->type_name("LOG");
+    app.add_option("--params", parameter_file_, "parameters of the model (CSV)")->type_name("FILE");
+    app.add_option("--effects", effect_file_, "effects that the model holds already (CSV)")->type_name("FILE");
+    app.add_option("--holdout", holdout_file_, "log that takes no part in the search, for the proof (CSV)")->type_name("LOG");
+    app.add_option("-o,--output", output_, "diagnosis (CSV), row 1 holds the verdict")->type_name("FILE");
+    app.add_option("--effects-out", effects_out_, "effects of the improved model (CSV)")->type_name("FILE");
+    app.add_option("--params-out", params_out_, "parameters of the improved model (CSV)")->type_name("FILE");
+    app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
+    app.add_option("--plan-next", plan_file_, "if effects cannot be told apart: trajectory that separates them (CSV)")
+        ->type_name("FILE");
+    app.add_option("--false-naming-rate", options_.false_naming_rate, "chance of naming an effect where nothing is missing")
+        ->capture_default_str();
+    app.add_option("--max-effects", options_.max_effects, "most effects named together")->capture_default_str();
+    app.add_option("--null-runs", options_.null_runs, "simulated clean logs")->capture_default_str();
+    app.add_flag("--list-effects", list_, "print the catalogue of effects and end");
+    processing_.add_to(app);
+    run.on(app, [this, &run] { return execute(run); });
+  }
+
+ private:
+  void require(bool given, const char* what) const {
+    if (!given) throw Error(std::string(what) + " is required", "", "delta-diagnose --help shows the flags", ExitCode::usage);
+  }
+
+  ExitCode execute(ToolRun& run) {
+    if (list_) {
+      for (const EffectKind& kind : effect_catalogue()) {
+        fmt::print("{:<28} {:<18} {}{}\n", kind.name, kind.effect_class, kind.meaning,
+                   kind.alias.empty() ? "" : " (also " + kind.alias + ")");
+      }
+      return ExitCode::done;
+    }
+    require(!robot_file_.empty(), "the robot file");
+    require(!log_files_.empty(), "a log");
+    require(!parameter_file_.empty(), "--params");
+    require(!output_.empty(), "--output");
+    std::vector<std::string> inputs = log_files_;
+    inputs.insert(inputs.end(), {robot_file_, parameter_file_, effect_file_, holdout_file_});
+    run.check_files({output_, effects_out_, params_out_, report_file_, plan_file_}, inputs);
+    if (!report_file_.empty() && !gnuplot_available()) {
+      throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
+    }
+    const RobotDescription description = read_robot_file(robot_file_);
+    const ParameterTable table = read_parameters(parameter_file_);
+    ParameterOptions layout = parameter_options_of(table, description);
+    // As delta-identify does: a drive on its test bench has its amplifier's offset.
+    if (description.type == Axis::kName) layout.offset = true;
+    const auto robot = make_robot(description, layout);
+    const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
+    for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
+    const std::vector<Effect> known = effect_file_.empty() ? std::vector<Effect>() : read_effects(effect_file_, description);
+    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    std::optional<Log> holdout;
+    if (!holdout_file_.empty()) holdout = processing_.read_logs({holdout_file_}, description).front();
+
+    options_.processing = processing_.options();
+    options_.choose_cutoff = processing_.automatic_cutoff();
+    options_.seed = run.seed;
+    options_.identify = !params_out_.empty();
+    tools::ProgressBar bar("diagnosing");
+    options_.progress = [&bar](double share) { bar.update(share); };
+    const Diagnosis result =
+        diagnose(*robot, logs, holdout ? &*holdout : nullptr, match.value, prior_std(*robot, match), known, options_);
+
+    write_diagnosis(*robot, result);
+    if (!effects_out_.empty()) write_effects(effects_out_, result.effects, description);
+    if (!params_out_.empty()) write_improved(*robot, table, result);
+    if (!plan_file_.empty()) plan_next(*robot, result, match.value, run);
+    if (!report_file_.empty()) {
+      ReportContext context;
+      context.robot_file = robot_file_;
+      context.log_files = log_files_;
+      context.parameter_file = parameter_file_;
+      context.command_line = command_line_;
+      write_file(report_file_, diagnosis_report(*robot, result, context));
+    }
+    tell(result, run);
+    return ExitCode::done;
+  }
+
+  /// Trust in the parameters, as delta-identify has it in its prior.
+  static Eigen::VectorXd prior_std(const Robot& robot, const ParameterMatch& match) {
+    Eigen::VectorXd std = nominal_parameters(robot, PartShapes(robot.description())).std;
+    for (Eigen::Index k = 0; k < std.size(); ++k) {
+      if (match.value(k) != 0) std(k) = std::max(std(k), 0.5 * std::abs(match.value(k)));
+    }
+    return std;
+  }
+
+  static std::string joined(const std::vector<EffectCandidate>& set) {
+    std::string text;
+    for (const EffectCandidate& one : set) text += (text.empty() ? "" : ";") + one.name + "@" + one.joint;
+    return text;
+  }
+
+  static std::string clean(std::string text) {
+    for (char& c : text) {
+      if (c == ',') c = ';';
+    }
+    return text;
+  }
+
+  void write_diagnosis(const Robot& robot, const Diagnosis& result) const {
+    OutputFile file(output_);
+    file.write(
+        "rank,verdict,effect,class,joint,p_value,explained_share,amplitude,amplitude_std,unit,shape_parameters,confusable_with,"
+        "region,rms_before,rms_after,rms_floor\n");
+    if (result.named.empty()) {
+      file.print("1,{},,,,{},{},,,,,,{},,,\n", verdict_name(result.verdict), result.p_value, result.explained_share,
+                 clean(result.region));
+    }
+    const bool unknown = result.verdict == DiagnosisVerdict::unknown_structure;
+    int rank = 0;
+    for (const NamedEffect& one : result.named) {
+      ++rank;
+      const EffectKind& kind = effect_kind(one.effect.id);
+      const char* verdict =
+          unknown ? verdict_name(result.verdict)
+                  : (one.confusable.empty() ? verdict_name(DiagnosisVerdict::named) : verdict_name(DiagnosisVerdict::confusable));
+      if (unknown) {
+        // The name that does not suffice is no name: it stands in the report only.
+        file.print("{},{},,,,{},{},,,,,,{},{},{},{}\n", rank, verdict, one.p_value, one.explained_share, clean(result.region),
+                   one.rms_before, one.rms_before, one.rms_floor);
+        break;
+      }
+      std::string shape = effect_shape_text(one.effect, robot.description());
+      for (std::size_t k = 1; k < kind.amplitudes.size(); ++k) {
+        shape += fmt::format("{}{}={:.6g} {}", shape.empty() ? "" : "; ", kind.amplitudes[k].name,
+                             one.effect.amplitude(static_cast<Eigen::Index>(k)),
+                             effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
+      }
+      file.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", rank, rank == 1 ? verdict_name(result.verdict) : verdict,
+                 one.name, one.effect_class, one.joint, one.p_value, one.explained_share, one.effect.amplitude(0),
+                 one.effect.amplitude_std.size() > 0 ? one.effect.amplitude_std(0) : 0.0,
+                 effect_unit(kind.amplitudes[0].unit, one.effect.joint, robot.description()), clean(shape),
+                 joined(one.confusable), clean(one.region), one.rms_before, one.rms_after, one.rms_floor);
+    }
+    file.commit();
+  }
+
+  /// The improved parameters; without a named effect those of the model, so that a chain of tools always finds a file.
+  void write_improved(const Robot& robot, const ParameterTable& before, const Diagnosis& result) const {
+    if (!result.improved) {
+      ParameterTable same = before;
+      write_parameters(params_out_, same);
+      return;
+    }
+    ParameterTable table;
+    const ConsistentFitSummary& fit = result.improved->fit;
+    for (int k = 0; k < robot.parameters(); ++k) {
+      ParameterEntry entry;
+      entry.name = robot.parameter_names()[static_cast<std::size_t>(k)];
+      entry.unit = robot.parameter_units()[static_cast<std::size_t>(k)];
+      entry.value = fit.p(k);
+      entry.std = fit.std(k);
+      entry.prior = fit.prior(k);
+      entry.data_share = fit.data_share(k);
+      table.entries.push_back(std::move(entry));
+    }
+    write_parameters(params_out_, table);
+  }
+
+  void plan_next(const Robot& robot, const Diagnosis& result, const Eigen::VectorXd& p, const ToolRun& run) const {
+    const std::optional<NextExperiment> plan = plan_next_experiment(robot, result, p, run.seed);
+    if (!plan) {
+      fmt::print("note: {} is not written: there is no set of effects to tell apart\n", plan_file_);
+      return;
+    }
+    write_trajectory(plan_file_, plan->samples, robot.description(), plan->note);
+    fmt::print("{}; wrote {}\n", plan->note, plan_file_);
+  }
+
+  void tell(const Diagnosis& result, ToolRun& run) const {
+    fmt::print("{}\n", result.headline);
+    for (const std::string& line : result.lines) fmt::print("  {}\n", line);
+    if (std::isfinite(result.gap_shrink)) {
+      fmt::print(
+          "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to {:.1f} "
+          "%).\n",
+          100 * result.gap_shrink, 100 * result.gap_low, 100 * result.gap_high);
+    }
+    for (const std::string& line : result.next) fmt::print("next: {}\n", line);
+    for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
+    fmt::print("drive   rms residual   with effects   noise floor   structure\n");
+    Summary& out = run.summary;
+    for (std::size_t j = 0; j < result.drives.size(); ++j) {
+      const DriveFit& drive = result.drives[j];
+      fmt::print("{:>5}   {:>12.4g}   {:>12.4g}   {:>11.4g}   {:>7.1f} %\n", j + 1, drive.rms, drive.rms_after, drive.floor,
+                 100 * drive.structure);
+    }
+    out.add("verdict", verdict_name(result.verdict));
+    const bool name = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;
+    out.add("effect", name ? result.named.front().name : "");
+    out.add("class", name ? result.named.front().effect_class : "");
+    out.add("joint", name ? result.named.front().joint : "");
+    out.add("effects", name ? static_cast<int>(result.named.size()) : 0);
+    out.add("p_value", result.p_value);
+    out.add("explained_share", result.explained_share);
+    if (name) {
+      out.add("amplitude", result.named.front().effect.amplitude(0));
+      out.add("confusable_with", joined(result.named.front().confusable));
+    }
+    if (std::isfinite(result.gap_shrink)) out.add("gap_shrink", result.gap_shrink);
+    if (result.needed_s) out.add("needed_length_s", *result.needed_s, "s");
+    if (result.cutoff_hz > 0) out.add("cutoff_hz", result.cutoff_hz, "Hz");
+    for (std::size_t j = 0; j < result.drives.size(); ++j) {
+      out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms);
+      out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor);
+    }
+    out.add("null_runs", result.null_runs);
+    out.add("total_time_s", result.total_time_s, "s");
+  }
+
+  std::string command_line_, robot_file_, parameter_file_, effect_file_, holdout_file_, output_, effects_out_, params_out_,
+      report_file_, plan_file_;
+  std::vector<std::string> log_files_;
+  DiagnosisOptions options_;
+  bool list_ = false;
+  tools::ProcessingFlags processing_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Diagnose diagnose(argc, argv);
+  return tools::run_tool(
+      argc, argv,
+      {"delta-diagnose",
+       "Find which physical effect a model misses: where it fails, the effect's name and size, the model with it, and the "
+       "proof on a log that took no part.",
+       "delta-diagnose robot.urdf --params params.csv fast.csv slow.csv --holdout check.csv -o diagnosis.csv "
+       "--effects-out effects.csv --params-out improved.csv --report diagnosis.html"},
+      [&](CLI::App& app, ToolRun& run) { diagnose.add_to(app, run); });
+}
