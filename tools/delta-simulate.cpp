@@ -235,6 +235,7 @@ class Simulate {
       out.add("integration_steps", result.counts.steps);
       out.add("work", result.work, "J");
       out.add("losses", result.losses, "J");
+      out.add("energy_imbalance", result.energy_change - (result.work - result.losses), "J");
     }
     fmt::print("wrote {}\n", output_);
   }

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "deltadyn/dynamics/equations_of_motion.hpp"
 #include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/simulation/mechanism.hpp"
@@ -21,6 +22,7 @@ class MechanismOf final : public Mechanism {
   MechanismOf(const RobotDescription& description, const Eigen::VectorXd& p, const MechanismOptions& options)
       : geometry_(geometry_of<double, R>(description)), p_(p), passive_(options.passive_joints && kHasPlate<R>) {
     for (int j = 0; j < Layout::kFrictionJoints; ++j) p_(Layout::viscous(j)) = p_(Layout::coulomb(j)) = 0;
+    for (int j = 0; j < N; ++j) p_(Layout::kOffset + j) = 0;
     for (int j = 0; j < N && options.home_offset.size() == N; ++j) home_offset_(j) = options.home_offset(j);
     drives_ = N;
     multiplicity_.assign(static_cast<std::size_t>(Layout::kFrictionJoints), 1.0);
@@ -34,13 +36,12 @@ class MechanismOf final : public Mechanism {
 
   Status evaluate(const DriveVector& q, const DriveVector& qd, MechanismTerms& terms) const override {
     Motion<double, R> motion;
-    Drives true_q, rates;
-    for (int j = 0; j < N; ++j) {
-      true_q(j) = q(j) + home_offset_(j);
-      rates(j) = qd(j);
-    }
+    Drives rates;
+    for (int j = 0; j < N; ++j) rates(j) = qd(j);
     if (!rates.allFinite()) return Status::out_of_range;
-    if (const Status status = posture_from_drives(geometry_, true_q, motion.posture); status != Status::ok) return status;
+    if (const Status status = posture_from_drives(geometry_, true_coordinates(q), motion.posture); status != Status::ok) {
+      return status;
+    }
     set_drive_rates<double, R>(geometry_, rates, Drives::Zero(), motion);
     Matrix<double, N, N> M;
     Drives bias;
@@ -63,7 +64,20 @@ class MechanismOf final : public Mechanism {
     return Status::ok;
   }
 
+  Status potential_energy(const DriveVector& q, double& joule) const override {
+    Posture<double, R> posture;
+    const Status status = posture_from_drives(geometry_, true_coordinates(q), posture);
+    if (status == Status::ok) joule = deltadyn::potential_energy<Layout>(geometry_, posture, p_);
+    return status;
+  }
+
  private:
+  Drives true_coordinates(const DriveVector& q) const {
+    Drives coordinates;
+    for (int j = 0; j < N; ++j) coordinates(j) = q(j) + home_offset_(j);
+    return coordinates;
+  }
+
   void set_joints(const Motion<double, R>& motion, MechanismTerms& terms) const {
     const int count = joints();
     if (terms.J.rows() != count || terms.J.cols() != N) {

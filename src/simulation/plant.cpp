@@ -1,6 +1,7 @@
 #include "deltadyn/simulation/plant.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,7 +29,20 @@ using CoordinateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxCoordinates>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 
-constexpr double kShortestStep = 1e-13;  // [s]
+constexpr double kShortestStep = 1e-13;   // [s]
+constexpr double kBeyondAnyForce = 1e30;  // [N m | N]
+constexpr int kMostStalls = 20;           // events within a nanosecond of one another
+constexpr double kHoldUndecided = 1e-4;   // [s]
+
+/// Smallest u with A u = b. Joints whose rates depend on one another (all limbs and the telescope) make A singular.
+JointVector least_forces(const JointMatrix& A, const JointVector& b) {
+  constexpr double kRankThreshold = 1e-9;
+  if (A.rows() == 1) return b / A(0, 0);
+  Eigen::CompleteOrthogonalDecomposition<JointMatrix> decomposition(A.rows(), A.cols());
+  decomposition.setThreshold(kRankThreshold);
+  decomposition.compute(A);
+  return decomposition.solve(b);
+}
 
 }  // namespace
 
@@ -49,6 +63,7 @@ struct Plant::Impl {
     x.setZero(size());
     direction.assign(at(joints), 0);
     bristle.resize(at(joints));
+    held_until.assign(at(joints), -1.0);
     tau_start = tau_end = DriveVector::Zero(n);
   }
 
@@ -177,10 +192,7 @@ struct Plant::Impl {
     }
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxJoints> MinvJ =
         terms.cholesky.solve(J.transpose());
-    JointMatrix A = J * MinvJ;
-    // Joints whose rates depend on one another (all limbs and the telescope) share their force; a trace of stiffness says how.
-    A.diagonal() *= 1 + 1e-11;
-    const JointVector u = A.ldlt().solve(-(J * out.acceleration + bias));
+    const JointVector u = least_forces(J * MinvJ, -(J * out.acceleration + bias));
     out.acceleration += MinvJ * u;
     for (int k = 0; k < held; ++k) {
       out.transmitted(rows[at(k)]) = u(k);
@@ -238,6 +250,11 @@ struct Plant::Impl {
 
   /// What a joint at rest can pass on: between sliding up and sliding down.
   void bounds(int j, double time, const State& state, const Terms& terms, double side_load, double& low, double& high) const {
+    if (time < held_until[at(j)]) {
+      low = -kBeyondAnyForce;
+      high = kBeyondAnyForce;
+      return;
+    }
     const double tau = torque_of_joint(j, time);
     JointMotion motion = motion_of(j, time, state, terms, 1, side_load);
     motion.rate = 0;
@@ -324,11 +341,7 @@ struct Plant::Impl {
     for (Eigen::Index k = 0; k < count; ++k) J.row(k) = scratch.J.row(rest[static_cast<std::size_t>(k)]);
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxJoints> MinvJ =
         scratch.cholesky.solve(J.transpose());
-    JointMatrix A = J * MinvJ;
-    A.diagonal() *= 1 + 1e-11;
-    const JointVector rates = J * state.segment(c, c);
-    const JointVector impulse = A.ldlt().solve(rates);
-    state.segment(c, c) -= MinvJ * impulse;
+    state.segment(c, c) -= MinvJ * least_forces(J * MinvJ, J * state.segment(c, c));
     for (int j = 0; j < n; ++j) {
       if (stuck(j)) state(c + coordinate_of_drive[at(j)]) = 0;
     }
@@ -424,6 +437,19 @@ struct Plant::Impl {
     settle(true);
   }
 
+  /// Joints that turn within rounding of rest count as stuck for a moment, whatever they carry.
+  void hold_undecided() {
+    if (terms_at(x, scratch) != Status::ok) lost("is in a pose that cannot be");
+    for (int j = 0; j < joints; ++j) {
+      if (!parts.laws[at(j)].minds_reversals() || std::abs(scratch.robot.rate(j)) > 1e-9) continue;
+      if (direction[at(j)] != 0) note_bristle(j, scratch);
+      direction[at(j)] = 0;
+      held_until[at(j)] = now + kHoldUndecided;
+      ++counts.undecided;
+    }
+    settle(false);
+  }
+
   void accept(double h, const State& next) {
     if (any_stuck()) counts.stuck_s += h;
     x = next;
@@ -475,10 +501,10 @@ struct Plant::Impl {
       if (least_rate(next) < 0 || breaks_loose(now + h, next)) {
         const double before = now;
         go_to_event(h);
-        // Rounding may leave a joint undecided between sticking and sliding; then time must go on all the same.
+        // Rounding may leave a joint undecided between sticking and sliding, over and over: hold it for a moment.
         stalled = now - before < 1e-9 ? stalled + 1 : 0;
-        if (stalled > 20) {
-          accept(std::min(1e-7, end - now), State(x));
+        if (stalled > kMostStalls) {
+          hold_undecided();
           stalled = 0;
         }
         continue;
@@ -506,6 +532,7 @@ struct Plant::Impl {
   double command_time = 0;
   std::vector<int> direction;  ///< +1, -1, 0 stuck; means nothing for joints that do not mind reversals
   std::vector<Bristle> bristle;
+  std::vector<double> held_until;  ///< times before which a joint does not break loose
   PlantCounts counts;
   Terms scratch;
   Solution solution;
@@ -540,6 +567,7 @@ void Plant::start(const DriveVector& q, const DriveVector& qd) {
   }
   m.now = m.command_time = 0;
   m.counts = {};
+  std::fill(m.held_until.begin(), m.held_until.end(), -1.0);
   m.x.setZero(m.size());
   m.x.head(m.n) = q;
   m.x.segment(c, m.n) = qd;
@@ -644,12 +672,14 @@ double Plant::losses() const {
   return impl_->x(impl_->size() - 1);
 }
 
-double Plant::kinetic_and_spring_energy() const {
+double Plant::energy() const {
   const Impl& m = *impl_;
   Impl::Terms terms;
+  double energy = 0;
   if (m.terms_at(m.x, terms) != Status::ok) return std::nan("");
+  if (m.parts.mechanism->potential_energy(m.x.head(m.n), energy) != Status::ok) return std::nan("");
   const Coordinates yd = m.x.segment(m.coordinates(), m.coordinates());
-  double energy = 0.5 * yd.dot(terms.M * yd);
+  energy += 0.5 * yd.dot(terms.M * yd);
   for (int e = 0; e < m.soft; ++e) {
     const detail::SoftDrive& spring = m.parts.soft[Impl::at(e)];
     energy += spring.energy(m.x(m.n + e) - m.x(spring.drive));

@@ -14,9 +14,9 @@ namespace deltadyn::detail {
 namespace {
 
 // What the catalogue's one number leaves open about a real spring or real play.
-constexpr double kMotorShare = 0.3;        // of a drive's inertia that sits before the spring
-constexpr double kLeastMotorShare = 0.02;  // a motor without inertia has no motion of its own
-constexpr double kDampingRatio = 0.02;     // of a steel shaft with its bearings
+constexpr double kMotorShare = 0.6;        // of a drive's inertia that sits before the spring: rotor and gear of a fast robot
+constexpr double kLeastMotorShare = 0.3;   // before play: a motor much lighter than its load cannot be controlled across it
+constexpr double kDampingRatio = 0.05;     // of a gear with its bearings
 constexpr double kFlankFrequencyHz = 250;  // resonance of motor and load while a flank carries
 
 /// Parameters by name, every limb on its own.
@@ -76,6 +76,13 @@ class Builder {
       }
       const std::string joint = j < n ? fmt::format("drive{}", j + 1) : "telescope";
       parts_.laws.emplace_back(values_[joint + ".viscous"], values_[joint + ".coulomb"]);
+      if (j < n && values_[joint + ".offset"] != 0) {
+        Effect offset;
+        offset.id = EffectId::asymmetric_coulomb;
+        offset.joint = j;
+        offset.amplitude = Eigen::VectorXd::Constant(1, values_[joint + ".offset"]);
+        parts_.laws.back().add(offset);
+      }
     }
     for (const Effect& effect : effects) {
       if (!FrictionLaw::takes(effect.id)) continue;
@@ -175,7 +182,7 @@ class Builder {
     soft.gap = effect.shape(0);
     const double reduced = soft.motor_inertia * (inertia - soft.motor_inertia) / inertia;
     soft.stiffness = reduced * std::pow(2 * std::numbers::pi * kFlankFrequencyHz, 2);
-    if (!(reduced > 0)) refuse(effect, "no load would be left behind the gap", "give a share above 0.02");
+    if (!(reduced > 0)) refuse(effect, "no load would be left behind the gap", "give a smaller share");
     set_damping(soft, inertia);
   }
 

@@ -9,6 +9,8 @@
 namespace deltadyn {
 namespace {
 
+constexpr double kLost = 1.0;  // a drive this far from its reference [rad | m] is not controlled any more
+
 /// Ratio of two rates, which must be a whole number.
 int whole_ratio(double high, double low) {
   const double ratio = high / low;
@@ -109,7 +111,7 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
   DriveVector limit(n);
   for (int j = 0; j < n; ++j) limit(j) = model.description().limits[static_cast<std::size_t>(j)].effort;
   plant.start(wanted.q, wanted.qd);
-  const double energy = plant.kinetic_and_spring_energy();
+  const double energy = plant.energy();
   DriveVector tau_before, qdd_before;
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(n);
   result.largest_error = Eigen::VectorXd::Zero(n);
@@ -139,6 +141,14 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
       record.tau.row(row) = 0.5 * (tau_before + tau_now);
       record.reading.row(row) = reading;
       const Eigen::VectorXd error = wanted.q - record.q.row(row).transpose();
+      if (!(error.cwiseAbs().maxCoeff() < kLost)) {
+        throw Error(
+            fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: the loop is unstable or too "
+                        "weak",
+                        time, error.cwiseAbs().maxCoeff()),
+            "simulation", "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains",
+            ExitCode::no_convergence);
+      }
       squares += error.cwiseAbs2();
       result.largest_error = result.largest_error.cwiseMax(error.cwiseAbs());
     }
@@ -152,7 +162,7 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
   result.counts = plant.counts();
   result.work = plant.work();
   result.losses = plant.losses();
-  result.energy_change = plant.kinetic_and_spring_energy() - energy;
+  result.energy_change = plant.energy() - energy;
   return result;
 }
 

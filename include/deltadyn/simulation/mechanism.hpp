@@ -27,7 +27,7 @@ using JointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJ
 /// Everything at one state (q, qd). tau = M qdd + bias + sum_j J_j^T F_j with the forces F_j that joint j resists with.
 struct MechanismTerms {
   DriveMatrix M;                                     ///< mass matrix with rotor inertias
-  DriveVector bias;                                  ///< C qd + g + offsets, without friction [N m | N]
+  DriveVector bias;                                  ///< C qd + g, without friction and offsets [N m | N]
   JointVector position;                              ///< of each joint [rad | m]; of passive joints 0: nothing depends on it
   JointVector rate;                                  ///< J qd [rad/s | m/s]
   JointVector bias_rate;                             ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
@@ -51,6 +51,8 @@ class Mechanism {
   virtual ~Mechanism() = default;
   /// q is what the encoders know; out of reach or singular poses are told by the status.
   [[nodiscard]] virtual Status evaluate(const DriveVector& q, const DriveVector& qd, MechanismTerms& terms) const = 0;
+  /// Of the bodies under gravity [J], zero for a mass at the origin of the base frame.
+  [[nodiscard]] virtual Status potential_energy(const DriveVector& q, double& joule) const = 0;
   [[nodiscard]] int drives() const { return drives_; }
   /// Drives, then the telescope's prismatic joint, then passive joints.
   [[nodiscard]] int joints() const { return static_cast<int>(multiplicity_.size()); }
@@ -66,7 +68,7 @@ class Mechanism {
 /// Names of the columns that make_mechanism() wants: every limb on its own, tool, all rotor inertias and offsets.
 [[nodiscard]] std::vector<std::string> mechanism_parameter_names(const RobotDescription& description);
 
-/// \param p  one value for each of mechanism_parameter_names(); friction in it is ignored, it is the plant's business
+/// \param p  one value for each of mechanism_parameter_names(); friction and offsets in it are ignored, they are the plant's business
 /// Throws deltadyn::Error if the description is not a robot we know.
 [[nodiscard]] std::unique_ptr<Mechanism> make_mechanism(const RobotDescription& description, const Eigen::VectorXd& p,
                                                         const MechanismOptions& options = {});

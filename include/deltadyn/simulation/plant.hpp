@@ -32,6 +32,7 @@ struct PlantCounts {
   long steps = 0, rejected_steps = 0, evaluations = 0;
   long reversals = 0;   ///< joints that came to rest, and went on or stuck
   long breakaways = 0;  ///< joints that broke loose
+  long undecided = 0;   ///< joints held for 0.1 ms, because rounding left open whether they stick
   double stuck_s = 0;   ///< time with at least one joint stuck [s]
 };
 
@@ -69,8 +70,8 @@ class Plant {
   /// Work of the drives and losses in friction, springs' dampers, drag and hoses since start() [J].
   [[nodiscard]] double work() const;
   [[nodiscard]] double losses() const;
-  /// Kinetic energy and energy of springs in elastic drives [J].
-  [[nodiscard]] double kinetic_and_spring_energy() const;
+  /// Kinetic and potential energy, and that of springs in elastic drives [J].
+  [[nodiscard]] double energy() const;
 
   /// Torque of the drives that a given motion takes, effects included, without integrating anything; for studies free of control.
   /// Effects with memory go on from the sample before. A joint at exactly rate 0 has no Coulomb friction, as in the regressor.
