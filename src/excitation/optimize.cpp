@@ -236,9 +236,10 @@ std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& can
 }
 
 struct RunCount {
-  int finished = 0;
+  int planned = 1;
+  int done = 0, cut = 0;  ///< searches that ran; those of them that were ended early
+  int left_out = 0;       ///< for lack of time
   long evaluations = 0;
-  int done = 0, planned = 1;
 };
 
 }  // namespace
@@ -314,10 +315,16 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
     {
       run.evaluations += evaluations;
       ++run.done;
-      if (!clock.over()) ++run.finished;
+      run.cut += clock.over() ? 1 : 0;
       if (options.progress)
         options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
     }
+  };
+  const auto no_time = [&] {
+    if (!clock.over()) return false;
+#pragma omp critical(deltadyn_excitation_count)
+    ++run.left_out;
+    return true;
   };
   const auto attempt = [&](std::size_t k, const std::optional<FourierSeries>& start, bool polish) {
     long evaluations = 0;
@@ -340,14 +347,14 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   }
   in_parallel(random_starts, [&](int k) {
     // The first start is always made, so that there is an answer however short the time.
-    if (k > 0 && clock.over()) return;
+    if (k > 0 && no_time()) return;
     attempt(static_cast<std::size_t>(k), search.random_start(mixed(seed, static_cast<std::uint64_t>(k))), false);
   });
   const std::vector<std::size_t> parents = ranked(found);
   if (!parents.empty()) {
     const std::vector<std::optional<Candidate>> before = found;
     in_parallel(starts - random_starts, [&](int k) {
-      if (clock.over()) return;
+      if (no_time()) return;
       const std::size_t parent = parents[static_cast<std::size_t>(k) % std::min<std::size_t>(3, parents.size())];
       const auto number = static_cast<std::size_t>(random_starts + k);
       attempt(number, search.kicked(before[parent]->series, mixed(seed, number)), false);
@@ -356,7 +363,7 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   const std::vector<std::size_t> best = ranked(found);
   const std::vector<std::optional<Candidate>> before = found;
   in_parallel(static_cast<int>(std::min<std::size_t>(kPolished, best.size())), [&](int k) {
-    if (clock.over()) return;
+    if (no_time()) return;
     attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true);
   });
   for (int k = 0; k < starts; ++k) {
@@ -401,11 +408,13 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
   const int rounds = count == 1 ? 1 : 2;
   RunCount run;
   run.planned = static_cast<int>(count) * rounds * (starts + kPolished);
-  result.starts = run.planned;
   const double share = 1.0 / static_cast<double>(count);
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < count; ++k) {
-      if (series[k] && clock.over()) continue;
+      if (series[k] && clock.over()) {
+        ++run.left_out;
+        continue;
+      }
       // In the first round the segments that are still to come count as nothing.
       MatrixXd other;
       for (std::size_t j = 0; j < count; ++j) {
@@ -453,9 +462,10 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
   const CriterionValue value = evaluate(options.criterion, result.information);
   result.value = value.regular ? value.value : -std::numeric_limits<double>::infinity();
   result.evaluations = run.evaluations;
-  result.finished_starts = run.finished;
+  result.starts = run.done + run.left_out;
+  result.finished_starts = run.done - run.cut;
   result.interrupted = clock.interrupted();
-  result.out_of_time = !result.interrupted && run.finished < result.starts;
+  result.out_of_time = !result.interrupted && result.finished_starts < result.starts;
   result.total_time_s = clock.seconds();
   return result;
 }

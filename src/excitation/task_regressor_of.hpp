@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
-#include <unsupported/Eigen/AutoDiff>
 #include <vector>
 
+#include "deltadyn/core/dual.hpp"
 #include "deltadyn/dynamics/regressor.hpp"
 #include "deltadyn/excitation/task_regressor.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
@@ -25,7 +25,7 @@ class TaskRegressorOf final : public TaskRegressor {
   static constexpr int N = R::kDrives;
   static constexpr int kState = 3 * N;
   using State = deltadyn::Vector<double, kState>;
-  using Jet = Eigen::AutoDiffScalar<State>;
+  using Jet = Dual<double, kState>;
   using Drives = deltadyn::Vector<double, N>;
   using JetDrives = deltadyn::Vector<Jet, N>;
   using Full = Matrix<double, N, Layout::kColumns>;
@@ -60,14 +60,8 @@ class TaskRegressorOf final : public TaskRegressor {
 
   Status differentiate(Vec x, Vec sign_width, const Eigen::Ref<const Eigen::MatrixXd>& G_columns,
                        Eigen::Ref<Eigen::VectorXd> gradient, Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
-    JetDrives z, zd, zdd;
-    for (int i = 0; i < N; ++i) {
-      z(i) = Jet(x(i), kState, i);
-      zd(i) = Jet(x(N + i), kState, N + i);
-      zdd(i) = Jet(x(2 * N + i), kState, 2 * N + i);
-    }
     Motion<Jet, R> motion;
-    const Status status = motion_from_task(jet_geometry_, z, zd, zdd, motion);
+    const Status status = jet_motion(x, motion);
     if (status != Status::ok) return status;
     Full G = Full::Zero();
     for (std::size_t k = 0; k < columns_.size(); ++k) G.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k));
@@ -79,24 +73,24 @@ class TaskRegressorOf final : public TaskRegressor {
     });
     for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
       const auto f = friction_joint(motion, joint);
-      const double v = f.rate.value(), w = sign_width.size() > 0 ? sign_width(joint) : 0.0;
+      const double v = f.rate.value, w = sign_width.size() > 0 ? sign_width(joint) : 0.0;
       const double root = std::hypot(v, w);
       const double sign = root > 0 ? v / root : 0.0;
       const double slope = w > 0 ? w * w / (root * root * root) : 0.0;
       double by_rate = 0;
       for (int i = 0; i < N; ++i) {
         const double viscous = G(i, Layout::viscous(joint)), coulomb = G(i, Layout::coulomb(joint));
-        by_rate += (viscous + coulomb * slope) * f.J(i).value();
-        sum += (viscous * v + coulomb * sign) * f.J(i).derivatives();
+        by_rate += (viscous + coulomb * slope) * f.J(i).value;
+        sum += (viscous * v + coulomb * sign) * f.J(i).slope;
       }
-      sum += by_rate * f.rate.derivatives();
+      sum += by_rate * f.rate.slope;
     }
-    for (int i = 0; i < N; ++i) sum += G(i, Layout::kRotorInertia + i) * motion.qdd(i).derivatives();
+    for (int i = 0; i < N; ++i) sum += G(i, Layout::kRotorInertia + i) * motion.qdd(i).slope;
     gradient = sum;
     for (int i = 0; i < N; ++i) {
-      jacobian.row(i) = motion.posture.q(i).derivatives().transpose();
-      jacobian.row(N + i) = motion.qd(i).derivatives().transpose();
-      jacobian.row(2 * N + i) = motion.qdd(i).derivatives().transpose();
+      jacobian.row(i) = motion.posture.q(i).slope.transpose();
+      jacobian.row(N + i) = motion.qd(i).slope.transpose();
+      jacobian.row(2 * N + i) = motion.qdd(i).slope.transpose();
     }
     return Status::ok;
   }
@@ -104,9 +98,36 @@ class TaskRegressorOf final : public TaskRegressor {
  private:
   using Vec3 = deltadyn::Vector3<double>;
 
-  static Vec3 value(const deltadyn::Vector3<Jet>& v) { return {v.x().value(), v.y().value(), v.z().value()}; }
+  /// The motion of a task-space state with its derivatives by all of the state.
+  Status jet_motion(Vec x, Motion<Jet, R>& motion) const {
+    // Inverse kinematics in plain numbers; a drive's derivative by z is its rate for a unit rate of z.
+    Motion<double, R> still;
+    const Drives z = x.template head<N>(), none = Drives::Zero();
+    Status status = motion_from_task(geometry_, z, none, none, still);
+    if (status != Status::ok) return status;
+    JetDrives jet_z, jet_zd, jet_zdd, jet_q;
+    for (int i = 0; i < N; ++i) {
+      jet_z(i) = Jet(x(i), State::Unit(i));
+      jet_zd(i) = Jet(x(N + i), State::Unit(N + i));
+      jet_zdd(i) = Jet(x(2 * N + i), State::Unit(2 * N + i));
+      jet_q(i) = Jet(still.posture.q(i));
+    }
+    for (int k = 0; k < N; ++k) {
+      Drives qd, unused;
+      status = drive_rates(geometry_, still.posture, Drives(Drives::Unit(k)), none, qd, unused);
+      if (status != Status::ok) return status;
+      for (int i = 0; i < N; ++i) jet_q(i).slope(k) = qd(i);
+    }
+    status = assemble_posture(jet_geometry_, jet_q, jet_z, motion.posture);
+    JetDrives jet_qd, jet_qdd;
+    if (status == Status::ok) status = drive_rates(jet_geometry_, motion.posture, jet_zd, jet_zdd, jet_qd, jet_qdd);
+    if (status == Status::ok) set_drive_rates(jet_geometry_, jet_qd, jet_qdd, motion);
+    return status;
+  }
+
+  static Vec3 value(const deltadyn::Vector3<Jet>& v) { return {v.x().value, v.y().value, v.z().value}; }
   static void add(State& sum, const Vec3& weight, const deltadyn::Vector3<Jet>& v) {
-    sum += weight.x() * v.x().derivatives() + weight.y() * v.y().derivatives() + weight.z() * v.z().derivatives();
+    sum += weight.x() * v.x().slope + weight.y() * v.y().slope + weight.z() * v.z().slope;
   }
 
   /// Gradient of sum_ij G_ij (J_v' F + J_w' M)_ij with the force and moment regressors F, M of the body. With the rows of G as
