@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/identification/effect_torque.hpp"
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/mass_matrix_survey.hpp"
 #include "deltadyn/identification/validate.hpp"
+#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
@@ -43,6 +45,9 @@ class Identify {
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
     app.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
         ->type_name("FILE");
+    app.add_option("--effects", effect_file_, "effects that the model holds (CSV); their amplitudes are estimated along")
+        ->type_name("FILE");
+    app.add_option("--effects-out", effects_out_, "the effects with their new amplitudes (CSV)")->type_name("FILE");
     app.add_option("--parameters", set_, "reduced: section VI of the paper; full: ten a body")
         ->check(CLI::IsMember({"reduced", "full"}))
         ->capture_default_str();
@@ -67,8 +72,8 @@ class Identify {
  private:
   ExitCode execute(ToolRun& run) {
     std::vector<std::string> inputs = log_files_;
-    inputs.insert(inputs.end(), {robot_file_, prior_file_});
-    run.check_files({output_, base_file_, report_file_}, inputs);
+    inputs.insert(inputs.end(), {robot_file_, prior_file_, effect_file_});
+    run.check_files({output_, base_file_, report_file_, effects_out_}, inputs);
     if (!report_file_.empty() && !gnuplot_available()) {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     }
@@ -81,12 +86,18 @@ class Identify {
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
-    const Identification result = identify_from(*robot, logs, prior, prior_std, with_progress);
+    std::vector<Effect> effects;
+    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
+    const Identification result = identify_from(*robot, logs, prior, prior_std, with_progress, effects);
+    if (!effects.empty()) tell_effects(description, effects);
+    if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
 
     write_parameters(output_, parameter_table(*robot, result));
     if (!base_file_.empty()) write_base(result);
-    const Validation training = validate(*robot, logs, result.fit.p, result.processing);
+    const Validation training =
+        validate(*robot, without_effects(*robot, logs, result.fit.p, effects, result.processing.cutoff_hz), result.fit.p,
+                 result.processing);
     const Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     if (!report_file_.empty()) {
       ReportContext context;
@@ -101,10 +112,11 @@ class Identify {
 
   /// The fit knows that a prior is impossible, but not the file that it came from.
   Identification identify_from(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
-                               const Eigen::VectorXd& prior_std, const IdentificationOptions& options) const {
+                               const Eigen::VectorXd& prior_std, const IdentificationOptions& options,
+                               std::vector<Effect>& effects) const {
     const std::string mark = "prior, ";
     try {
-      return identify(robot, logs, prior, prior_std, options);
+      return identify_with_effects(robot, logs, prior, prior_std, options, effects);
     } catch (const Error& e) {
       if (e.code() == ExitCode::no_convergence) {
         throw Error(
@@ -115,6 +127,18 @@ class Identify {
       }
       if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
       throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
+    }
+  }
+
+  static void tell_effects(const RobotDescription& robot, const std::vector<Effect>& effects) {
+    for (const Effect& effect : effects) {
+      const EffectKind& kind = effect_kind(effect.id);
+      for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        fmt::print("{} at {}: {} {:.5g} +- {:.2g} {}\n", kind.name, effect_joint_name(effect.id, effect.joint),
+                   kind.amplitudes[k].name, effect.amplitude(at), effect.amplitude_std(at),
+                   effect_unit(kind.amplitudes[k].unit, effect.joint, robot));
+      }
     }
   }
 
@@ -254,7 +278,7 @@ class Identify {
     return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }
 
-  std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_;
+  std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_, effect_file_, effects_out_;
   std::vector<std::string> log_files_;
   std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto";
   bool individual_limbs_ = false, without_tool_ = false, robust_ = false;

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/identification/effect_torque.hpp"
 #include "deltadyn/identification/residual_structure.hpp"
 #include "deltadyn/identification/validate.hpp"
+#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
@@ -33,6 +35,7 @@ class Validate {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV)")->required()->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
+    app.add_option("--effects", effect_file_, "effects that belong to the model (CSV)")->type_name("FILE");
     app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")
         ->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
@@ -44,7 +47,7 @@ class Validate {
   void execute(ToolRun& run) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> inputs = log_files_;
-    inputs.insert(inputs.end(), {robot_file_, parameter_file_});
+    inputs.insert(inputs.end(), {robot_file_, parameter_file_, effect_file_});
     run.check_files({output_, report_file_}, inputs);
     if (!report_file_.empty() && !gnuplot_available()) {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
@@ -60,7 +63,14 @@ class Validate {
     if (options.filter && processing_.automatic_cutoff()) {
       options.cutoff_hz = best_cutoff_hz(scan_cutoffs(*robot, logs, options, 0, [&bar](double share) { bar.update(share); }));
     }
-    const Validation result = validate(*robot, logs, match.value, options);
+    std::vector<Effect> effects;
+    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
+    if (!effects.empty() && !options.filter) {
+      throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
+    }
+    Validation result =
+        validate(*robot, without_effects(*robot, logs, match.value, effects, options.cutoff_hz), match.value, options);
+    if (!effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, result);
     if (!report_file_.empty()) {
       ReportContext context;
@@ -75,6 +85,22 @@ class Validate {
     run.summary.add("verdict", tools::verdict_word(assessment.verdict));
     run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
     tools::print_assessment(assessment);
+  }
+
+  /// The effects' torque was taken off the measured one for the residual: give it back to both, so that the tables show the torque as
+  /// it was measured beside the whole model.
+  static void add_effects(const Robot& robot, const std::vector<Log>& logs, Validation& result) {
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      const Eigen::MatrixXd measured = low_passed_rows_of(robot, logs[k], result.processing);
+      Prediction& prediction = result.logs[k].prediction;
+      prediction.model += measured - prediction.tau;
+      prediction.tau = measured;
+    }
+  }
+
+  static Eigen::MatrixXd low_passed_rows_of(const Robot& robot, const Log& log, const ProcessingOptions& processing) {
+    const PreparedLog prepared = prepare_log(robot, log, processing);
+    return low_passed_rows(prepared, prepared.tau);
   }
 
   void write_residuals(const RobotDescription& robot, const Validation& result) const {
@@ -133,7 +159,7 @@ class Validate {
     if (!report_file_.empty()) fmt::print("wrote {}\n", report_file_);
   }
 
-  std::string command_line_, robot_file_, output_, report_file_, parameter_file_;
+  std::string command_line_, robot_file_, output_, report_file_, parameter_file_, effect_file_;
   std::vector<std::string> log_files_;
   tools::ProcessingFlags processing_;
 };

@@ -33,6 +33,7 @@ struct SearchResult {
   Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
   std::vector<AcceptedEffect> accepted;
   std::vector<Fit> fits;                           ///< of the accepted effects
+  std::vector<bool> hygiene;                       ///< a skew of about a sample: corrected, but nobody's missing effect
   std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
 };
 

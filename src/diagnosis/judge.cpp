@@ -279,6 +279,13 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
+    if (found.hygiene[k]) {
+      out.effects.push_back(fit.effect);
+      out.notes.push_back(fmt::format(
+          "torque and positions of {} are {:.2g} ms apart, at most about one sample: corrected, not counted as an effect",
+          hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+      continue;
+    }
     NamedEffect one;
     one.effect = fit.effect;
     one.name = hypothesis.name();

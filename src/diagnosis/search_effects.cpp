@@ -15,15 +15,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
-constexpr double kFormError = 0.03;  // of a plain effect's gain: what the catalogue's form may leave of the true one
+constexpr double kProvisional = 20;      // gain that lets an effect into the noise model before the null is known
+constexpr double kFormError = 0.12;      // of a plain effect's gain: what the catalogue's form may leave of the true one
+constexpr double kFormElsewhere = 0.03;  // the same for what that form leaves on other drives
 constexpr std::size_t kBestForPairs = 10;
 constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined before they are compared
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
 constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
 constexpr double kBlock_s = 0.25;
-constexpr double kSkewSamples = 0.3;  // a smaller skew than this share of a sample is nobody's missing effect
+constexpr double kSkewSamples = 1.0;  // a skew up to one sample is a matter of who samples when, not of the robot
+constexpr double kLagSamples = 0.5;   // and so is so short a lag
 
 std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
   std::vector<std::size_t> order(state.scores.size());
@@ -52,19 +54,21 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
 }
 
 bool negligible_skew(const SearchContext& context, const Fit& fit) {
-  const EffectId id = fit.effect.id;
-  if (id != EffectId::time_skew && id != EffectId::current_lag) return false;
-  return std::abs(fit.effect.shape(0)) < kSkewSamples / context.logs.front().log.rate_hz;
+  const double samples = fit.effect.shape.size() > 0 ? std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz : 0.0;
+  if (fit.effect.id == EffectId::time_skew) return samples <= kSkewSamples;
+  return fit.effect.id == EffectId::current_lag && samples <= kLagSamples;
 }
 
 /// A second effect where the first one sits already must be more than the error of the first one's form.
 bool form_error(const SearchContext& context, const SearchResult& found, const Fit& fit) {
   const Hypothesis& one = context.search.hypotheses()[fit.hypothesis];
-  for (const Fit& earlier : found.fits) {
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
+    if (found.hygiene[k]) continue;
+    const Fit& earlier = found.fits[k];
     const Hypothesis& other = context.search.hypotheses()[earlier.hypothesis];
-    const bool near =
-        one.joint == other.joint || one.joint < 0 || other.joint < 0 || one.kind().effect_class == other.kind().effect_class;
-    if (near && fit.gain < kFormError * earlier.gain) return true;
+    const bool elsewhere = one.joint != other.joint || one.joint < 0;
+    if (elsewhere && one.joint >= 0 && other.joint >= 0) continue;
+    if (fit.gain < (elsewhere ? kFormElsewhere : kFormError) * earlier.gain) return true;
   }
   return false;
 }
@@ -149,7 +153,6 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
 }
 
 bool counts(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
-  if (negligible_skew(context, fit)) return false;
   const double grid = std::min(fit.grid_gain, fit.gain);
   if (fit.gain < kMaterial * rows_per_drive(context, *state.problem)) return false;
   return found.null.family_p(fit.hypothesis, grid) <= context.options.false_naming_rate;
@@ -206,15 +209,18 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
 
   // Forward.
   state = search.state(found.noise, {}, &pilots);
-  while (static_cast<int>(found.accepted.size()) < options.max_effects) {
+  int named = 0;
+  while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 2) {
     std::optional<Fit> fit = best_fit(search, state);
     if (!fit || !counts(context, found, state, *fit) || form_error(context, found, *fit)) break;
-    // The first of two may have been a mixture: the best pair, if it is worth more than the best single and its follower.
+    found.hygiene.push_back(negligible_skew(context, *fit));
+    named += found.hygiene.back() ? 0 : 1;
     found.accepted.push_back(search.accept(*fit));
     found.fits.push_back(std::move(*fit));
     state = search.state(found.noise, found.accepted, &pilots);
   }
-  if (found.accepted.size() >= 2) {
+  // The first of two may have been a mixture: the best pair, if it is worth more than the best single and its follower.
+  if (found.accepted.size() == 2 && named == 2) {
     const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
     const double forward_gain =
         found.before.problem->r.squaredNorm() -
@@ -241,18 +247,20 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
     if (!others.empty() && !counts(context, found, beside, fit)) {
       found.accepted = std::move(others);
       found.fits.erase(found.fits.begin() + static_cast<std::ptrdiff_t>(k));
+      found.hygiene.erase(found.hygiene.begin() + static_cast<std::ptrdiff_t>(k));
       found.sets.clear();
       k = 0;
       continue;
     }
     // Another hypothesis may fit better now that the others are known.
-    if (const std::optional<Fit> best = best_fit(search, beside);
-        best && search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
+    if (const std::optional<Fit> best = found.hygiene[k] ? std::optional<Fit>() : best_fit(search, beside);
+        best && !negligible_skew(context, *best) &&
+        search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
       fit = *best;
     }
     const VectorXd variance = fit.gram.completeOrthogonalDecomposition().pseudoInverse().diagonal();
     fit.effect.amplitude_std = variance.cwiseMax(0.0).cwiseSqrt();
-    found.sets.push_back(confusable_set(context, found, beside, fit));
+    found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, beside, fit));
     found.accepted[k] = search.accept(fit);
     found.fits[k] = std::move(fit);
     ++k;
