@@ -14,6 +14,23 @@ if [ -z "${DELTADYN_SHARED_DATA:-}" ] && [ -d "$root/../shared/data" ]; then
   export DELTADYN_SHARED_DATA="$root/../shared/data"
 fi
 
+# MuJoCo and Pinocchio, for the tests against them, in an environment of their own below build/. Without them those tests skip.
+if [ -z "${DELTADYN_PYTHON:-}" ]; then
+  environment="$root/build/python"
+  wanted="$root/tests/peers/requirements.txt"
+  if ! cmp -s "$wanted" "$environment/installed.txt"; then
+    echo "installing MuJoCo and Pinocchio for the tests against them ..."
+    if python3 -m venv --clear "$environment" &&
+      timeout 600 "$environment/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: --retries 2 --timeout 30 \
+        -r "$wanted"; then
+      cp "$wanted" "$environment/installed.txt"
+    else
+      echo "test.sh: the packages of tests/peers/requirements.txt could not be installed; the tests against MuJoCo and Pinocchio will skip" >&2
+    fi
+  fi
+  if [ -x "$environment/bin/python3" ]; then export DELTADYN_PYTHON="$environment/bin/python3"; fi
+fi
+
 cd "$root"
 cmake --preset release -DDELTADYN_WARNINGS_AS_ERRORS=ON
 cmake --build --preset release --parallel "$jobs"

@@ -25,6 +25,8 @@ using Rotation = Eigen::Matrix3d;
 // The stiffest that MuJoCo takes: impedance at its upper bound, time constant two steps.
 constexpr const char* kTimestep = "0.0005";
 constexpr const char* kStiff = "0.001 1";
+// Dry friction sticks below |acceleration| / 4000 per s; twice the rate times the time step is where Runge and Kutta turn unstable.
+constexpr const char* kStickingRate = "-1 -4000";
 constexpr const char* kImpedance = "0.9999 0.9999 0.001 0.5 2";
 // A body that turns about an axis needs some inertia about it; this radius of gyration is far below what torque could show.
 constexpr double kSmallestGyration = 1e-5;  // [m]
@@ -129,7 +131,7 @@ class Mjcf {
     set(equality, "solref", kStiff);
     set(equality, "solimp", kImpedance);
     XMLElement* joint = child(defaults, "joint");
-    set(joint, "solreffriction", kStiff);
+    set(joint, "solreffriction", kStickingRate);
     set(joint, "solimpfriction", kImpedance);
     XMLElement* geom = child(defaults, "geom");  // to be looked at only
     set(geom, "contype", "0");
