@@ -173,6 +173,7 @@ class Excite {
       other.seed = run.seed ^ kValidationSeed;
       // Planned for its share of the time, whatever the first one took, so that the same seed gives the same file.
       other.elapsed_s = (1 - kValidationShare) * time_limit_s_;
+      other.planned_time_s = kValidationShare * time_limit_s_;
       other.time_limit_s = time_limit_s_;
       second = make(*robot, space, limits, bound, other);
       write_trajectory(validation_, second->samples, description);

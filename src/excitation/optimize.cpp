@@ -37,7 +37,8 @@ constexpr int kPolishEvaluations = 250;   // of a motion that is polished
 constexpr int kPolished = 4;
 constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
 constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
-constexpr double kShareOfTime = 0.5;    // of the time limit that the starts may plan for
+constexpr double kPreparation_s = 2;    // before the starts and after them
+constexpr double kShareOfTime = 0.6;    // of the time limit that the starts may plan for
 
 int search_samples(int harmonics) {
   return std::max(60, 20 * harmonics);
@@ -385,7 +386,8 @@ int planned_starts(const DesignSpace& space, const ExcitationOptions& options) {
   const double rate = kNominalRate * (4 / n) * (4 / n);
   const double work = static_cast<double>(search_samples(options.harmonics)) * kSearchEvaluations;
   const double rounds = options.speeds.size() == 1 ? 1 : 2 * static_cast<double>(options.speeds.size());
-  const double seconds = kShareOfTime * std::max(0.0, options.time_limit_s - 2) * 2;
+  const double planned = options.planned_time_s > 0 ? options.planned_time_s : options.time_limit_s;
+  const double seconds = kShareOfTime * std::max(0.0, planned - kPreparation_s) * 2;
   const double polish = 2.0 * kPolished;  // in units of starts: twice the samples
   return std::clamp(static_cast<int>(rate * seconds / work / rounds - polish), 4, 400);
 }

@@ -26,7 +26,8 @@ struct ExcitationOptions {
   std::vector<double> speeds = {1.0};      ///< one a segment: share of the velocity limits
   double time_limit_s = 60;                ///< of the search, from `elapsed_s` on
   double elapsed_s = 0;                    ///< spent before, counts for the figures and the limit
-  /// Random starts of each segment; 0: as many as two threads of a desktop machine finish in about half of the time limit.
+  double planned_time_s = 0;               ///< that the starts are planned for; 0: the time limit
+  /// Random starts of each segment; 0: as many as two threads of a desktop machine finish in 60 % of the planned time.
   /// The work is counted in evaluations, so that the result does not depend on the machine unless the time runs out.
   int starts = 0;
   double rate_hz = 1000;  ///< the period becomes a whole number of samples
