@@ -76,8 +76,7 @@ DesignBound design_bound(const DesignSpace& space, const DesignBoundOptions& opt
       ++result.iterations;
       if (largest <= goal || result.iterations >= options.max_iterations) break;
       const double excess = largest - p_real;
-      const double least =
-          p_real * (1 + excess / p_real / 2 - std::sqrt(excess / p_real * (4 + excess / p_real - 4 / p_real)) / 2);
+      const double least = p_real * (1 + excess / 2 - std::sqrt(excess * (4 + excess - 4 / p_real)) / 2);
       std::vector<Index> kept;
       VectorXd shares(w.size());
       for (std::size_t k = 0; k < set.size(); ++k) {

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 
 constexpr int kTriesPerState = 400;  // before the limits count as leaving nothing
 constexpr int kFewest = 50;          // states that a design can start from
+constexpr int kEarlyTries = 20000;   // after which fewer than that are a hopeless case
 
 class StateDraw {
  public:
@@ -93,6 +94,7 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
   int found = 0, unreachable = 0;
   double best_room = -std::numeric_limits<double>::infinity();
   while (found < count && states.drawn < kTriesPerState * count) {
+    if (states.drawn >= kEarlyTries && found < kFewest) break;
     ++states.drawn;
     if (!draw.next(state.x) || regressor.evaluate(state.x, VectorXd(), Y, state.drives) != Status::ok) {
       ++unreachable;

@@ -33,6 +33,7 @@ constexpr int kVerifySamples = 4000;      // of a period
 constexpr int kRankSamples = 600;         // of a period, to compare starts
 constexpr double kLargestStretch = 1.1;   // the smooth limits of the search lie inside the true ones
 constexpr int kSearchEvaluations = 250;   // of a start
+constexpr int kUsualEvaluations = 130;    // that a start takes in the mean
 constexpr int kPolishEvaluations = 250;   // of a motion that is polished
 constexpr int kPolished = 4;
 constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
@@ -384,7 +385,7 @@ int planned_starts(const DesignSpace& space, const ExcitationOptions& options) {
   // A state of N drives is differentiated in 3 N directions at about N joints.
   const double n = space.regressor->drives();
   const double rate = kNominalRate * (4 / n) * (4 / n);
-  const double work = static_cast<double>(search_samples(options.harmonics)) * kSearchEvaluations;
+  const double work = static_cast<double>(search_samples(options.harmonics)) * kUsualEvaluations;
   const double rounds = options.speeds.size() == 1 ? 1 : 2 * static_cast<double>(options.speeds.size());
   const double planned = options.planned_time_s > 0 ? options.planned_time_s : options.time_limit_s;
   const double seconds = kShareOfTime * std::max(0.0, planned - kPreparation_s) * 2;

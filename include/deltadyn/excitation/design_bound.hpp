@@ -12,7 +12,7 @@ namespace deltadyn {
 
 struct DesignBoundOptions {
   double gap = 1e-3;  ///< stop when the bound is within this share of the efficiency of the design found
-  int max_iterations = 4000;
+  int max_iterations = 20000;
 };
 
 /// The best shares of time for states that a motion may pass, whatever their order.
