@@ -6,8 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "deltadyn/dynamics/equations_of_motion.hpp"
+#include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/inverse_dynamics_derivatives.hpp"
+#include "deltadyn/dynamics/joint_reactions.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
+#include "deltadyn/model/inertial_parameters.hpp"
 
 namespace {
 
@@ -79,6 +84,42 @@ void inertia(benchmark::State& state) {
   after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return mass_matrix<Layout>(g, m.posture, s.p); });
 }
 
+/// Torques of the state serve as what to accelerate with.
+template <class T>
+void acceleration(benchmark::State& state) {
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) {
+    Vector<T, 4> qdd;
+    const Status status = forward_dynamics<Layout, T, Delta4>(g, m.posture, s.qd, s.qdd, s.p, qdd);
+    benchmark::DoNotOptimize(status);
+    return qdd;
+  });
+}
+
+template <class T>
+void equations(benchmark::State& state) {
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return equations_of_motion<Layout>(g, m, s.p); });
+}
+
+template <class T>
+void derivatives(benchmark::State& state) {
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) {
+    TorqueDerivatives<T, 4> d;
+    const Status status = inverse_dynamics_derivatives<Layout>(g, m, s.p, d);
+    benchmark::DoNotOptimize(status);
+    return d;
+  });
+}
+
+template <class T>
+void reactions(benchmark::State& state) {
+  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) {
+    JointReactions<T, Delta4> loads;
+    const Status status = joint_reactions<Layout>(g, m, s.p, loads);
+    benchmark::DoNotOptimize(status);
+    return loads;
+  });
+}
+
 double worst(const std::vector<double>& times) {
   return *std::max_element(times.begin(), times.end());
 }
@@ -94,5 +135,13 @@ DELTADYN_BENCHMARK(full_regressor<double>);
 DELTADYN_BENCHMARK(full_regressor<float>);
 DELTADYN_BENCHMARK(inertia<double>);
 DELTADYN_BENCHMARK(inertia<float>);
+DELTADYN_BENCHMARK(acceleration<double>);
+DELTADYN_BENCHMARK(acceleration<float>);
+DELTADYN_BENCHMARK(equations<double>);
+DELTADYN_BENCHMARK(equations<float>);
+DELTADYN_BENCHMARK(derivatives<double>);
+DELTADYN_BENCHMARK(derivatives<float>);
+DELTADYN_BENCHMARK(reactions<double>);
+DELTADYN_BENCHMARK(reactions<float>);
 
 }  // namespace

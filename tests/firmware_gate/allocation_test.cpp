@@ -137,6 +137,10 @@ void expect_sound_and_free_of_heap(Outcome (*run)(int, T), int robot, double pre
     EXPECT_LT(outcome.round_trip, precision);
     EXPECT_LT(outcome.regressor_gap, precision);
     EXPECT_LT(outcome.mass_asymmetry, precision);
+    EXPECT_LT(outcome.acceleration_gap, 10 * precision);
+    EXPECT_LT(outcome.equations_gap, precision);
+    EXPECT_LT(outcome.slope_gap, precision);
+    EXPECT_LT(outcome.reaction_gap, precision);
     EXPECT_LT(outcome.inertia_round_trip, precision);
     EXPECT_LT(outcome.inertia_jacobian_gap, precision);
     EXPECT_LT(outcome.feed_forward_gap, 10 * precision);

@@ -2,7 +2,11 @@
 
 #include "core_calls.hpp"
 
+#include "deltadyn/dynamics/equations_of_motion.hpp"
+#include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
+#include "deltadyn/dynamics/inverse_dynamics_derivatives.hpp"
+#include "deltadyn/dynamics/joint_reactions.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 #include "deltadyn/dynamics/regressor.hpp"
 #include "deltadyn/firmware/feed_forward.hpp"
@@ -49,12 +53,21 @@ double largest(const Eigen::MatrixBase<Derived>& values) {
   return static_cast<double>(result);
 }
 
+template <class Layout, class T, class Robot>
+T friction_torque_of_drive(const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p, int drive) {
+  return p(Layout::viscous(drive)) * motion.qd(drive) + p(Layout::coulomb(drive)) * coulomb_friction(motion.qd(drive));
+}
+
 template <class T, class Robot, Limbs kSharing>
 void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, T phase, Outcome& outcome) {
   constexpr int N = Robot::kDrives;
   using Layout = ParameterLayout<Robot, kSharing>;
   Vector<T, Layout::kColumns> p;
   for (int i = 0; i < Layout::kColumns; ++i) p(i) = T(0.1) + T(0.02) * T(i % 7) + T(0.001) * phase;
+  for (int body = 0; body < Layout::kBodies; ++body) {  // masses large beside their moments: physically consistent
+    p(kInertialParameters * body) += T(1);
+    for (int k = 4; k < 7; ++k) p(kInertialParameters * body + k) += T(1);
+  }
 
   const Vector<T, N> tau = inverse_dynamics<Layout>(geometry, motion, p);
   Matrix<T, N, Layout::kColumns> Y;
@@ -68,6 +81,23 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   const Status from_drives = feed_forward.from_drives(motion.posture.q, motion.qd, motion.qdd, tau_drives);
   outcome.ok = outcome.ok && from_task == Status::ok && from_drives == Status::ok;
 
+  Vector<T, N> qdd;
+  EquationsOfMotion<T, N> task;
+  TorqueDerivatives<T, N> slopes;
+  JointReactions<T, Robot> loads;
+  const EquationsOfMotion<T, N> terms = equations_of_motion<Layout>(geometry, motion, p);
+  outcome.ok = outcome.ok && forward_dynamics<Layout, T, Robot>(geometry, motion.posture, motion.qd, tau, p, qdd) == Status::ok &&
+               equations_in_task(geometry, motion, terms, task) == Status::ok &&
+               inverse_dynamics_derivatives<Layout>(geometry, motion, p, slopes) == Status::ok &&
+               joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok &&
+               kinetic_energy<Layout>(geometry, motion, p) > T(0) &&
+               potential_energy<Layout>(geometry, motion.posture, p) < T(1e6);
+  const Vector<T, N> sum = terms.M.lazyProduct(motion.qdd) + terms.C.lazyProduct(motion.qd) + terms.g + terms.f;
+  // What the first drive's joint carries, and what its motor takes beside that.
+  const Vector3<T> axis = rot_z(motion.posture.limbs[0].azimuth) * geometry.limbs[0].axis_L;
+  const T carried = axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
+  const T motor = friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
+
   const auto keep_larger = [](double value, double& kept) {
     if (!(value <= kept)) kept = value;
   };
@@ -75,6 +105,10 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   keep_larger(scale, outcome.largest_torque);
   keep_larger(largest<T>(tau_Y - tau) / scale, outcome.regressor_gap);
   keep_larger(largest<T>(M - M.transpose()), outcome.mass_asymmetry);
+  keep_larger(largest<T>(qdd - motion.qdd) / largest<T>(motion.qdd), outcome.acceleration_gap);
+  keep_larger(largest<T>(sum - tau) / scale, outcome.equations_gap);
+  keep_larger(largest<T>(slopes.by_qdd - M), outcome.slope_gap);
+  keep_larger(largest<T>(Vector<T, 1>(carried + motor - tau(0))) / scale, outcome.reaction_gap);
   keep_larger(largest<T>(tau_task - tau) / scale, outcome.feed_forward_gap);
   keep_larger(largest<T>(tau_drives - tau) / scale, outcome.feed_forward_gap);
 }

@@ -13,6 +13,10 @@ struct Outcome {
   double regressor_gap = 0.0;         ///< largest |Y p - inverse dynamics| over the largest torque
   double mass_asymmetry = 0.0;        ///< largest |M - M^T|
   double feed_forward_gap = 0.0;      ///< largest |feed-forward - inverse dynamics| over the largest torque
+  double acceleration_gap = 0.0;      ///< largest |forward(inverse) - qdd| over the largest acceleration
+  double equations_gap = 0.0;         ///< largest |M qdd + C qd + g + f - inverse dynamics| over the largest torque
+  double slope_gap = 0.0;             ///< largest |dtau/dqdd - M|
+  double reaction_gap = 0.0;          ///< largest |drive's reaction - its torque| over the largest torque
   double inertia_round_trip = 0.0;    ///< largest change of log-Cholesky numbers through the parameters and back
   double inertia_jacobian_gap = 0.0;  ///< relative error of the mass's derivative by the first of them
   double largest_torque = 0.0;
