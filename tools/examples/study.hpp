@@ -3,6 +3,8 @@
 /// \file
 /// What the studies share: parameters by file, figures in a report and as files of their own, targets beside results.
 
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
@@ -46,7 +48,8 @@ class Figures {
 /// One line of the closing table: the paper's figure, the one promised, the one reached.
 struct Figure {
   std::string name, paper;
-  double target = 0, reached = 0;  ///< in percent or as the name says
+  double target = 0;  ///< infinite: none is set, the figure is for information
+  double reached = 0;
 };
 
 /// Prints the table and adds it to the report and to the summary; true if every target is met.
@@ -55,11 +58,12 @@ inline bool conclude(const std::vector<Figure>& figures, HtmlReport& report, Sum
   bool all = true;
   fmt::print("{:<52} {:>10} {:>10} {:>12}\n", "figure [" + unit + "]", "paper", "target", "reached");
   for (const Figure& each : figures) {
-    const bool good = each.reached <= each.target;
+    const bool good = each.reached <= each.target, promised = std::isfinite(each.target);
     all = all && good;
-    table.row({each.name, each.paper, format_number(each.target, 3), format_number(each.reached, 3)},
-              good ? Tone::good : Tone::bad);
-    fmt::print("{:<52} {:>10} {:>10.3g} {:>12.3g}{}\n", each.name, each.paper, each.target, each.reached, good ? "" : "  missed");
+    const std::string target = promised ? format_number(each.target, 3) : "-";
+    table.row({each.name, each.paper, target, format_number(each.reached, 3)},
+              promised ? (good ? Tone::good : Tone::bad) : Tone::plain);
+    fmt::print("{:<52} {:>10} {:>10} {:>12.3g}{}\n", each.name, each.paper, target, each.reached, good ? "" : "  missed");
     std::string key = each.name;
     for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::tolower(c)) : '_';
     summary.add(key, each.reached, unit == "%" ? "percent" : unit);
