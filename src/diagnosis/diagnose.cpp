@@ -44,8 +44,12 @@ void DiagnosisOptions::validate() const {
 
 namespace {
 
-constexpr double kMotionOverPass = 2.0;     // cut-off of the motion in units of the one that identification uses: then the
-constexpr double kPassOverMotion = 0.6;     // low pass of regressor and torque, not that of the motion, bounds the band
+constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of the one that identification uses: then the
+constexpr double kPassOverMotion = 0.6;  // low pass of regressor and torque, not that of the motion, bounds the band
+constexpr double kGoodScore = 1.03;
+constexpr double kLeastCutoff_hz = 20;      // below, nothing of a reversal would be left out but everything
+constexpr double kSettled = 0.1;            // change of an amplitude that least squares without noise model may make
+constexpr double kRestFloor = 0.015;        // share of the largest rate below which friction is that of rest
 constexpr double kFewestRowsPerBase = 8.0;  // usable rows of a drive in units of base parameters a drive
 
 bool same_log(const Log& a, const Log& b) {
@@ -53,11 +57,23 @@ bool same_log(const Log& a, const Log& b) {
   return (a.q - b.q).cwiseAbs().maxCoeff() == 0 && (a.tau - b.tau).cwiseAbs().maxCoeff() == 0;
 }
 
+/// The highest cut-off that is as good as the best one: smooth motions leave the choice open, and a narrow band widens every reversal.
+/// What noise a wide band lets in, the whitening weighs.
+double widest_good_cutoff_hz(const std::vector<CutoffPoint>& points) {
+  double best = std::numeric_limits<double>::infinity(), cutoff_hz = 0;
+  for (const CutoffPoint& point : points) best = std::min(best, point.score);
+  for (const CutoffPoint& point : points) {
+    if (point.score <= kGoodScore * best) cutoff_hz = std::max(cutoff_hz, point.cutoff_hz);
+  }
+  return std::max(cutoff_hz, kLeastCutoff_hz);
+}
+
 ProcessingOptions diagnosis_processing(const Robot& robot, const std::vector<Log>& logs, const DiagnosisOptions& options,
                                        double& cutoff_hz) {
   ProcessingOptions out = options.processing;
   out.periods = Periods::ignore;
-  cutoff_hz = options.choose_cutoff ? best_cutoff_hz(scan_cutoffs(robot, logs, out, options.threads)) : out.cutoff_hz;
+  out.reversal_floor = std::max(out.reversal_floor, kRestFloor);
+  cutoff_hz = options.choose_cutoff ? widest_good_cutoff_hz(scan_cutoffs(robot, logs, out, options.threads)) : out.cutoff_hz;
   double rate_hz = 1e12;
   for (const Log& log : logs) rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
   out.cutoff_hz = std::min(kMotionOverPass * cutoff_hz, 0.35 * rate_hz);
@@ -77,6 +93,21 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
     out.rows -= 2;
   }
   return out;
+}
+
+/// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
+/// them come out small, those of the search stay.
+void settle_amplitudes(const Robot& robot, const std::vector<Log>& logs, const VectorXd& p, const ProcessingOptions& processing,
+                       Diagnosis& out) {
+  const std::vector<Effect> settled = estimate_amplitudes(robot, logs, p, out.effects, processing);
+  for (std::size_t k = 0; k < settled.size(); ++k) {
+    const VectorXd& before = out.effects[k].amplitude;
+    if ((settled[k].amplitude - before).norm() > kSettled * before.norm()) continue;
+    for (NamedEffect& one : out.named) {
+      if (one.effect.id == settled[k].id && one.effect.joint == settled[k].joint) one.effect.amplitude = settled[k].amplitude;
+    }
+    out.effects[k].amplitude = settled[k].amplitude;
+  }
 }
 
 }  // namespace
@@ -115,7 +146,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   if (holdout != nullptr) held_log = *holdout;
   if (!fixed.empty()) {
     double cutoff_hz = options.processing.cutoff_hz;
-    if (options.choose_cutoff) cutoff_hz = best_cutoff_hz(scan_cutoffs(robot, logs, options.processing, options.threads));
+    if (options.choose_cutoff) cutoff_hz = widest_good_cutoff_hz(scan_cutoffs(robot, logs, options.processing, options.threads));
     logs = without_effects(robot, logs, p, fixed, kMotionOverPass * cutoff_hz);
     if (held_log) held_log = without_effects(robot, {*held_log}, p, fixed, kMotionOverPass * cutoff_hz).front();
   }
@@ -178,8 +209,9 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
       identification.processing.cutoff_hz = out.cutoff_hz;
       identification.choose_cutoff = false;
       identification.threads = options.threads;
-      out.improved = identify(robot, without_effects(robot, all_logs, p_fit, out.effects, kMotionOverPass * out.cutoff_hz), p,
-                              p_std, identification);
+      settle_amplitudes(robot, all_logs, p_fit, identification.processing, out);
+      out.improved =
+          identify(robot, without_effects(robot, all_logs, p_fit, out.effects, out.cutoff_hz), p, p_std, identification);
     } catch (const Error& error) {
       out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
     }

@@ -280,10 +280,16 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
     if (found.hygiene[k]) {
-      out.effects.push_back(fit.effect);
-      out.notes.push_back(fmt::format(
-          "torque and positions of {} are {:.2g} ms apart, at most about one sample: corrected, not counted as an effect",
-          hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+      if (fit.effect.id == EffectId::shear_thinning) {
+        out.notes.push_back(fmt::format(
+            "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
+            hypothesis.joint_name(), fit.effect.shape(0)));
+      } else {
+        out.notes.push_back(
+            fmt::format("torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the search, "
+                        "not counted as an effect",
+                        hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+      }
       continue;
     }
     NamedEffect one;
@@ -359,7 +365,9 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
         const double here = proof.rms_before(j) / std::max(proof.floor(j), 1e-300);
         const double there =
             out.drives[static_cast<std::size_t>(j)].rms / std::max(out.drives[static_cast<std::size_t>(j)].floor, 1e-300);
-        if (here > kHoldoutGap * std::max(1.0, there)) {
+        // Slow noise makes the floor of one log look low: the residual itself must be larger than in training, too.
+        const bool larger = proof.rms_before(j) > kHoldoutGap * out.drives[static_cast<std::size_t>(j)].rms;
+        if (larger && here > kHoldoutGap * std::max(1.0, there)) {
           out.verdict = DiagnosisVerdict::not_testable;
           out.region = fmt::format("drive {}", j + 1);
           out.headline = fmt::format(

@@ -25,6 +25,7 @@ constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
 constexpr double kBlock_s = 0.25;
 constexpr double kSkewSamples = 1.0;  // a skew up to one sample is a matter of who samples when, not of the robot
+constexpr double kRestShare = 0.03;   // of the largest rate: friction that bends below it is friction at rest
 constexpr double kLagSamples = 0.5;   // and so is so short a lag
 
 std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
@@ -53,7 +54,16 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   return best;
 }
 
-bool negligible_skew(const SearchContext& context, const Fit& fit) {
+bool near_rest(const SearchContext& context, const Fit& fit) {
+  if (fit.effect.id != EffectId::shear_thinning || fit.effect.shape(1) > 0) return false;
+  double largest = 0;
+  for (const LogRows& log : context.logs) largest = std::max(largest, log.qd.col(fit.effect.joint).cwiseAbs().maxCoeff());
+  return fit.effect.shape(0) < kRestShare * largest;
+}
+
+/// What is corrected without a name: a skew of about a sample, and Coulomb's law that is smoothed near rest.
+bool hygienic(const SearchContext& context, const Fit& fit) {
+  if (near_rest(context, fit)) return true;
   const double samples = fit.effect.shape.size() > 0 ? std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz : 0.0;
   if (fit.effect.id == EffectId::time_skew) return samples <= kSkewSamples;
   return fit.effect.id == EffectId::current_lag && samples <= kLagSamples;
@@ -127,7 +137,7 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     if (++looked_at > kRefined || state.scores[h].gain < 0.5 * best.gain) break;
     const Fit other = context.search.refine(state, h);
     const Index m = other.effect.amplitude.size();
-    if (other.white.cols < m || negligible_skew(context, other)) continue;
+    if (other.white.cols < m || hygienic(context, other)) continue;
     const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;
     // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom leaves.
     const VectorXd coefficients =
@@ -210,10 +220,10 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   // Forward.
   state = search.state(found.noise, {}, &pilots);
   int named = 0;
-  while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 2) {
+  while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
     std::optional<Fit> fit = best_fit(search, state);
     if (!fit || !counts(context, found, state, *fit) || form_error(context, found, *fit)) break;
-    found.hygiene.push_back(negligible_skew(context, *fit));
+    found.hygiene.push_back(hygienic(context, *fit));
     named += found.hygiene.back() ? 0 : 1;
     found.accepted.push_back(search.accept(*fit));
     found.fits.push_back(std::move(*fit));
@@ -254,7 +264,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
     }
     // Another hypothesis may fit better now that the others are known.
     if (const std::optional<Fit> best = found.hygiene[k] ? std::optional<Fit>() : best_fit(search, beside);
-        best && !negligible_skew(context, *best) &&
+        best && !hygienic(context, *best) &&
         search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
       fit = *best;
     }

@@ -1,0 +1,196 @@
+#pragma once
+
+/// \file
+/// One case of the blind study: made, recorded, diagnosed, judged.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "deltadyn/diagnosis/diagnose.hpp"
+#include "deltadyn/runtime/nominal_parameters.hpp"
+
+#include "studies/blind_effects.hpp"
+#include "support/descriptions.hpp"
+
+namespace deltadyn::blind {
+
+struct Outcome {
+  std::string truth, joint, verdict, named, set, noise;  ///< truth and named: "effect@joint;effect@joint"
+  double strength = 0, gap_shrink = 0, share = 0, time_s = 0;
+};
+
+inline Case make_case(const std::string& part, int index) {
+  Random random(1000003u * static_cast<unsigned>(index + 1) + (part == "effects" ? 1u
+                                                               : part == "clean" ? 2u
+                                                               : part == "pairs" ? 3u
+                                                                                 : 4u));
+  Case blind;
+  const bool four = index % 2 == 0;
+  blind.robot = four ? testing_support::delta_description("delta4") : testing_support::delta_description("delta3");
+  const auto robot = make_robot(blind.robot);
+  blind.parameters = nominal_parameters(*robot, PartShapes(robot->description())).value;
+  for (int k = 0; k < robot->parameters(); ++k) {
+    const std::string& name = robot->parameter_names()[static_cast<std::size_t>(k)];
+    if (name.rfind("drive", 0) == 0 && name.find("coulomb") != std::string::npos) blind.parameters(k) = coulomb_of(name[5] - '1');
+    if (name.rfind("drive", 0) == 0 && name.find("viscous") != std::string::npos)
+      blind.parameters(k) = name[5] == '4' ? 0.02 : 1.5;
+  }
+  blind.seed = static_cast<std::uint64_t>(index) * 7919u + 17u;
+  const double size = between(random, 0, 1);
+  const int drives = robot->drives();
+  if (part == "effects") {
+    const auto& names = hidden_names();
+    blind.hidden.push_back(make_hidden(names[static_cast<std::size_t>(index) % names.size()], drives, size, random));
+    blind.noise.encoder_rad = 3e-6;
+  } else if (part == "pairs") {
+    const auto& names = hidden_names();
+    const auto a = static_cast<std::size_t>(between(random, 0, static_cast<double>(names.size()) - 0.01));
+    const auto b =
+        (a + 1 + static_cast<std::size_t>(between(random, 0, static_cast<double>(names.size()) - 2.01))) % names.size();
+    blind.hidden.push_back(make_hidden(names[a], drives, 0.3 + 0.7 * size, random));
+    blind.hidden.push_back(make_hidden(names[b], drives, 0.3 + 0.7 * between(random, 0, 1), random));
+  } else if (part == "outside") {
+    blind.hidden.push_back(make_outside(index, drives, size, random));
+  } else {
+    const double correlations[] = {0.0, 0.9, 0.98};
+    blind.noise.correlation = correlations[index % 3];
+    blind.noise.encoder_rad = std::pow(10.0, between(random, -6, -4));
+  }
+  return blind;
+}
+
+inline Outcome run_case(const std::string& part, int index, int null_runs) {
+  const Case blind = make_case(part, index);
+  Outcome out;
+  for (const Hidden& hidden : blind.hidden) out.truth += (out.truth.empty() ? "" : ";") + hidden.truth + "@" + hidden.joint;
+  if (out.truth.empty()) out.truth = "nothing";
+  out.noise = fmt::format("rho {} encoder {:.1e}", blind.noise.correlation, blind.noise.encoder_rad);
+  const std::vector<Log> logs = record(blind, &out.strength);
+  if (logs.size() != 3) {
+    out.verdict = "not-simulated";
+    return out;
+  }
+  const auto robot = make_robot(blind.robot);
+  DiagnosisOptions options;
+  options.null_runs = null_runs;
+  options.identify = false;
+  // The user's own parameters are not the truth: a few per cent off, as an identification with the effect in the logs would be.
+  const Diagnosis result = diagnose(*robot, {logs[0], logs[1]}, &logs[2], 1.03 * blind.parameters, {}, {}, options);
+  out.verdict = verdict_name(result.verdict);
+  out.share = result.explained_share;
+  out.gap_shrink = result.gap_shrink;
+  out.time_s = result.total_time_s;
+  if (std::getenv("BLIND_VERBOSE") != nullptr) fmt::print("# {} (cut-off {:.3g} Hz)\n", result.headline, result.cutoff_hz);
+  const bool names = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;
+  for (const NamedEffect& one : result.named) {
+    if (!names) break;
+    out.named += (out.named.empty() ? "" : ";") + one.name + "@" + one.joint;
+    for (const EffectCandidate& other : one.confusable) out.set += (out.set.empty() ? "" : ";") + other.name + "@" + other.joint;
+  }
+  return out;
+}
+
+inline std::string to_line(const std::string& id, const Outcome& o) {
+  return fmt::format("{},{},{:.3g},{},{},{},{},{:.3f},{:.3f},{:.1f}", id, o.truth, o.strength, o.noise, o.verdict, o.named, o.set,
+                     o.share, o.gap_shrink, o.time_s);
+}
+
+using Outcomes = std::vector<std::pair<std::string, Outcome>>;
+
+inline Outcomes read_outcomes(const std::string& path) {
+  Outcomes all;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> field;
+    std::istringstream stream(line);
+    for (std::string part; std::getline(stream, part, ',');) field.push_back(part);
+    if (field.size() < 10) continue;
+    Outcome o{field[1],
+              "",
+              field[4],
+              field[5],
+              field[6],
+              field[3],
+              std::stod(field[2]),
+              std::stod(field[8]),
+              std::stod(field[7]),
+              std::stod(field[9])};
+    all.emplace_back(field[0], o);
+  }
+  return all;
+}
+
+inline std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ';');) out.push_back(part);
+  return out;
+}
+
+inline std::string effect_of(const std::string& text) {
+  return text.substr(0, text.find('@'));
+}
+
+inline std::string class_of(const std::string& text) {
+  const EffectKind* kind = find_effect_kind(effect_of(text));
+  return kind != nullptr ? kind->effect_class : "";
+}
+
+inline void print_summary(const Outcomes& all) {
+  std::map<std::string, std::vector<Outcome>> parts;
+  for (const auto& [id, o] : all) parts[id.substr(0, id.find('-'))].push_back(o);
+  const auto line = [](const char* what, int good, int of) {
+    fmt::print("{:<58} {:>4} of {:<4} {:.1f} %\n", what, good, of, of > 0 ? 100.0 * good / of : 0.0);
+  };
+  int named_clean = 0;
+  for (const Outcome& o : parts["clean"]) named_clean += o.named.empty() ? 0 : 1;
+  line("clean logs: an effect named", named_clean, static_cast<int>(parts["clean"].size()));
+  int found = 0, first = 0, right_class = 0, inside = 0, joint = 0;
+  std::size_t set_size = 0;
+  std::vector<double> shrink;
+  for (const Outcome& o : parts["effects"]) {
+    if (o.named.empty()) continue;
+    ++found;
+    const auto named = split(o.named);
+    auto set = split(o.set);
+    set.insert(set.begin(), named[0]);
+    first += effect_of(named[0]) == effect_of(o.truth) ? 1 : 0;
+    right_class += class_of(named[0]) == class_of(o.truth) ? 1 : 0;
+    joint += named[0].substr(named[0].find('@')) == o.truth.substr(o.truth.find('@')) ? 1 : 0;
+    inside +=
+        std::any_of(set.begin(), set.end(), [&](const std::string& s) { return effect_of(s) == effect_of(o.truth); }) ? 1 : 0;
+    set_size += set.size();
+    if (std::isfinite(o.gap_shrink)) shrink.push_back(o.gap_shrink);
+  }
+  line("effects: something named", found, static_cast<int>(parts["effects"].size()));
+  line("  of these: right effect first", first, found);
+  line("  of these: right class first", right_class, found);
+  line("  of these: truth inside the set", inside, found);
+  line("  of these: right joint", joint, found);
+  std::sort(shrink.begin(), shrink.end());
+  if (!shrink.empty()) {
+    fmt::print("  mean size of the set {:.2f}; gap shrink: median {:.3f}, smallest {:.3f}\n",
+               static_cast<double>(set_size) / found, shrink[shrink.size() / 2], shrink.front());
+  }
+  int both = 0;
+  for (const Outcome& o : parts["pairs"]) {
+    const auto truth = split(o.truth), named = split(o.named);
+    both += named.size() == 2 && ((effect_of(named[0]) == effect_of(truth[0]) && effect_of(named[1]) == effect_of(truth[1])) ||
+                                  (effect_of(named[1]) == effect_of(truth[0]) && effect_of(named[0]) == effect_of(truth[1])))
+                ? 1
+                : 0;
+  }
+  line("pairs: both and no other", both, static_cast<int>(parts["pairs"].size()));
+  int unknown = 0;
+  for (const Outcome& o : parts["outside"]) unknown += o.named.empty() ? 1 : 0;
+  line("outside the catalogue: no wrong name", unknown, static_cast<int>(parts["outside"].size()));
+}
+
+}  // namespace deltadyn::blind

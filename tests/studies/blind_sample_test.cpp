@@ -1,0 +1,34 @@
+// A seeded sample of the blind study; the whole of it runs by blind_study.
+
+#include <gtest/gtest.h>
+
+#include "studies/blind_case.hpp"
+
+namespace deltadyn::blind {
+namespace {
+
+constexpr int kNullRuns = 40;  // enough for the plain cases of the sample
+
+int index_of(const std::string& name) {
+  const auto& names = hidden_names();
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+class BlindEffect : public testing::TestWithParam<const char*> {};
+
+TEST_P(BlindEffect, IsNamedAtItsPlace) {
+  const Outcome outcome = run_case("effects", index_of(GetParam()), kNullRuns);
+  ASSERT_FALSE(outcome.named.empty()) << to_line(GetParam(), outcome);
+  EXPECT_EQ(split(outcome.named).front(), outcome.truth) << to_line(GetParam(), outcome);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sample, BlindEffect, testing::Values("stribeck", "hose_force", "payload"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(BlindStudy, NamesNothingOnACleanLogWithCorrelatedNoise) {
+  const Outcome outcome = run_case("clean", 2, kNullRuns);  // correlation 0.98
+  EXPECT_EQ(outcome.named, "") << to_line("clean-2", outcome);
+}
+
+}  // namespace
+}  // namespace deltadyn::blind

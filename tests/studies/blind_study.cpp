@@ -1,0 +1,54 @@
+/// \file
+/// The blind study of delta-diagnose: hidden effects in a plant of their own, clean logs, pairs, effects outside the catalogue.
+///
+///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside
+///     blind_study summary OUT.csv
+///
+/// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken up again.
+
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "studies/blind_case.hpp"
+
+namespace {
+
+using namespace deltadyn;
+
+std::set<std::string> done_cases(const std::string& path) {
+  std::set<std::string> done;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) done.insert(line.substr(0, line.find(',')));
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() == 2 && words[0] == "summary") {
+    blind::print_summary(blind::read_outcomes(words[1]));
+    return 0;
+  }
+  if (words.size() < 4) {
+    std::cerr << "usage: blind_study effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | summary OUT.csv\n";
+    return 2;
+  }
+  const int first = std::stoi(words[1]), count = std::stoi(words[2]);
+  const int null_runs = words.size() > 4 ? std::stoi(words[4]) : 200;
+  const std::set<std::string> done = done_cases(words[3]);
+  for (int k = first; k < first + count; ++k) {
+    const std::string id = fmt::format("{}-{}", words[0], k);
+    if (done.count(id) > 0) continue;
+    const blind::Outcome outcome = blind::run_case(words[0], k, null_runs);
+    std::ofstream(words[3], std::ios::app) << blind::to_line(id, outcome) << "\n";
+    std::cout << blind::to_line(id, outcome) << std::endl;
+  }
+  return 0;
+}
