@@ -1,0 +1,149 @@
+#include "deltadyn/io/model_export.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gmock/gmock.h>
+#include <tinyxml2.h>
+
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/nominal_parameters.hpp"
+
+#include "support/descriptions.hpp"
+#include "support/matchers.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+/// A delta4 with every kind of column, nominal bodies, and numbers that can be told apart.
+struct Sample {
+  RobotDescription description = delta_description("delta4");
+  std::unique_ptr<Robot> robot = make_robot(description, {false, true, {1, 4}, true});
+  Eigen::VectorXd p = nominal_parameters(*robot, PartShapes(description)).value;
+
+  [[nodiscard]] double& at(const std::string& name) {
+    const auto& names = robot->parameter_names();
+    return p(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  Sample() {
+    for (int k = 0; k < p.size(); ++k) {
+      const std::string& name = robot->parameter_names()[static_cast<std::size_t>(k)];
+      if (name.find("offset") != std::string::npos) p(k) = 0;
+    }
+    at("drive1.viscous") = 1.25;
+    at("drive1.coulomb") = 3.5;
+    at("telescope.coulomb") = 4.25;
+    at("drive1.rotor_inertia") = 0.0625;
+    at("drive4.rotor_inertia") = 0.03125;
+  }
+};
+
+TEST(ModelExport, CarriesFrictionRotorAndOffsetToMujoco) {
+  Sample sample;
+  sample.at("drive2.offset") = 0.75;
+  const ExportedModel model = export_mjcf(*sample.robot, sample.p);
+  EXPECT_THAT(model.left_out, IsEmpty());
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(model.text.c_str()), tinyxml2::XML_SUCCESS);
+  EXPECT_THAT(model.text, HasSubstr("damping=\"1.25\" frictionloss=\"3.5\" armature=\"0.0625\""));
+  EXPECT_THAT(model.text, HasSubstr("frictionloss=\"4.25\""));
+  EXPECT_THAT(model.text, HasSubstr("armature=\"0.03125\""));
+  EXPECT_THAT(model.text, HasSubstr("<general name=\"drive2\" joint=\"drive2\" biastype=\"affine\" biasprm=\"-0.75 0 0\""));
+  EXPECT_THAT(model.text, HasSubstr("<motor name=\"drive1\" joint=\"drive1\"/>"));
+}
+
+TEST(ModelExport, GivesARobotFileAgainAsUrdf) {
+  Sample sample;
+  const ExportedModel model = export_urdf(*sample.robot, sample.p);
+  EXPECT_THAT(model.text, HasSubstr("<dynamics damping=\"1.25\" friction=\"3.5\"/>"));
+  const RobotDescription back = robot_from_urdf(model.text, "export");
+  EXPECT_EQ(back.type, "delta4");
+  EXPECT_THAT(back.limbs[1].p_WD, IsNear(sample.description.limbs[1].p_WD, 1e-12));
+}
+
+// The arm's inertia about the drive, from the file, is the identified one and the rotor's.
+TEST(ModelExport, PutsTheRotorOnTheAxisInUrdf) {
+  Sample sample;
+  tinyxml2::XMLDocument document;
+  const std::string text = export_urdf(*sample.robot, sample.p).text;
+  ASSERT_EQ(document.Parse(text.c_str()), tinyxml2::XML_SUCCESS);
+  const auto* link = document.FirstChildElement("robot")->FirstChildElement("link");
+  while (link != nullptr && std::string(link->Attribute("name")) != "upper_arm1") link = link->NextSiblingElement("link");
+  ASSERT_NE(link, nullptr);
+  const auto* inertial = link->FirstChildElement("inertial");
+  const double m = inertial->FirstChildElement("mass")->DoubleAttribute("value");
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(inertial->FirstChildElement("origin")->Attribute("xyz"), "%lf %lf %lf", &x, &y, &z), 3);
+  const double Iyy = inertial->FirstChildElement("inertia")->DoubleAttribute("iyy") + m * (x * x + z * z);
+  EXPECT_NEAR(m, sample.at("upper_arm.m"), 1e-12);
+  EXPECT_NEAR(Iyy, sample.at("upper_arm.Iyy") + 0.0625, 1e-12);
+}
+
+TEST(ModelExport, ListsWhatItLeavesOut) {
+  Sample sample;
+  sample.at("drive2.offset") = 0.75;
+  Effect stribeck;
+  stribeck.id = EffectId::stribeck;
+  stribeck.joint = 1;
+  stribeck.amplitude = Eigen::VectorXd::Constant(1, 2.0);
+  stribeck.shape = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(effect_kind(stribeck.id).shapes.size()), 0.5);
+  Effect rotor;
+  rotor.id = EffectId::rotor_inertia;
+  rotor.joint = 0;
+  rotor.amplitude = Eigen::VectorXd::Constant(1, 1.0);
+  const ExportedModel mjcf = export_mjcf(*sample.robot, sample.p, {stribeck, rotor});
+  ASSERT_THAT(mjcf.left_out, SizeIs(1));
+  EXPECT_THAT(mjcf.left_out[0], AllOf(HasSubstr("stribeck"), HasSubstr("drive2")));
+  EXPECT_THAT(mjcf.text, AllOf(HasSubstr(mjcf.left_out[0]), HasSubstr("armature=\"1.0625\"")));
+  const ExportedModel urdf = export_urdf(*sample.robot, sample.p, {stribeck});
+  ASSERT_THAT(urdf.left_out, SizeIs(3));  // the effect, the offset, the loops for plain readers
+  EXPECT_THAT(urdf.text, HasSubstr("drive2.offset = 0.75"));
+  const ExportedModel header = export_header(*sample.robot, sample.p, {stribeck, rotor});
+  ASSERT_THAT(header.left_out, SizeIs(1));
+  EXPECT_THAT(header.text, AllOf(HasSubstr("1.0625,  // drive1.rotor_inertia"), HasSubstr("0.75,  // drive2.offset")));
+}
+
+TEST(ModelExport, GivesARobotWithoutToolABodyThatTurns) {
+  const RobotDescription description = delta_description("delta4");
+  const auto robot = make_robot(description, {false, false, {}, false});
+  const Eigen::VectorXd p = nominal_parameters(*robot, PartShapes(description)).value;
+  const std::string text = export_mjcf(*robot, p).text;
+  EXPECT_THAT(text, HasSubstr("<body name=\"tool\""));
+  EXPECT_THAT(export_urdf(*robot, p).text, Not(HasSubstr("nan")));
+}
+
+TEST(ModelExport, KnowsEveryType) {
+  for (const auto& description : {delta_description("delta3"), delta_description("linear-delta3"),
+                                  axis_description(DriveKind::revolute), axis_description(DriveKind::prismatic)}) {
+    const auto robot = make_robot(description);
+    Eigen::VectorXd p = nominal_parameters(*robot, PartShapes(description)).value;
+    p(0) = 2;
+    EXPECT_THAT(export_mjcf(*robot, p).text, HasSubstr("<motor name=\"drive1\""));
+    EXPECT_THAT(export_urdf(*robot, p).text, HasSubstr("<inertial>"));
+    EXPECT_THAT(export_header(*robot, p).text, HasSubstr("feed_forward()"));
+  }
+}
+
+TEST(ModelExport, RefusesBodiesThatCannotBe) {
+  Sample sample;
+  Eigen::VectorXd negative = sample.p, thin = sample.p, broken = sample.p;
+  negative(0) = -1;
+  thin(4) = 100;  // Ixx of the arm without Iyy or Izz to match
+  broken(3) = std::nan("");
+  EXPECT_THROW((void)export_mjcf(*sample.robot, negative), Error);
+  EXPECT_THROW((void)export_urdf(*sample.robot, negative), Error);
+  EXPECT_THROW((void)export_mjcf(*sample.robot, thin), Error);
+  EXPECT_THROW((void)export_header(*sample.robot, broken), Error);
+  EXPECT_THROW((void)export_header(*sample.robot, Eigen::VectorXd::Ones(3)), Error);
+}
+
+}  // namespace
+}  // namespace deltadyn
