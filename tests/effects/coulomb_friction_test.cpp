@@ -1,7 +1,6 @@
 #include "deltadyn/effects/coulomb_friction.hpp"
 
 #include <gtest/gtest.h>
-
 #include <limits>
 
 namespace deltadyn {

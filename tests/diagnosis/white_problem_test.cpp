@@ -1,0 +1,28 @@
+#include "deltadyn/diagnosis/white_problem.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltadyn {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TEST(ConstrainedGain, IsLeastSquaresWithoutConstraints) {
+  const MatrixXd C = MatrixXd::Random(30, 3);
+  const VectorXd r = VectorXd::Random(30);
+  const Gain gain = constrained_gain(C.transpose() * C, C.transpose() * r, {false, false, false});
+  const VectorXd a = (C.transpose() * C).inverse() * C.transpose() * r;
+  EXPECT_LT((gain.amplitude - a).norm(), 1e-9);
+  EXPECT_NEAR(gain.gain, r.squaredNorm() - (r - C * a).squaredNorm(), 1e-9);
+}
+
+TEST(ConstrainedGain, GivesNothingForTheWrongSign) {
+  const MatrixXd C = MatrixXd::Identity(4, 1);
+  const VectorXd r = -VectorXd::Unit(4, 0);
+  EXPECT_EQ(constrained_gain(C.transpose() * C, C.transpose() * r, {true}).gain, 0.0);
+  EXPECT_EQ(constrained_gain(C.transpose() * C, C.transpose() * r, {false}).gain, 1.0);
+}
+
+}  // namespace
+}  // namespace deltadyn
