@@ -184,6 +184,8 @@ class Excite {
     input.torque_noise = noise;
     input.predicted_std = predicted_std(*robot, base.independent, main.samples, noise);
     input.base_values = base.B * parameters;
+    const VectorXd spread_of_base = (base.B.cwiseAbs2() * nominal.std.cwiseAbs2()).cwiseSqrt();
+    input.base_scale = input.base_values.cwiseAbs().cwiseMax(spread_of_base);
     input.values_are_nominal = params_file_.empty();
     if (second) input.validation = &second->samples;
     if (!report_file_.empty()) {

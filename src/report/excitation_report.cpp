@@ -17,13 +17,13 @@
 namespace deltadyn {
 namespace {
 
-// Relative standard deviations from which a base parameter counts as known, and beyond which as not identified.
+// Standard deviations, as shares of the expected size, from which a base parameter counts as known, and beyond which as not identified.
 constexpr double kWell = 0.05, kNot = 0.5;
 constexpr double kGoodEfficiency = 0.6, kFairEfficiency = 0.4;
 constexpr double kBinding = 0.99;
 
 double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
-  return input.predicted_std(k) / std::max(std::abs(input.base_values(k)), 1e-300);
+  return input.predicted_std(k) / std::max(input.base_scale(k), 1e-300);
 }
 
 struct Counts {
@@ -49,7 +49,7 @@ void add_verdict(HtmlReport& report, const ExcitationReportInput& input) {
                   input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
   lines.push_back(fmt::format("It gives {} of the information (D-efficiency) that any motion inside these limits could give.",
                               format_percent(e.d_efficiency, 3)));
-  lines.push_back(fmt::format("Of {} base parameters {} will be known to {} or better, {} roughly, {} hardly.",
+  lines.push_back(fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
                               input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
   if (e.out_of_time) lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
   if (e.interrupted) lines.emplace_back("The search was interrupted; more time may find a better motion.");
@@ -90,7 +90,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   }
   report.paragraph(
       fmt::format("Predicted standard deviations for one run of this trajectory with white torque noise of {} in the "
-                  "drives. Expected values are those of {}.",
+                  "drives. Expected values are those of {}; the last column but one is the standard deviation as a share of the "
+                  "size that the combination may have.",
                   noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -112,13 +113,13 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
                                             {"expected"},
                                             {"standard deviation"},
                                             {"unit", Align::left},
-                                            {"relative"},
+                                            {"share"},
                                             {"seen", Align::left}};
   report.subheading("What the motion will hardly identify");
   Table hidden(columns);
   fill(hidden, true);
   if (hidden.empty()) {
-    report.paragraph("Nothing: every combination will be known to half of its value or better.");
+    report.paragraph("Nothing: every combination will be known to half of its size or better.");
   } else {
     report.table(hidden,
                  "Their effect on the torque is small in every motion inside these limits, or of this length; more "
@@ -169,8 +170,8 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
 
 std::string excitation_report(const ExcitationReportInput& input, const ReportContext& context) {
   const auto p = static_cast<Eigen::Index>(input.base.count());
-  if (input.predicted_std.size() != p || input.base_values.size() != p || input.samples.z.cols() != input.robot.drives() ||
-      input.plan.parts.empty() || input.segments.empty())
+  if (input.predicted_std.size() != p || input.base_values.size() != p || input.base_scale.size() != p ||
+      input.samples.z.cols() != input.robot.drives() || input.plan.parts.empty() || input.segments.empty())
     throw Error("trajectory, base parameters and plan are not those of this robot", input.robot.description().name,
                 "make them with the same robot", ExitCode::usage);
   const RobotDescription& description = input.robot.description();
