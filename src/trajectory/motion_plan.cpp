@@ -57,16 +57,28 @@ SmoothMotion line(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double
           }};
 }
 
-/// Along the curve of a motion that keeps its limits, never faster, positions and velocities keep theirs anyway.
-LimitCheck of_accelerations(LimitCheck check) {
-  std::erase_if(check.uses, [](const LimitUse& use) {
-    return use.limit.quantity != LimitedQuantity::zdd && use.limit.quantity != LimitedQuantity::qdd &&
-           use.limit.quantity != LimitedQuantity::tau;
+enum class Way { along_curve, new_way };
+
+/// What must be looked at. Along the curve of a motion that keeps its limits, never faster, positions and velocities keep theirs
+/// anyway; a straight line between two poses inside stays inside the workspace, which is convex.
+LimitCheck in_question(LimitCheck check, Way way) {
+  std::erase_if(check.uses, [way](const LimitUse& use) {
+    const LimitedQuantity quantity = use.limit.quantity;
+    if (way == Way::new_way) return quantity == LimitedQuantity::region || quantity == LimitedQuantity::z;
+    return quantity != LimitedQuantity::zdd && quantity != LimitedQuantity::qdd && quantity != LimitedQuantity::tau;
   });
   return check;
 }
 
-enum class Way { along_curve, new_way };
+bool passed(const LimitCheck& check) {
+  if (!check.reachable) return false;
+  for (const LimitUse& use : check.uses) {
+    // A line may begin where a drive is at the end of its range.
+    const double margin = use.limit.quantity == LimitedQuantity::q ? 0.0 : kSearchMargin;
+    if (!(use.load <= 1 - margin)) return false;
+  }
+  return true;
+}
 
 /// Shortest duration, a whole number of samples, with which the limits are kept.
 struct Search {
@@ -79,9 +91,8 @@ Search shortest(const Robot& robot, const MotionLimits& limits, Way way, double 
   Search search;
   for (double wanted = first;; wanted *= kRampGrowth) {
     const double duration = std::ceil(std::min(wanted, longest) * rate_hz) / rate_hz;
-    search.last = check_limits(robot, limits, make(duration), kSearchSamples);
-    if (way == Way::along_curve) search.last = of_accelerations(std::move(search.last));
-    if (search.last.margin() >= kSearchMargin) {
+    search.last = in_question(check_limits(robot, limits, make(duration), kSearchSamples), way);
+    if (passed(search.last)) {
       search.duration = duration;
       return search;
     }
