@@ -60,7 +60,8 @@ struct Plant::Impl : detail::JointDynamics {
 
   [[noreturn]] void lost(const char* how) const {
     throw Error(fmt::format("at {:.4f} s the robot {}", now, how), "simulation",
-                "check that trajectory, parameters and robot file belong together, and the gains of the controller",
+                "check that trajectory, parameters and robot file belong together; a lower --bandwidth-hz steadies a loop that "
+                "is unstable",
                 ExitCode::no_convergence);
   }
 

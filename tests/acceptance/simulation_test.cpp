@@ -20,8 +20,8 @@ namespace {
 class VirtualRobot : public ::testing::Test {
  protected:
   VirtualRobot() {
-    folder.write("robot.urdf", read_text(installed("robots/mujoco_delta4.urdf")));
-    folder.write("truth.csv", read_text(installed("logs/mujoco_delta4/truth.csv")));
+    (void)folder.write("robot.urdf", read_text(installed("robots/mujoco_delta4.urdf")));
+    (void)folder.write("truth.csv", read_text(installed("logs/mujoco_delta4/truth.csv")));
   }
   [[nodiscard]] std::string path(const std::string& name) const { return folder.path(name); }
 

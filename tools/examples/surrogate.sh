@@ -11,7 +11,7 @@ usage() { sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 case "$1" in -h | --help) usage; exit 0 ;; esac
 out="$1"
 starts=8 # a number of starts, not a time, so that every run plans the same
-if [ "${2:-}" = --short ]; then starts=2; elif [ $# -gt 1 ]; then usage >&2; exit 2; fi
+if [ "${2:-}" = --short ]; then starts=1; elif [ $# -gt 1 ]; then usage >&2; exit 2; fi
 if [ -e "$out" ] && [ -n "$(ls -A -- "$out" 2>/dev/null || echo file)" ]; then
   echo "surrogate.sh: $out is there already and not empty; give another folder" >&2
   exit 2
