@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -106,6 +107,9 @@ class Simulate {
            "effect NAME@JOINT:key=value,... e.g. stribeck@drive2:friction=2,rate=0.25,exponent=2; may be given several times")
         ->type_name("TEXT")
         ->take_all();
+    app.add_option("--effects", effects_file_,
+                   "effects as delta-diagnose writes them, effect,joint,parameter,value,unit,std (CSV)")
+        ->type_name("FILE");
     app.add_option("--controller", law_, "control law")
         ->check(CLI::IsMember({"pd-feedforward", "computed-torque", "augmented-pd"}))
         ->capture_default_str();
@@ -150,12 +154,13 @@ class Simulate {
 
  private:
   void execute(ToolRun& run) {
-    run.check_files({output_}, {robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_});
+    run.check_files({output_}, {robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, effects_file_});
     const RobotDescription description = read_robot_file(robot_file_);
     const ParameterTable table = read_parameters(parameter_file_);
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
     std::vector<Effect> effects;
+    if (!effects_file_.empty()) effects = read_effects(effects_file_, description);
     for (const std::string& text : effects_) effects.push_back(parse_effect(text, description));
     complete_options(description, run);
     const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);
@@ -240,7 +245,8 @@ class Simulate {
     fmt::print("wrote {}\n", output_);
   }
 
-  std::string robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, output_, law_ = "pd-feedforward";
+  std::string robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, effects_file_, output_,
+      law_ = "pd-feedforward";
   std::vector<std::string> effects_;
   std::vector<double> encoder_noise_, torque_noise_;
   double control_rate_hz_ = 0, encoder_step_m_ = 0;

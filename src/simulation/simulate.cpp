@@ -25,7 +25,7 @@ int whole_ratio(double high, double low) {
 /// Rows of the log as they come.
 class Recorder {
  public:
-  Recorder(Eigen::Index rows, int drives) : drives_(drives) {
+  Recorder(Eigen::Index rows, int drives) {
     t.resize(rows);
     for (Eigen::MatrixXd* m : {&q, &qd, &qdd, &tau, &reading}) m->resize(rows, drives);
   }
@@ -42,9 +42,6 @@ class Recorder {
     result.true_tau = tau;
     result.largest_torque = tau.cwiseAbs().colwise().maxCoeff();
   }
-
- private:
-  int drives_;
 };
 
 SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,

@@ -118,6 +118,18 @@ TEST_F(VirtualRobot, AnIdentificationFindsTheTruthInItsIntervals) {
   figure("friction_error_in_standard_deviations", worst, 4);
 }
 
+TEST_F(VirtualRobot, EffectsComeFromAFileAsFromTheCommandLine) {
+  plan("t.csv", 1, 0.4, 1);
+  (void)folder.write("effects.csv",
+                     "effect,joint,parameter,value,unit,std\n"
+                     "stribeck,drive2,friction,2,N*m,0.1\nstribeck,drive2,rate,0.25,rad/s,\nstribeck,drive2,exponent,2,,\n");
+  succeed(simulate("t.csv", "file.csv", {"--effects", path("effects.csv")}));
+  succeed(simulate("t.csv", "flag.csv", {"--effect", "stribeck@drive2:friction=2,rate=0.25,exponent=2"}));
+  succeed(simulate("t.csv", "none.csv"));
+  EXPECT_EQ(read_text(path("file.csv")), read_text(path("flag.csv")));
+  EXPECT_NE(read_text(path("file.csv")), read_text(path("none.csv")));
+}
+
 TEST_F(VirtualRobot, AnUnknownEffectIsRefusedWithTheKnownOnes) {
   plan("t.csv", 1, 0.4, 1);
   const ToolResult unknown = run(simulate("t.csv", "log.csv", {"--effect", "gremlin@drive1:size=3"}));
