@@ -33,8 +33,10 @@ constexpr int kVerifySamples = 4000;      // of a period
 constexpr int kRankSamples = 600;         // of a period, to compare starts
 constexpr double kLargestStretch = 1.1;   // the smooth limits of the search lie inside the true ones
 constexpr int kSearchEvaluations = 250;   // of a start
-constexpr int kUsualEvaluations = 130;    // that a start takes in the mean
-constexpr int kPolishEvaluations = 250;   // of a motion that is polished
+// If the time runs out, a part of it is still left for kicks and for polishing.
+constexpr double kRandomUntil = 0.6, kKicksUntil = 0.85;
+constexpr int kUsualEvaluations = 130;   // that a start takes in the mean
+constexpr int kPolishEvaluations = 250;  // of a motion that is polished
 constexpr int kPolished = 4;
 constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
 constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
@@ -52,7 +54,8 @@ class Clock {
     return options_.elapsed_s + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   [[nodiscard]] bool interrupted() const { return options_.stop != nullptr && options_.stop->load(); }
-  [[nodiscard]] bool over() const { return interrupted() || seconds() > options_.time_limit_s; }
+  [[nodiscard]] bool over() const { return over(options_.time_limit_s); }
+  [[nodiscard]] bool over(double deadline_s) const { return interrupted() || seconds() > deadline_s; }
 
  private:
   const ExcitationOptions& options_;
@@ -181,10 +184,12 @@ class SegmentSearch {
   }
 
   /// Local search from a series, then made to keep the true limits. Nothing if that cannot be.
-  [[nodiscard]] std::optional<Candidate> improve(const FourierSeries& start, bool polish, long& evaluations) const {
+  [[nodiscard]] std::optional<Candidate> improve(const FourierSeries& start, bool polish, double deadline_s,
+                                                 long& evaluations) const {
     const DesignProblem problem(space_, limits_, settings(polish));
-    const detail::SearchResult found = detail::local_search(
-        problem, problem.variables_of(start), polish ? kPolishEvaluations : kSearchEvaluations, [this] { return clock_.over(); });
+    const detail::SearchResult found =
+        detail::local_search(problem, problem.variables_of(start), polish ? kPolishEvaluations : kSearchEvaluations,
+                             [&] { return clock_.over(deadline_s); });
     evaluations += found.evaluations;
     const auto series = fitted(space_, limits_, on_grid(problem.series(found.best)), kLargestStretch, kRankSamples);
     if (!series) return std::nullopt;
@@ -307,31 +312,33 @@ namespace {
 
 /// All stages for one segment: random starts, kicks of the best, polishing.
 std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options, const Clock& clock,
-                                        int starts, std::uint64_t seed, const std::optional<FourierSeries>& incumbent,
-                                        Excitation& result, RunCount& run, const std::function<void(const Candidate&)>& first) {
+                                        double slice_end_s, int starts, std::uint64_t seed,
+                                        const std::optional<FourierSeries>& incumbent, Excitation& result, RunCount& run,
+                                        const std::function<void(const Candidate&)>& first) {
+  const double begin = clock.seconds(), time = std::max(0.0, slice_end_s - begin);
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
   std::vector<std::optional<Candidate>> found(static_cast<std::size_t>(starts + kPolished) + 1);
   if (incumbent) found.back() = Candidate{*incumbent, search.value(*incumbent)};
-  const auto count = [&](long evaluations) {
+  const auto count = [&](long evaluations, double deadline_s) {
 #pragma omp critical(deltadyn_excitation_count)
     {
       run.evaluations += evaluations;
       ++run.done;
-      run.cut += clock.over() ? 1 : 0;
+      run.cut += clock.over(deadline_s) ? 1 : 0;
       if (options.progress)
         options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
     }
   };
-  const auto no_time = [&] {
-    if (!clock.over()) return false;
+  const auto no_time = [&](double deadline_s) {
+    if (!clock.over(deadline_s)) return false;
 #pragma omp critical(deltadyn_excitation_count)
     ++run.left_out;
     return true;
   };
-  const auto attempt = [&](std::size_t k, const std::optional<FourierSeries>& start, bool polish) {
+  const auto attempt = [&](std::size_t k, const std::optional<FourierSeries>& start, bool polish, double deadline_s) {
     long evaluations = 0;
     if (start) {
-      auto better = search.improve(*start, polish, evaluations);
+      auto better = search.improve(*start, polish, deadline_s, evaluations);
       const double before = search.value(*start);
       if (better && better->value > before) {
         found[k] = std::move(better);
@@ -339,7 +346,7 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
         found[k] = Candidate{search.on_grid(*start), before};
       }
     }
-    count(evaluations);
+    count(evaluations, deadline_s);
   };
 
   // A feasible answer before anything else.
@@ -349,24 +356,25 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   }
   in_parallel(random_starts, [&](int k) {
     // The first start is always made, so that there is an answer however short the time.
-    if (k > 0 && no_time()) return;
-    attempt(static_cast<std::size_t>(k), search.random_start(mixed(seed, static_cast<std::uint64_t>(k))), false);
+    if (k > 0 && no_time(begin + kRandomUntil * time)) return;
+    attempt(static_cast<std::size_t>(k), search.random_start(mixed(seed, static_cast<std::uint64_t>(k))), false,
+            begin + kRandomUntil * time);
   });
   const std::vector<std::size_t> parents = ranked(found);
   if (!parents.empty()) {
     const std::vector<std::optional<Candidate>> before = found;
     in_parallel(starts - random_starts, [&](int k) {
-      if (no_time()) return;
+      if (no_time(begin + kKicksUntil * time)) return;
       const std::size_t parent = parents[static_cast<std::size_t>(k) % std::min<std::size_t>(3, parents.size())];
       const auto number = static_cast<std::size_t>(random_starts + k);
-      attempt(number, search.kicked(before[parent]->series, mixed(seed, number)), false);
+      attempt(number, search.kicked(before[parent]->series, mixed(seed, number)), false, begin + kKicksUntil * time);
     });
   }
   const std::vector<std::size_t> best = ranked(found);
   const std::vector<std::optional<Candidate>> before = found;
   in_parallel(static_cast<int>(std::min<std::size_t>(kPolished, best.size())), [&](int k) {
-    if (no_time()) return;
-    attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true);
+    if (no_time(slice_end_s)) return;
+    attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true, slice_end_s);
   });
   for (int k = 0; k < starts; ++k) {
     const auto& candidate = found[static_cast<std::size_t>(k)];
@@ -427,12 +435,16 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
       }
       const SegmentSearch search(space, segment_limits[k], options, clock, other, share);
       const std::uint64_t seed = mixed(options.seed, static_cast<std::uint64_t>(round) * 1000 + k);
+      // Each of the searches that are left gets its part of the time that is left.
+      const auto searches_left = static_cast<double>(count * static_cast<std::size_t>(rounds - round) - k);
+      const double now = clock.seconds();
+      const double slice_end = now + std::max(0.0, options.time_limit_s - now) / searches_left;
       const auto first = [&](const Candidate& candidate) {
         if (result.first_feasible_time_s > 0) return;
         result.first_feasible_time_s = clock.seconds();
         result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
-      const auto found = search_segment(search, options, clock, starts, seed, series[k], result, run, first);
+      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], result, run, first);
       if (!found && !series[k]) {
         const FourierSeries still{options.highest_hz, MatrixXd::Zero(1 + 2 * options.harmonics, space.regressor->drives())};
         const LimitCheck check =
