@@ -20,7 +20,7 @@ VectorXd autoregression(const VectorXd& ar, Eigen::Index rows, unsigned seed) {
 }
 
 TEST(NoiseModel, FindsAnAutoregressionAndItsOrder) {
-  const VectorXd ar = (VectorXd(2) << 1.4, -0.5).finished();
+  const VectorXd ar = Eigen::Vector2d(1.4, -0.5);
   const VectorXd e = 0.3 * autoregression(ar, 20000, 1);
   const NoiseModel model = fit_noise_model(e, RowMask::Constant(e.size(), true));
   ASSERT_GE(model.order(), 2);
@@ -37,10 +37,12 @@ TEST(NoiseModel, TakesWhiteNoiseAsWhite) {
 }
 
 TEST(Whitener, MakesWhiteRowsAroundGapsAndLosesNoUsableRow) {
-  const VectorXd ar = (VectorXd(1) << 0.95).finished();
+  const VectorXd ar = VectorXd::Constant(1, 0.95);
   RowMask usable = RowMask::Constant(4000, true);
   for (Eigen::Index t = 50; t + 30 < usable.size(); t += 100) usable.segment(t, 20).setConstant(false);
-  const Whitener whitener({ar, 1.0}, usable);
+  NoiseModel model;
+  model.ar = ar;
+  const Whitener whitener(model, usable);
   EXPECT_GE(whitener.rows(), usable.count() - 1);
   const VectorXd white = whitener.apply(autoregression(ar, 4000, 3));
   EXPECT_NEAR(white.squaredNorm() / static_cast<double>(white.size()), 1.0, 0.08);
@@ -51,8 +53,11 @@ TEST(Whitener, MakesWhiteRowsAroundGapsAndLosesNoUsableRow) {
 TEST(Whitener, DoesNotCareWhatStandsInAGap) {
   RowMask usable = RowMask::Constant(300, true);
   usable.segment(100, 25).setConstant(false);
-  const Whitener whitener({(VectorXd(2) << 1.2, -0.4).finished(), 0.5}, usable);
-  const VectorXd e = autoregression((VectorXd(2) << 1.2, -0.4).finished(), 300, 4);
+  NoiseModel model;
+  model.ar = Eigen::Vector2d(1.2, -0.4);
+  model.std = 0.5;
+  const Whitener whitener(model, usable);
+  const VectorXd e = autoregression(model.ar, 300, 4);
   VectorXd other = e;
   other.segment(100, 25).setConstant(1e6);
   EXPECT_LT((whitener.apply(e) - whitener.apply(other)).norm(), 1e-6);

@@ -1,5 +1,6 @@
 #include "deltadyn/diagnosis/white_problem.hpp"
 
+#include <Eigen/QR>
 #include <gtest/gtest.h>
 
 namespace deltadyn {
@@ -12,7 +13,7 @@ TEST(ConstrainedGain, IsLeastSquaresWithoutConstraints) {
   const MatrixXd C = MatrixXd::Random(30, 3);
   const VectorXd r = VectorXd::Random(30);
   const Gain gain = constrained_gain(C.transpose() * C, C.transpose() * r, {false, false, false});
-  const VectorXd a = (C.transpose() * C).inverse() * C.transpose() * r;
+  const VectorXd a = C.colPivHouseholderQr().solve(r);
   EXPECT_LT((gain.amplitude - a).norm(), 1e-9);
   EXPECT_NEAR(gain.gain, r.squaredNorm() - (r - C * a).squaredNorm(), 1e-9);
 }
