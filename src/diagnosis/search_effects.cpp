@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <memory>
 #include <numeric>
 
@@ -37,14 +38,17 @@ std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch
   return order;
 }
 
-/// The hypothesis that is worth most once shapes are refined.
-std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state) {
+/// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be noise that
+/// the null knows, and must not stand in the way of the next.
+std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
+                            const std::function<bool(const Fit&)>& counts = {}) {
   std::optional<Fit> best;
   double best_worth = 0;
   const auto order = by_worth(search, state);
   for (std::size_t k = 0; k < std::min(kRefined, order.size()); ++k) {
     if (!(state.scores[order[k]].gain > 0)) continue;
     Fit fit = search.refine(state, order[k]);
+    if (counts && !counts(fit)) continue;
     const double worth = search.worth(order[k], fit.gain, state);
     if (!best || worth > best_worth) {
       best_worth = worth;
@@ -221,8 +225,9 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
-    std::optional<Fit> fit = best_fit(search, state);
-    if (!fit || !counts(context, found, state, *fit) || form_error(context, found, *fit)) break;
+    std::optional<Fit> fit = best_fit(
+        search, state, [&](const Fit& one) { return counts(context, found, state, one) && !form_error(context, found, one); });
+    if (!fit) break;
     found.hygiene.push_back(hygienic(context, *fit));
     named += found.hygiene.back() ? 0 : 1;
     found.accepted.push_back(search.accept(*fit));

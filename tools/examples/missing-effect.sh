@@ -31,7 +31,7 @@ for speed in 48 6 24; do
   run "$bin/delta-excite" "$out/robot.urdf" -o "$out/motion$speed.csv" --workspace half-ball --workspace-center-m 0,0,-0.80 \
     --workspace-radius-m 0.3 --drive-velocity-rad-s "4,4,4,$speed" --drive-acceleration-rad-s2 40,40,40,200 --yaw-range-rad 40 \
     --starts 1 --time-limit-s 60 --seed $seed
-  run "$bin/delta-simulate" "$out/robot.urdf" --params "$out/truth.csv" --trajectory "$out/motion$speed.csv" --repeat 2 \
+  run "$bin/delta-simulate" "$out/robot.urdf" --params "$out/truth.csv" --trajectory "$out/motion$speed.csv" \
     --effect shear_thinning@drive4:friction=0.4,rate=2.5,exponent=0 --encoder-bits 19 --torque-noise-n-m 0.1,0.1,0.1,0.012 --seed $seed \
     -o "$out/log$speed.csv"
   seed=$((seed + 1))
