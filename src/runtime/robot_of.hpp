@@ -3,7 +3,6 @@
 /// \file
 /// Robot for one compile-time type and layout. Columns that the options leave out are dropped here, once, by index.
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "deltadyn/dynamics/joint_reactions.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/layout_columns.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn::detail {
@@ -72,15 +72,8 @@ class RobotOf final : public Robot {
   RobotOf(const RobotDescription& description, const ParameterOptions& options)
       : description_(description), options_(options), geometry_(geometry_of<double, R>(description)) {
     const ColumnText text = column_text<R, kSharing>(description);
-    for (int column = 0; column < Layout::kColumns; ++column) {
-      const bool tool =
-          R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
-      const bool rotor = column >= Layout::kRotorInertia && column < Layout::kOffset;
-      const bool wanted_rotor =
-          std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), column - Layout::kRotorInertia + 1) > 0;
-      const bool offset = column >= Layout::kOffset;
-      if ((tool && !options.tool) || (rotor && !wanted_rotor) || (offset && !options.offset)) continue;
-      columns_.push_back(column);
+    columns_ = layout_columns<R, kSharing>(options);
+    for (const int column : columns_) {
       names_.push_back(text.names[static_cast<std::size_t>(column)]);
       units_.push_back(text.units[static_cast<std::size_t>(column)]);
     }

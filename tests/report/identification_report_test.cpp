@@ -109,6 +109,10 @@ TEST(IdentificationAssessment, ConsistencyThatCostsMuchIsTold) {
   EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::caution);
   run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.5;
   EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::bad);
+  // The same rise in the rounding of a log without noise.
+  run.identification.drives[0].rms = 1e-14;
+  run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.5;
+  EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::good);
 }
 
 TEST(IdentificationAssessment, UncertainBaseParametersMakeTheTorqueUncertain) {
