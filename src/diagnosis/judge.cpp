@@ -299,7 +299,8 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
     one.joint = hypothesis.joint_name();
     one.gain = fit.gain;
     one.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
-    one.explained_share = fit.gain / std::max(gain + left, 1e-300);
+    // An effect that was taken in beside others can have gained more alone than all of them together.
+    one.explained_share = fit.gain / std::max({gain + left, fit.gain, 1e-300});
     one.confusable = found.sets[k];
     one.drives = drives_of(fit, *found.before.problem, n);
     one.region = region_of(context, fit, *found.before.problem, one.drives);
@@ -352,7 +353,8 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
       shrink_of(proof, *holdout, touched, context.options.seed, out);
       double gap = 0;
       for (const int j : touched) gap = std::max(gap, proof.rms_before(j) / std::max(proof.floor(j), 1e-300));
-      if (out.verdict != DiagnosisVerdict::unknown_structure && gap > 1.05 && out.gap_shrink < kCarriesOver) {
+      const bool worse = out.gap_shrink < 0;  // then even a small gap speaks against the name
+      if (out.verdict != DiagnosisVerdict::unknown_structure && (worse || (gap > 1.05 && out.gap_shrink < kCarriesOver))) {
         out.verdict = DiagnosisVerdict::unknown_structure;
         out.region = place_of(out, static_cast<std::size_t>(touched.front()));
         out.lines.push_back(fmt::format(
