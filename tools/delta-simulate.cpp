@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ Effect parse_effect(const std::string& text, const RobotDescription& robot) {
     if (!kind->tied) known += ", " + each.name;
   }
   std::istringstream entries(colon == std::string::npos ? "" : text.substr(colon + 1));
+  std::set<std::string> given;
   for (std::string entry; std::getline(entries, entry, ',');) {
     const auto equal = entry.find('=');
     const std::string key = entry.substr(0, equal);
@@ -62,6 +65,7 @@ Effect parse_effect(const std::string& text, const RobotDescription& robot) {
     } catch (const std::exception&) {
       throw Error("'" + entry + "' is not key=number", where, name + " has " + known, ExitCode::usage);
     }
+    if (!given.insert(key).second) throw Error(key + " is given twice", where, "give each number once", ExitCode::usage);
     bool found = false;
     for (std::size_t k = 0; k < kind->amplitudes.size(); ++k) {
       if (kind->amplitudes[k].name != key) continue;
@@ -72,6 +76,9 @@ Effect parse_effect(const std::string& text, const RobotDescription& robot) {
     }
     for (std::size_t k = 0; k < kind->shapes.size(); ++k) {
       if (kind->shapes[k].name != key) continue;
+      const std::vector<double>& grid = kind->shapes[k].grid;
+      const bool positive = !grid.empty() && *std::min_element(grid.begin(), grid.end()) > 0;
+      if (positive && !(value > 0)) throw Error(key + " must be positive", where, "give a number above 0", ExitCode::usage);
       effect.shape(static_cast<Eigen::Index>(k)) = value;
       found = true;
     }
