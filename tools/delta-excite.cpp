@@ -38,6 +38,12 @@ using tools::ToolRun;
 constexpr int kScaleStates = 500;         // states for the torque scale of a robot without effort limits
 constexpr double kNoiseOfScale = 0.005;   // torque noise, where none is given: share of the torque scale
 constexpr double kValidationShare = 0.3;  // of the time, for the validation trajectory
+// What follows the search, in units of the time that what precedes it took on this machine at this hour, measured with
+// kUsualStates: run-in, run-out and final check of a segment; samples, a hundred thousand; the report, which gnuplot makes slow.
+constexpr double kPlanShare = 0.25, kSamplesShare = 0.8, kReportShare = 0.5;
+constexpr int kFewestEvaluations = 20;  // of a search that deserves the name
+constexpr double kReport_s = 0.6;       // at least
+constexpr int kUsualStates = 6000;
 constexpr std::uint64_t kValidationSeed = 0x5A11DA7E;
 
 std::atomic<bool> interrupted{false};
@@ -157,7 +163,11 @@ class Excite {
     std::signal(SIGTERM, on_interrupt);
     options_.stop = &interrupted;
     options_.elapsed_s = seconds();
-    options_.time_limit_s = validation_.empty() ? time_limit_s_ : (1 - kValidationShare) * time_limit_s_;
+    // Planned for the time that was given, ended in time for what follows: the same seed then gives the same file.
+    options_.planned_time_s = validation_.empty() ? time_limit_s_ : (1 - kValidationShare) * time_limit_s_;
+    const Following following = time_after_search(options_.elapsed_s);
+    const double kept_for_report = validation_.empty() ? following.report_s : 0.0;
+    options_.time_limit_s = std::max(options_.elapsed_s, options_.planned_time_s - following.plan_s - kept_for_report);
     tools::ProgressBar bar("looking for the best motion");
     options_.progress = [&bar](double share) { bar.update(share); };
     const Written main = make(*robot, space, limits, bound, options_);
@@ -171,10 +181,10 @@ class Excite {
     if (!validation_.empty()) {
       ExcitationOptions other = options_;
       other.seed = run.seed ^ kValidationSeed;
-      // Planned for its share of the time, whatever the first one took, so that the same seed gives the same file.
-      other.elapsed_s = (1 - kValidationShare) * time_limit_s_;
+      // As the first one planned for its share of the time, whatever that one took.
+      other.elapsed_s = std::max(seconds(), (1 - kValidationShare) * time_limit_s_);
       other.planned_time_s = kValidationShare * time_limit_s_;
-      other.time_limit_s = time_limit_s_;
+      other.time_limit_s = std::max(other.elapsed_s, time_limit_s_ - following.plan_s - following.report_s);
       second = make(*robot, space, limits, bound, other);
       write_trajectory(validation_, second->samples, description);
     }
@@ -198,6 +208,19 @@ class Excite {
     return tell(input, second ? &second->excitation : nullptr, seconds(), run.summary);
   }
 
+  /// Time to keep for what follows a search.
+  struct Following {
+    double plan_s = 0, report_s = 0;
+  };
+  Following time_after_search(double preparation_s) const {
+    const double unit = preparation_s * std::min(1.0, static_cast<double>(kUsualStates) / bound_states_);
+    const auto segments = static_cast<double>(options_.speeds.size());
+    Following time;
+    time.plan_s = unit * segments * (kPlanShare + kSamplesShare * 1e-5 * duration_s_ * options_.rate_hz);
+    if (!report_file_.empty()) time.report_s = (0.5 + 0.5 * segments) * std::max(kReport_s, kReportShare * unit);
+    return time;
+  }
+
   Written make(const Robot& robot, const DesignSpace& space, const MotionLimits& limits, const DesignBound& bound,
                const ExcitationOptions& options) const {
     Written out;
@@ -214,6 +237,9 @@ class Excite {
                               use.limit.unit),
                   "", "give more time, or another --seed", ExitCode::no_convergence);
     }
+    if (!(out.excitation.d_efficiency > 0))
+      throw Error("the motion found keeps the limits, but does not show all base parameters", "--time-limit-s", "give more time",
+                  ExitCode::no_convergence);
     out.samples = sample_plan(robot, out.plan, options.rate_hz);
     return out;
   }
@@ -380,6 +406,13 @@ class Excite {
     fmt::print("limits used to 99 % or more: {}\n", binding.empty() ? "none" : fmt::format("{}", fmt::join(binding, ", ")));
     fmt::print("margin {:.3g} of the tightest limit ({}), between the samples, too\n", input.check.margin(), tight.limit.name);
     fmt::print("first feasible motion after {:.2f} s\n", e.first_feasible_time_s);
+    for (std::size_t k = 0; k < e.segments.size(); ++k) {
+      if (e.segments[k].evaluations < kFewestEvaluations)
+        fmt::print(
+            "note: the time was over before segment {} could be made better; it keeps the limits, but shows little. Give more "
+            "--time-limit-s\n",
+            k + 1);
+    }
     out.add("d_efficiency", e.d_efficiency);
     out.add("constraint_margin", input.check.margin());
     out.add("tightest_limit", tight.limit.name);
@@ -413,7 +446,7 @@ class Excite {
   std::vector<double> plate_velocity_, plate_acceleration_, torque_scale_, noise_, frequency_ = {0.1, 1.0};
   std::optional<double> radius_, top_radius_, height_, yaw_velocity_, yaw_acceleration_, yaw_range_;
   double duration_s_ = 10, time_limit_s_ = 60;
-  int segments_ = 1, bound_states_ = 6000;
+  int segments_ = 1, bound_states_ = kUsualStates;
   bool periodic_ = false, individual_limbs_ = false, without_tool_ = false, offset_ = false;
   CLI::Option* offset_flag_ = nullptr;
   std::vector<int> rotor_inertia_;

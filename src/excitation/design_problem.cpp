@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kNegligibleWeight = 1e-9;  // of a sample in a smooth maximum
+constexpr double kNegligibleWeight = 1e-13;  // of a sample in a smooth maximum
 
 }  // namespace
 

@@ -92,6 +92,19 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
   Eigen::MatrixXd Y(n, robot.parameters());
   std::vector<int> broken(list.size(), 0);
   int found = 0, unreachable = 0;
+  LimitedState rest;
+  rest.drives.resize(3 * n);
+  const auto load_at_rest = [&](const VectorXd& z) {
+    rest.x = VectorXd::Zero(3 * n);
+    rest.x.head(n) = z;
+    if (regressor.evaluate(rest.x, VectorXd(), Y, rest.drives) != Status::ok) return std::numeric_limits<double>::infinity();
+    rest.tau = Y * limits.parameters;
+    double load = 0;
+    for (const Limit& limit : list)
+      if (limit.quantity == LimitedQuantity::tau)
+        load = std::max(load, limit_load(limit, usage_of(limit, limited_value(limit, limits, rest))));
+    return load;
+  };
   double best_room = -std::numeric_limits<double>::infinity();
   while (found < count && states.drawn < kTriesPerState * count) {
     if (states.drawn >= kEarlyTries && found < kFewest) break;
@@ -113,11 +126,14 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
       allowed = false;
       pose_allowed = pose_allowed && !of_pose;
     }
-    if (pose_allowed && 1 - pose_load > best_room) {
+    if (allowed) states.x.col(found++) = state.x;
+    if (!pose_allowed) continue;
+    // At rest nothing but gravity loads the drives. A motion shrinks towards the centre, which should hold itself.
+    if (1 - pose_load > best_room && limits.parameters.size() > 0) pose_load = std::max(pose_load, load_at_rest(state.x.head(n)));
+    if (1 - pose_load > best_room) {
       best_room = 1 - pose_load;
       states.centre = state.x.head(n);
     }
-    if (allowed) states.x.col(found++) = state.x;
   }
   if (found < std::min(count, kFewest)) {
     const double total = states.drawn;

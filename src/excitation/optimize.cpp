@@ -38,10 +38,12 @@ constexpr double kRandomUntil = 0.6, kKicksUntil = 0.85;
 constexpr int kUsualEvaluations = 130;   // that a start takes in the mean
 constexpr int kPolishEvaluations = 250;  // of a motion that is polished
 constexpr int kPolished = 4;
-constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
-constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
-constexpr double kPreparation_s = 2;    // before the starts and after them
-constexpr double kShareOfTime = 0.6;    // of the time limit that the starts may plan for
+constexpr double kKickedShare = 0.4;        // of the starts that begin near the best of the others
+constexpr double kNominalRate = 14000;      // samples a second and thread that a desktop machine differentiates
+constexpr double kChecksKept = 2.5;         // time for the last check of a segment, in units of that of its first motion
+constexpr double kPreparation_s = 2;        // before the starts and after them
+constexpr double kShareOfTime = 0.6;        // of the time limit that the starts may plan for
+constexpr double kTimeForTwoRounds_s = 10;  // a segment: with less time it is not taken up a second time
 
 int search_samples(int harmonics) {
   return std::max(60, 20 * harmonics);
@@ -89,12 +91,34 @@ double margin_of(const DesignSpace& space, const MotionLimits& limits, const Fou
 std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits& limits, const FourierSeries& series,
                                     double most, int samples) {
   const VectorXd centre = space.states.centre;
-  double low = 0, high = most;
-  if (margin_of(space, limits, series.scaled(centre, most), samples) >= kFeasibleMargin) return series.scaled(centre, most);
-  constexpr int kHalvings = 24;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = (low + high) / 2;
-    (margin_of(space, limits, series.scaled(centre, middle), samples) >= kFeasibleMargin ? low : high) = middle;
+  const auto room_at = [&](double factor) {
+    return margin_of(space, limits, series.scaled(centre, factor), samples) - kFeasibleMargin;
+  };
+  double low = 0, high = most, room_high = room_at(most);
+  if (room_high >= 0) return series.scaled(centre, most);
+  double room_low = room_at(0.0);
+  if (room_low < 0) return std::nullopt;
+  // Regula falsi with the weight of an end that stays halved (Illinois), which needs a third of the looks that halving takes;
+  // every third step halves, because the room jumps where the robot cannot reach.
+  constexpr int kSteps = 40;
+  constexpr double kEnough = 1e-8;
+  int side = 0;
+  double room_best = room_low;
+  for (int k = 0; k < kSteps && room_best > kEnough && high - low > kEnough * most; ++k) {
+    double middle = (low * room_high - high * room_low) / (room_high - room_low);
+    if (k % 3 == 2 || !(middle > low && middle < high)) middle = (low + high) / 2;
+    const double room = room_at(middle);
+    if (room >= 0) {
+      low = middle;
+      room_low = room_best = room;
+      if (side == 1) room_high /= 2;
+      side = 1;
+    } else {
+      high = middle;
+      room_high = room;
+      if (side == -1) room_low /= 2;
+      side = -1;
+    }
   }
   if (low <= 0) return std::nullopt;
   return series.scaled(centre, low);
@@ -315,7 +339,7 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
                                         double slice_end_s, int starts, std::uint64_t seed,
                                         const std::optional<FourierSeries>& incumbent, Excitation& result, RunCount& run,
                                         const std::function<void(const Candidate&)>& first) {
-  const double begin = clock.seconds(), time = std::max(0.0, slice_end_s - begin);
+  const double begin = clock.seconds();
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
   std::vector<std::optional<Candidate>> found(static_cast<std::size_t>(starts + kPolished) + 1);
   if (incumbent) found.back() = Candidate{*incumbent, search.value(*incumbent)};
@@ -349,11 +373,14 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
     count(evaluations, deadline_s);
   };
 
-  // A feasible answer before anything else.
+  // A feasible answer before anything else. How long its check takes tells what to keep for that of the result.
   if (auto start = search.random_start(mixed(seed, 0))) {
+    const double before_check = clock.seconds();
     const auto safe = fitted(search.space(), search.limits(), search.on_grid(*start), 1.0, kVerifySamples);
     if (safe) first(Candidate{*safe, search.value(*safe)});
+    slice_end_s = std::max(begin, slice_end_s - kChecksKept * (clock.seconds() - before_check));
   }
+  const double time = std::max(0.0, slice_end_s - begin);
   in_parallel(random_starts, [&](int k) {
     // The first start is always made, so that there is an answer however short the time.
     if (k > 0 && no_time(begin + kRandomUntil * time)) return;
@@ -388,17 +415,26 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   return std::nullopt;
 }
 
+double planned_time(const ExcitationOptions& options) {
+  return options.planned_time_s > 0 ? options.planned_time_s : options.time_limit_s;
+}
+
+/// How often every segment is searched: once, and again beside what the others have become.
+int planned_rounds(const ExcitationOptions& options) {
+  const auto segments = static_cast<double>(options.speeds.size());
+  return segments > 1 && planned_time(options) >= kTimeForTwoRounds_s * segments ? 2 : 1;
+}
+
 int planned_starts(const DesignSpace& space, const ExcitationOptions& options) {
   if (options.starts > 0) return options.starts;
   // A state of N drives is differentiated in 3 N directions at about N joints.
   const double n = space.regressor->drives();
   const double rate = kNominalRate * (4 / n) * (4 / n);
   const double work = static_cast<double>(search_samples(options.harmonics)) * kUsualEvaluations;
-  const double rounds = options.speeds.size() == 1 ? 1 : 2 * static_cast<double>(options.speeds.size());
-  const double planned = options.planned_time_s > 0 ? options.planned_time_s : options.time_limit_s;
-  const double seconds = kShareOfTime * std::max(0.0, planned - kPreparation_s) * 2;
+  const double searches = planned_rounds(options) * static_cast<double>(options.speeds.size());
+  const double seconds = kShareOfTime * std::max(0.0, planned_time(options) - kPreparation_s) * 2;
   const double polish = 2.0 * kPolished;  // in units of starts: twice the samples
-  return std::clamp(static_cast<int>(rate * seconds / work / rounds - polish), 4, 400);
+  return std::clamp(static_cast<int>(rate * seconds / work / searches - polish), 4, 400);
 }
 
 }  // namespace
@@ -414,9 +450,10 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
   for (const double speed : options.speeds) segment_limits.push_back(limits.slowed(speed));
   std::vector<std::optional<FourierSeries>> series(count);
   std::vector<MatrixXd> information(count);
+  std::vector<long> evaluations(count, 0);
 
   const int starts = planned_starts(space, options);
-  const int rounds = count == 1 ? 1 : 2;
+  const int rounds = planned_rounds(options);
   RunCount run;
   run.planned = static_cast<int>(count) * rounds * (starts + kPolished);
   const double share = 1.0 / static_cast<double>(count);
@@ -444,16 +481,19 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
         result.first_feasible_time_s = clock.seconds();
         result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
+      const long evaluations_before = run.evaluations;
       const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], result, run, first);
+      evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
         const FourierSeries still{options.highest_hz, MatrixXd::Zero(1 + 2 * options.harmonics, space.regressor->drives())};
         const LimitCheck check =
             check_limits(*space.robot, segment_limits[k], one_period(still.scaled(space.states.centre, 0.0)), 10);
         const LimitUse& use = check.tightest();
-        throw Error(fmt::format("no motion that keeps all limits was found; the limit that is violated least is '{}' ({:.6g} {} "
-                                "where {:.6g} to {:.6g} is allowed)",
-                                use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper),
-                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+        throw Error(
+            fmt::format("no motion that keeps all limits was found; even at rest in the pose with the most room the limit "
+                        "'{}' is violated, the least that was found ({:.6g} {} where {:.6g} to {:.6g} is allowed)",
+                        use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper),
+            "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
       }
       if (found) {
         series[k] = found->series;
@@ -464,7 +504,7 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
 
   result.information = MatrixXd::Zero(p, p);
   for (std::size_t k = 0; k < count; ++k) {
-    Excitation::Segment segment{*series[k], segment_limits[k], {}, information[k]};
+    Excitation::Segment segment{*series[k], segment_limits[k], {}, information[k], evaluations[k]};
     segment.check = check_limits(*space.robot, segment.limits, one_period(segment.series), kVerifySamples);
     result.information += share * segment.information;
     result.segments.push_back(std::move(segment));

@@ -22,12 +22,12 @@ int Region::walls() const {
 
 std::string Region::wall_name(int wall) const {
   if (shape == RegionShape::box) {
-    constexpr const char* kNames[] = {"workspace, +x", "workspace, -x", "workspace, +y",
-                                      "workspace, -y", "workspace, +z", "workspace, -z"};
+    constexpr const char* kNames[] = {"workspace +x", "workspace -x", "workspace +y",
+                                      "workspace -y", "workspace +z", "workspace -z"};
     return kNames[wall];
   }
-  if (wall == 0) return "workspace, radius";
-  return wall == 1 ? "workspace, top" : "workspace, bottom";
+  if (wall == 0) return "workspace radius";
+  return wall == 1 ? "workspace top" : "workspace bottom";
 }
 
 double Region::usage(int wall, const Vector3d& p, Vector3d* gradient) const {
@@ -90,7 +90,9 @@ Vector3d Region::middle() const {
 }
 
 std::string Region::text() const {
-  const std::string about = fmt::format("about ({:.4g}, {:.4g}, {:.4g}) m", centre.x(), centre.y(), centre.z());
+  // What rounding left of a zero is not told.
+  const auto told = [](double length) { return std::abs(length) < 1e-6 ? 0.0 : length; };
+  const std::string about = fmt::format("about ({:.4g}, {:.4g}, {:.4g}) m", told(centre.x()), told(centre.y()), told(centre.z()));
   switch (shape) {
     case RegionShape::ball: return fmt::format("ball of radius {:.4g} m {}", radius, about);
     case RegionShape::half_ball: return fmt::format("lower half ball of radius {:.4g} m {}", radius, about);

@@ -15,9 +15,10 @@ namespace deltadyn {
 
 /// States (z, zd, zdd) drawn at random inside all limits (paper IV.A), column by column.
 struct AdmissibleStates {
-  Eigen::MatrixXd x;       ///< 3 N x count
-  Eigen::VectorXd centre;  ///< pose with the most room among those drawn [m; rad]
-  int drawn = 0;           ///< states that were tried
+  Eigen::MatrixXd x;  ///< 3 N x count
+  /// Pose with the most room among those drawn, in torque to hold itself too where that is limited [m; rad].
+  Eigen::VectorXd centre;
+  int drawn = 0;  ///< states that were tried
 };
 
 /// Poses uniform in the workspace, rates uniform in the boxes of their limits; where the task space has no limit of its own, in

@@ -26,7 +26,7 @@ struct ExcitationOptions {
   std::vector<double> speeds = {1.0};      ///< one a segment: share of the velocity limits
   double time_limit_s = 60;                ///< of the search, from `elapsed_s` on
   double elapsed_s = 0;                    ///< spent before, counts for the figures and the limit
-  double planned_time_s = 0;               ///< that the starts are planned for; 0: the time limit
+  double planned_time_s = 0;               ///< that starts and rounds are planned for; 0: the time limit
   /// Random starts of each segment; 0: as many as two threads of a desktop machine finish in 60 % of the planned time.
   /// The work is counted in evaluations, so that the result does not depend on the machine unless the time runs out.
   int starts = 0;
@@ -45,6 +45,7 @@ struct Excitation {
     MotionLimits limits;          ///< at the speed of this segment
     LimitCheck check;             ///< of its period, between the samples too
     Eigen::MatrixXd information;  ///< a sample, scaled columns, true Coulomb signs
+    long evaluations = 0;         ///< of value and gradient; 0: no time was left, the motion is a random one
   };
   std::vector<Segment> segments;
   Eigen::MatrixXd information;  ///< mean of the segments, by equal shares of time
@@ -65,7 +66,7 @@ struct Excitation {
 };
 
 /// Throws deltadyn::Error: usage or bad_input for limits and options that cannot be met, no_convergence if no feasible motion was
-/// found in time; it names the limit that was violated least.
+/// found in time; it names the limit that is violated at rest in the pose with the most room.
 [[nodiscard]] Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& limits, const DesignBound& bound,
                                              const ExcitationOptions& options);
 

@@ -21,7 +21,7 @@ struct Limit {
   LimitedQuantity quantity;
   int index;  ///< of the coordinate, the drive, or the wall of the region
   double lower, upper;
-  std::string name;  ///< "drive 2 velocity", "z acceleration", "workspace, radius"
+  std::string name;  ///< "drive 2 velocity", "z acceleration", "workspace radius"
   std::string unit;  ///< SI; empty for a wall
 };
 
