@@ -1,6 +1,7 @@
 /// \file
 /// delta-excite: the motion that shows every parameter, inside the limits of the machine.
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -406,6 +407,11 @@ class Excite {
     fmt::print("limits used to 99 % or more: {}\n", binding.empty() ? "none" : fmt::format("{}", fmt::join(binding, ", ")));
     fmt::print("margin {:.3g} of the tightest limit ({}), between the samples, too\n", input.check.margin(), tight.limit.name);
     fmt::print("first feasible motion after {:.2f} s\n", e.first_feasible_time_s);
+    const bool at_highest = std::any_of(e.segments.begin(), e.segments.end(), [this](const Excitation::Segment& segment) {
+      return segment.series.base_frequency_hz > 0.99 * options_.highest_hz;
+    });
+    if (at_highest && options_.highest_hz > options_.lowest_hz)
+      fmt::print("note: the base frequency is at its upper end; a wider --base-frequency-hz or more --harmonics may show more\n");
     for (std::size_t k = 0; k < e.segments.size(); ++k) {
       if (e.segments[k].evaluations < kFewestEvaluations)
         fmt::print(

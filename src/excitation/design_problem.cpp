@@ -221,11 +221,13 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
     if (torque) {
       MatrixXd unused(3 * n, 3 * n);
       MatrixXd row = MatrixXd::Zero(n, regressor.parameters());
-      for (Index drive = 0; drive < n; ++drive) {
+      for (Index k = 0; k < limits; ++k) {
+        const Limit& limit = list_[static_cast<std::size_t>(k)];
+        if (limit.quantity != LimitedQuantity::tau || std::abs(weight(k, i)) < kNegligibleWeight) continue;
         row.setZero();
-        row.row(drive) = limits_.parameters.transpose();
+        row.row(limit.index) = limits_.parameters.transpose();
         if (regressor.differentiate(x, sign_width_, row, g, unused) != Status::ok) continue;
-        at.tau_jacobian[static_cast<std::size_t>(i)].row(drive) = g.transpose();
+        at.tau_jacobian[static_cast<std::size_t>(i)].row(limit.index) = g.transpose();
       }
     }
     const Index window = [&] {

@@ -16,12 +16,16 @@ using Eigen::VectorXd;
 
 constexpr int kTriesPerState = 400;  // before the limits count as leaving nothing
 constexpr int kFewest = 50;          // states that a design can start from
-constexpr int kEarlyTries = 20000;   // after which fewer than that are a hopeless case
+constexpr int kEarlyTries = 20000;   // after which fewer than that are a hopeless case,
+constexpr int kFewOfEarly = 1000;    // and fewer than these a reason to look at slower states
 
 class StateDraw {
  public:
   StateDraw(const Robot& robot, const MotionLimits& limits, std::uint64_t seed)
       : robot_(robot), limits_(limits), random_(seed), n_(robot.drives()), z_(n_), q_(n_), qd_(n_), qdd_(n_) {}
+
+  /// From now on all rates of a state are made smaller by a factor of its own, velocities less than accelerations.
+  void slow_down() { slow_ = true; }
 
   /// False if the pose is out of reach.
   bool next(VectorXd& x) {
@@ -57,6 +61,11 @@ class StateDraw {
       x(n_ + i) = std::isfinite(limits_.zd(i)) ? zd(i) : task.zd(i);
       x(2 * n_ + i) = std::isfinite(limits_.zdd(i)) ? zdd(i) : task.zdd(i);
     }
+    if (slow_) {
+      const double share = uniform(0, 1);
+      x.segment(n_, n_) *= share;
+      x.tail(n_) *= share * share;
+    }
     return true;
   }
 
@@ -74,6 +83,7 @@ class StateDraw {
   const MotionLimits& limits_;
   std::mt19937_64 random_;
   int n_;
+  bool slow_ = false;
   VectorXd z_, q_, qd_, qdd_;
 };
 
@@ -94,20 +104,32 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
   int found = 0, unreachable = 0;
   LimitedState rest;
   rest.drives.resize(3 * n);
+  double best_room = -std::numeric_limits<double>::infinity();
+  // Torque to hold a pose and to begin to move in any direction: Coulomb friction comes with the slightest rate.
   const auto load_at_rest = [&](const VectorXd& z) {
-    rest.x = VectorXd::Zero(3 * n);
-    rest.x.head(n) = z;
-    if (regressor.evaluate(rest.x, VectorXd(), Y, rest.drives) != Status::ok) return std::numeric_limits<double>::infinity();
-    rest.tau = Y * limits.parameters;
+    constexpr double kSlight = 1e-9;
     double load = 0;
-    for (const Limit& limit : list)
-      if (limit.quantity == LimitedQuantity::tau)
-        load = std::max(load, limit_load(limit, usage_of(limit, limited_value(limit, limits, rest))));
+    for (unsigned directions = 0; directions < (1U << static_cast<unsigned>(n)); ++directions) {
+      rest.x = VectorXd::Zero(3 * n);
+      rest.x.head(n) = z;
+      for (int i = 0; i < n; ++i) rest.x(n + i) = (directions >> static_cast<unsigned>(i)) % 2 == 0 ? kSlight : -kSlight;
+      if (regressor.evaluate(rest.x, VectorXd(), Y, rest.drives) != Status::ok) return std::numeric_limits<double>::infinity();
+      rest.tau = Y * limits.parameters;
+      for (const Limit& limit : list)
+        if (limit.quantity == LimitedQuantity::tau)
+          load = std::max(load, limit_load(limit, usage_of(limit, limited_value(limit, limits, rest))));
+      if (1 - load <= best_room) break;
+    }
     return load;
   };
-  double best_room = -std::numeric_limits<double>::infinity();
   while (found < count && states.drawn < kTriesPerState * count) {
-    if (states.drawn >= kEarlyTries && found < kFewest) break;
+    if (states.drawn == kEarlyTries && found < kFewOfEarly) {
+      if (best_room > 0) {
+        draw.slow_down();  // a pose holds itself, so that slow motions are allowed
+      } else if (found < kFewest) {
+        break;
+      }
+    }
     ++states.drawn;
     if (!draw.next(state.x) || regressor.evaluate(state.x, VectorXd(), Y, state.drives) != Status::ok) {
       ++unreachable;

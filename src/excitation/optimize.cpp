@@ -198,6 +198,19 @@ class SegmentSearch {
     return std::nullopt;
   }
 
+  /// All coordinates a little to and fro about the centre, each in its own time.
+  [[nodiscard]] FourierSeries slight_motion() const {
+    constexpr double kSlight = 1e-6;
+    FourierSeries series{options_.highest_hz, MatrixXd::Zero(1 + 2 * options_.harmonics, space_.regressor->drives())};
+    series.coefficients.row(0) = space_.states.centre.transpose();
+    for (Index i = 0; i < series.coefficients.cols(); ++i) {
+      const double phase = static_cast<double>(i);
+      series.coefficients(1, i) = kSlight * space_.coordinate_scale(i) * std::cos(phase);
+      series.coefficients(2, i) = kSlight * space_.coordinate_scale(i) * std::sin(phase);
+    }
+    return series;
+  }
+
   [[nodiscard]] FourierSeries kicked(const FourierSeries& series, std::uint64_t seed) const {
     Normal random(seed);
     const DesignProblem problem(space_, limits_, settings(false));
@@ -485,15 +498,15 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
       const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], result, run, first);
       evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
-        const FourierSeries still{options.highest_hz, MatrixXd::Zero(1 + 2 * options.harmonics, space.regressor->drives())};
-        const LimitCheck check =
-            check_limits(*space.robot, segment_limits[k], one_period(still.scaled(space.states.centre, 0.0)), 10);
+        const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);
         const LimitUse& use = check.tightest();
-        throw Error(
-            fmt::format("no motion that keeps all limits was found; even at rest in the pose with the most room the limit "
-                        "'{}' is violated, the least that was found ({:.6g} {} where {:.6g} to {:.6g} is allowed)",
-                        use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper),
-            "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+        throw Error(use.load > 1
+                        ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most room "
+                                      "breaks the limit '{}' ({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others "
+                                      "that were drawn break theirs further",
+                                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
+                        : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
+                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
       }
       if (found) {
         series[k] = found->series;

@@ -54,6 +54,7 @@ TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
   const auto summary = read_summary(folder.path("s.csv"));
   EXPECT_EQ(summary.at("stopped"), "completed");
   EXPECT_EQ(summary.at("base_parameters"), "37");
+  EXPECT_THAT(summary.at("binding_limits"), HasSubstr("; "));
   figure("d_efficiency_missing_to_one", 1 - number(summary, "d_efficiency"), 1 - 0.65);
   figure("constraint_violation", -number(summary, "constraint_margin"), 0);
   EXPECT_LT(number(summary, "bound_gap"), 1.1e-3);
@@ -134,6 +135,57 @@ TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
   }
 }
 
+// Each limit makes sense and slow states that fall inside them exist, but no pose holds itself and its friction with 12 N m.
+TEST(Excite, LimitsThatCannotBeMetAreNamedWithExitCodeFour) {
+  const testing::TemporaryFolder folder;
+  const ToolResult result = run(excite("mujoco_delta4.urdf") + Words{"-o",
+                                                                     folder.path("t.csv"),
+                                                                     "--workspace",
+                                                                     "half-ball",
+                                                                     "--workspace-center-m",
+                                                                     "0,0,-0.80",
+                                                                     "--workspace-radius-m",
+                                                                     "0.35",
+                                                                     "--params",
+                                                                     installed("logs/mujoco_delta4/truth.csv"),
+                                                                     "--drive-torque-n-m",
+                                                                     "12,12,12,4",
+                                                                     "--drive-velocity-rad-s",
+                                                                     "0.5",
+                                                                     "--drive-acceleration-rad-s2",
+                                                                     "2",
+                                                                     "--time-limit-s",
+                                                                     "5",
+                                                                     "--report",
+                                                                     folder.path("r.html")});
+  EXPECT_EQ(result.code, 4) << result.out << result.err;
+  EXPECT_THAT(result.err, HasSubstr("no motion keeps all limits"));
+  EXPECT_THAT(result.err, HasSubstr("torque' (-1"));
+  EXPECT_THAT(result.err, HasSubstr("where -12 to 12 is allowed"));
+  EXPECT_THAT(result.err, HasSubstr("mend: widen this limit"));
+  EXPECT_FALSE(fs::exists(folder.path("t.csv")));
+  EXPECT_FALSE(fs::exists(folder.path("r.html")));
+}
+
+// However short the time, the limits hold, and a motion that shows little is not handed out without a word.
+TEST(Excite, SaysWhenTheTimeWasTooShort) {
+  const testing::TemporaryFolder folder;
+  const ToolResult result = run(excite("mujoco_delta4.urdf") + kMainCase +
+                                Words{"--segments", "2", "--segment-speeds", "0.3,1", "--time-limit-s", "0.01", "-o",
+                                      folder.path("t.csv"), "--summary", folder.path("s.csv")});
+  if (result.code == 4) {
+    EXPECT_THAT(result.err, HasSubstr("--time-limit-s"));
+    EXPECT_FALSE(fs::exists(folder.path("t.csv")));
+    return;
+  }
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("the time was over before segment 1 could be made better"));
+  EXPECT_THAT(result.out, HasSubstr("the time was over before segment 2 could be made better"));
+  const auto summary = read_summary(folder.path("s.csv"));
+  EXPECT_EQ(summary.at("stopped"), "time");
+  EXPECT_GE(number(summary, "constraint_margin"), 0);
+}
+
 TEST(Excite, BadInputIsNamedAtOnce) {
   const Workshop shop;
   const Words start = {"delta-excite", shop.path("robot.urdf"), "-o", shop.path("t.csv")};
@@ -151,6 +203,10 @@ TEST(Excite, BadInputIsNamedAtOnce) {
       {{"--workspace-radius-m", "0.3"}, 2, "without its shape"},
       {{"--base-frequency-hz", "0.05,1"}, 2, "too low for 10 s: its period lasts 20 s"},
       {{"--base-frequency-hz", "1,0.5"}, 2, "--base-frequency-hz"},
+      {{"--workspace", "ball", "--workspace-center-m", "0,0,-0.9", "--workspace-radius-m", "0.2", "--drive-range-rad",
+        "-0.9,-0.5;-0.9,-0.5;-0.9,-0.5;-40,40"},
+       3,
+       "the limits leave no motion"},
       {{"--drive-velocity-rad-s", "0"}, 2, "drive 1 velocity limit is 0"},
       {{"--drive-velocity-rad-s", "1,2"}, 2, "--drive-velocity-rad-s has 2 values"},
       {{"--drive-velocity-m-s", "1"}, 2, "not the unit of the drives"},
