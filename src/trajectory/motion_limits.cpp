@@ -91,16 +91,20 @@ void MotionLimits::validate(const RobotDescription& robot) const {
     positive(drive + " velocity", qd(i));
     positive(drive + " acceleration", qdd(i));
     positive(drive + " torque", tau(i));
-    const auto unlimited = [&](const char* what) {
+    const bool turns = robot.kind_of_drive(i) == DriveKind::revolute;
+    const auto unlimited = [&](const char* what, const char* flag_of_turning, const char* flag_of_sliding) {
       throw Error(fmt::format("neither {} nor drive {} has a limit of its {}", task, i + 1, what), "limits",
-                  fmt::format("give the {} limit of the drive in the robot file or by a flag", what), ExitCode::usage);
+                  fmt::format("give the {} limit of the drives in the robot file (delta-model create) or by {}", what,
+                              turns ? flag_of_turning : flag_of_sliding),
+                  ExitCode::usage);
     };
-    if (!std::isfinite(zd(i)) && !std::isfinite(qd(i))) unlimited("velocity");
-    if (!std::isfinite(zdd(i)) && !std::isfinite(qdd(i))) unlimited("acceleration");
+    if (!std::isfinite(zd(i)) && !std::isfinite(qd(i))) unlimited("velocity", "--drive-velocity-rad-s", "--drive-velocity-m-s");
+    if (!std::isfinite(zdd(i)) && !std::isfinite(qdd(i)))
+      unlimited("acceleration", "--drive-acceleration-rad-s2", "--drive-acceleration-m-s2");
     const bool inside_region = region && i < 3;
     if (!inside_region && !(std::isfinite(z_lower(i)) && std::isfinite(z_upper(i))) &&
         !(std::isfinite(q_lower(i)) && std::isfinite(q_upper(i))))
-      unlimited("position range");
+      unlimited("position range", "--drive-range-rad", "--drive-range-m");
   }
   if (region) {
     const char axes[] = "xyz";

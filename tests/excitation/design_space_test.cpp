@@ -71,6 +71,39 @@ TEST(DesignSpace, ColumnsHaveRootMeanSquareOne) {
   EXPECT_LT((squares.array() / 500 - 1).abs().maxCoeff(), 1e-9);
 }
 
+// With a torque limit that few states at full speed keep, slower ones are found, and the centre holds itself and its friction.
+TEST(DesignSpace, FindsSlowStatesWhereTorqueIsShort) {
+  const auto robot = make_robot(testing_support::delta_description("delta3"));
+  MotionLimits limits = usual_limits(*robot);
+  limits.parameters = Eigen::VectorXd::Zero(robot->parameters());
+  for (std::size_t k = 0; k < robot->parameter_names().size(); ++k) {
+    const std::string& name = robot->parameter_names()[k];
+    if (name == "platform.m") limits.parameters(static_cast<Eigen::Index>(k)) = 2;
+    if (name.ends_with(".coulomb")) limits.parameters(static_cast<Eigen::Index>(k)) = 1;
+  }
+  const auto regressor = make_task_regressor(*robot);
+  const auto torque_at = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    Eigen::MatrixXd Y(3, robot->parameters());
+    Eigen::VectorXd drives(9);
+    EXPECT_EQ(regressor->evaluate(x, Eigen::VectorXd(), Y, drives), Status::ok);
+    return Y * limits.parameters;
+  };
+  Eigen::VectorXd middle = Eigen::VectorXd::Zero(9);
+  middle.head<3>() = limits.region->centre;
+  limits.tau.setConstant(1.1 * (torque_at(middle).cwiseAbs().maxCoeff() + 1));
+  const AdmissibleStates states = admissible_states(*robot, *regressor, limits, 800, 1);
+  EXPECT_EQ(states.x.cols(), 800);
+  EXPECT_GT(states.drawn, 20000) << "few states at full speed keep the limit";
+  for (Eigen::Index k = 0; k < states.x.cols(); ++k)
+    ASSERT_LE(torque_at(states.x.col(k)).cwiseAbs().maxCoeff(), limits.tau(0) * (1 + 1e-9));
+  for (const double direction : {-1e-6, 1e-6}) {
+    Eigen::VectorXd slight = Eigen::VectorXd::Zero(9);
+    slight.head<3>() = states.centre;
+    slight(5) = direction;
+    EXPECT_LE(torque_at(slight).cwiseAbs().maxCoeff(), limits.tau(0));
+  }
+}
+
 TEST(DesignSpace, NamesTheLimitThatLeavesNothing) {
   const auto robot = make_robot(testing_support::delta_description("delta4"));
   MotionLimits far = usual_limits(*robot);

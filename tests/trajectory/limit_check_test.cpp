@@ -42,6 +42,32 @@ TEST_F(LimitCheckTest, CoversThePeaksBetweenTheSamples) {
   }
 }
 
+// The torque of a rotor with Coulomb friction is largest just before or after it turns back, where it jumps: the sum of both parts
+// is approached there, whether a sample falls near or not.
+TEST_F(LimitCheckTest, CoversTheJumpOfCoulombFriction) {
+  constexpr double kInertia = 0.2, kCoulomb = 1.5, kSize = 0.5;
+  ParameterOptions options;
+  options.rotor_inertia = {1};
+  const auto rotor = make_robot(testing_support::axis_description(DriveKind::revolute), options);
+  MotionLimits torque(rotor->description());
+  torque.parameters = Eigen::VectorXd::Zero(rotor->parameters());
+  for (std::size_t k = 0; k < rotor->parameter_names().size(); ++k) {
+    const std::string& name = rotor->parameter_names()[k];
+    if (name.ends_with(".coulomb")) torque.parameters(static_cast<Eigen::Index>(k)) = kCoulomb;
+    if (name.ends_with(".rotor_inertia")) torque.parameters(static_cast<Eigen::Index>(k)) = kInertia;
+  }
+  torque.tau(0) = 10;
+  for (int samples = 101; samples < 900; samples += 37) {
+    for (const double w : {7.1, 11.3, 12.9}) {
+      const LimitCheck check = check_limits(*rotor, torque, swing(kSize, w), samples);
+      ASSERT_EQ(check.tightest().limit.name, "drive 1 torque");
+      const double largest = kInertia * kSize * w * w + kCoulomb;
+      EXPECT_GE(check.tightest().load, largest / 10 - 1e-12);
+      EXPECT_LE(check.tightest().load, largest / 10 * (1 + w * w / samples / samples));
+    }
+  }
+}
+
 TEST_F(LimitCheckTest, NamesTheTightestLimitAndWhen) {
   const LimitCheck check = check_limits(*robot, limits, swing(1.9, 6), 1000);
   EXPECT_EQ(check.tightest().limit.name, "drive 1 velocity");
