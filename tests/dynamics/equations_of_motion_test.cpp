@@ -1,11 +1,11 @@
 #include "deltadyn/dynamics/equations_of_motion.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "deltadyn/dynamics/inverse_dynamics_derivatives.hpp"
+
 #include "support/drawn_motion.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
@@ -152,8 +152,8 @@ TYPED_TEST(Equations, HaveTheEnergiesOfTheDrawing) {
     const auto load = load_of<TypeParam, Layout>(d.p);
     const oracles::State<oracles::Real> at{numbers(d.motion.posture.q), numbers(d.motion.qd)};
     const double T = static_cast<double>(oracles::kinetic_energy(mechanism, load, at, numbers(d.task.z)));
-    const double V = static_cast<double>(
-        oracles::potential_energy(mechanism, load, numbers(d.motion.posture.q), numbers(d.task.z)));
+    const double V =
+        static_cast<double>(oracles::potential_energy(mechanism, load, numbers(d.motion.posture.q), numbers(d.task.z)));
     EXPECT_NEAR((kinetic_energy<Layout>(d.geometry, d.motion, d.p)), T, 1e-11 * T);
     EXPECT_NEAR((potential_energy<Layout>(d.geometry, d.motion.posture, d.p)), V, 1e-11 * (1 + std::abs(V)));
     const auto M = equations_of_motion<Layout>(d.geometry, d.motion, d.p).M;

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/dynamics/mass_matrix.hpp"
+
+#include "support/drawn_motion.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/posture_at.hpp"
-#include "support/random_robot.hpp"
 
 namespace deltadyn {
 namespace {
@@ -16,32 +17,21 @@ using namespace testing_support;
 template <class R>
 class InverseDynamics : public ::testing::Test {
  protected:
-  using AllColumns = ParameterLayout<R, Limbs::individual>;
-  using Parameters = Vector<double, AllColumns::kColumns>;
-  using DriveVector = Vector<double, R::kDrives>;
+  using Columns = typename DrawnMotion<R>::Layout;
+  using Parameters = Vector<double, Columns::kColumns>;
 
-  void draw() {
-    geometry = random_geometry<R>(random);
-    task = random_task<R>(random);
-    p = random_parameters<AllColumns>(random);
-    ASSERT_EQ(motion_from_task(geometry, task.z, task.zd, task.zdd, motion), Status::ok);
+  typename DrawnMotion<R>::Drives torque(const Parameters& parameters) const {
+    return inverse_dynamics<Columns>(drawn.geometry, drawn.motion, parameters);
   }
-  DriveVector torque(const Parameters& parameters) const { return inverse_dynamics<AllColumns>(geometry, motion, parameters); }
   double size() const {
-    Matrix<double, R::kDrives, AllColumns::kColumns> Y;
-    regressor<AllColumns>(geometry, motion, Y);
-    return (Y.cwiseAbs() * p.cwiseAbs()).maxCoeff();
+    Matrix<double, R::kDrives, Columns::kColumns> Y;
+    regressor<Columns>(drawn.geometry, drawn.motion, Y);
+    return (Y.cwiseAbs() * drawn.p.cwiseAbs()).maxCoeff();
   }
 
-  Random random{7};
-  Geometry<double, R> geometry;
-  RandomTask<R> task;
-  Motion<double, R> motion;
-  Parameters p;
+  DrawnMotion<R> drawn{7};
 };
-
-using Robots = ::testing::Types<Delta3, LinearDelta3, Delta4, TurningPlate, Axis, LinearAxis>;
-TYPED_TEST_SUITE(InverseDynamics, Robots);
+TYPED_TEST_SUITE(InverseDynamics, AllRobots);
 
 template <class R, Limbs kSharing>
 void expect_regressor_times_parameters(Random& random) {
@@ -60,42 +50,46 @@ void expect_regressor_times_parameters(Random& random) {
 }
 
 TYPED_TEST(InverseDynamics, IsTheRegressorTimesTheParameters) {
-  expect_regressor_times_parameters<TypeParam, Limbs::shared>(this->random);
-  expect_regressor_times_parameters<TypeParam, Limbs::individual>(this->random);
+  auto& d = this->drawn;
+  expect_regressor_times_parameters<TypeParam, Limbs::shared>(d.random);
+  expect_regressor_times_parameters<TypeParam, Limbs::individual>(d.random);
 }
 
 TYPED_TEST(InverseDynamics, IsLinearInTheParameters) {
-  this->draw();
-  const auto other = random_parameters<typename TestFixture::AllColumns>(this->random);
-  const auto sum = this->torque(2.5 * this->p - 0.75 * other);
-  EXPECT_THAT(sum, IsNear((2.5 * this->torque(this->p) - 0.75 * this->torque(other)).eval(), 1e-11 * this->size()));
+  auto& d = this->drawn;
+  d.next();
+  const auto other = random_parameters<typename DrawnMotion<TypeParam>::Layout>(d.random);
+  const auto sum = this->torque(2.5 * d.p - 0.75 * other);
+  EXPECT_THAT(sum, IsNear((2.5 * this->torque(d.p) - 0.75 * this->torque(other)).eval(), 1e-11 * this->size()));
 }
 
 TYPED_TEST(InverseDynamics, AtRestIsTheGradientOfThePotentialPlusOffsets) {
-  using Layout = typename TestFixture::AllColumns;
+  using Layout = typename DrawnMotion<TypeParam>::Layout;
+  auto& d = this->drawn;
   for (int trial = 0; trial < 30; ++trial) {
-    this->draw();
-    const auto& q = this->motion.posture.q;
-    const auto load = load_of<TypeParam, Layout>(this->p);
-    const auto gradient = to_vector<TypeParam::kDrives>(
-        oracles::gravity_torque(oracle_of(this->geometry), load, numbers(q), numbers(this->task.z)));
-    const typename TestFixture::DriveVector still = TestFixture::DriveVector::Zero();
-    set_drive_rates<double, TypeParam>(this->geometry, still, still, this->motion);
-    const auto offsets = this->p.template tail<TypeParam::kDrives>();
-    EXPECT_THAT(this->torque(this->p), IsNear((gradient + offsets).eval(), 1e-12 * this->size()));
+    d.next();
+    const auto& q = d.motion.posture.q;
+    const auto load = load_of<TypeParam, Layout>(d.p);
+    const auto gradient =
+        to_vector<TypeParam::kDrives>(oracles::gravity_torque(oracle_of(d.geometry), load, numbers(q), numbers(d.task.z)));
+    const auto still = Vector<double, TypeParam::kDrives>::Zero().eval();
+    set_drive_rates<double, TypeParam>(d.geometry, still, still, d.motion);
+    const auto offsets = d.p.template tail<TypeParam::kDrives>();
+    EXPECT_THAT(this->torque(d.p), IsNear((gradient + offsets).eval(), 1e-12 * this->size()));
   }
 }
 
 TYPED_TEST(InverseDynamics, ScalesAccelerationAndVelocityTorqueAsRigidBodiesDo) {
-  using Drives = typename TestFixture::DriveVector;
-  this->draw();
+  using Drives = typename DrawnMotion<TypeParam>::Drives;
+  auto& d = this->drawn;
+  d.next();
   // Without friction and offset: tau(s qd, s^2 qdd) - tau(0, 0) = s^2 (tau(qd, qdd) - tau(0, 0)).
-  this->p.template tail<TestFixture::AllColumns::kColumns - TestFixture::AllColumns::kRotorInertia>().setZero();
-  this->p.template segment<2 * TestFixture::AllColumns::kFrictionJoints>(TestFixture::AllColumns::kFriction).setZero();
-  const Drives qd = this->motion.qd, qdd = this->motion.qdd;
+  d.p.template tail<DrawnMotion<TypeParam>::Layout::kColumns - DrawnMotion<TypeParam>::Layout::kRotorInertia>().setZero();
+  d.p.template segment<2 * DrawnMotion<TypeParam>::Layout::kFrictionJoints>(DrawnMotion<TypeParam>::Layout::kFriction).setZero();
+  const Drives qd = d.motion.qd, qdd = d.motion.qdd;
   const auto torque_at = [&](const Drives& velocity, const Drives& acceleration) {
-    set_drive_rates<double, TypeParam>(this->geometry, velocity, acceleration, this->motion);
-    return this->torque(this->p);
+    set_drive_rates<double, TypeParam>(d.geometry, velocity, acceleration, d.motion);
+    return this->torque(d.p);
   };
   const Drives rest = torque_at(Drives::Zero(), Drives::Zero());
   const Drives slow = torque_at(qd, qdd) - rest;
@@ -105,28 +99,28 @@ TYPED_TEST(InverseDynamics, ScalesAccelerationAndVelocityTorqueAsRigidBodiesDo) 
 
 // d/dt (kinetic + potential energy) = qd^T tau - what friction and the offsets take. The time derivative is numeric.
 TYPED_TEST(InverseDynamics, BalancesThePowerAlongAMotion) {
-  using Layout = typename TestFixture::AllColumns;
-  using Drives = typename TestFixture::DriveVector;
+  using Layout = typename DrawnMotion<TypeParam>::Layout;
+  using Drives = typename DrawnMotion<TypeParam>::Drives;
+  auto& d = this->drawn;
   for (int trial = 0; trial < 10; ++trial) {
-    this->draw();
-    const Drives q = this->motion.posture.q, qd = this->motion.qd, qdd = this->motion.qdd;
-    const auto mechanism = oracle_of(this->geometry);
-    const auto load = load_of<TypeParam, Layout>(this->p);
+    d.next();
+    const Drives q = d.motion.posture.q, qd = d.motion.qd, qdd = d.motion.qdd;
+    const auto mechanism = oracle_of(d.geometry);
+    const auto load = load_of<TypeParam, Layout>(d.p);
     const auto energy = [&](double t) {
       const Drives q_t = q + t * qd + t * t / 2 * qdd;
       const Drives qd_t = qd + t * qdd;
       Posture<double, TypeParam> posture;
-      EXPECT_EQ(posture_at(this->geometry, q_t, this->task.z, posture), Status::ok);
-      const auto M = mass_matrix<Layout>(this->geometry, posture, this->p);
+      EXPECT_EQ(posture_at(d.geometry, q_t, d.task.z, posture), Status::ok);
+      const auto M = mass_matrix<Layout>(d.geometry, posture, d.p);
       return 0.5 * qd_t.dot(M * qd_t) +
-             static_cast<double>(oracles::potential_energy(mechanism, load, numbers(q_t), numbers(this->task.z)));
+             static_cast<double>(oracles::potential_energy(mechanism, load, numbers(q_t), numbers(d.task.z)));
     };
     const double h = 1e-4;
     const double rate = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
-    const double heat = static_cast<double>(
-        oracles::friction_power(mechanism, load, numbers(q), numbers(qd), numbers(this->task.z)));
-    const double offset = qd.dot(this->p.template tail<TypeParam::kDrives>());
-    const double power = qd.dot(this->torque(this->p));
+    const double heat = static_cast<double>(oracles::friction_power(mechanism, load, numbers(q), numbers(qd), numbers(d.task.z)));
+    const double offset = qd.dot(d.p.template tail<TypeParam::kDrives>());
+    const double power = qd.dot(this->torque(d.p));
     EXPECT_NEAR(rate, power - heat - offset, 1e-8 * this->size() * qd.norm());
     EXPECT_GT(heat, 0);
   }

@@ -1,8 +1,7 @@
 #include "deltadyn/dynamics/joint_reactions.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <vector>
 
 #include "support/drawn_motion.hpp"
@@ -115,8 +114,7 @@ TYPED_TEST(Reactions, BalanceEveryBody) {
       EXPECT_NEAR(this->loads.tool_bearing.moment.z(), 0, 1e-9);
       const double rate = d.motion.telescope.length_d;
       const double friction = d.p(Layout::viscous(R::kDrives)) * rate + d.p(Layout::coulomb(R::kDrives)) * (rate > 0 ? 1 : -1);
-      EXPECT_NEAR(this->loads.telescope_slide.force.dot(d.motion.posture.telescope.e), friction,
-                  1e-9 * (1 + std::abs(friction)));
+      EXPECT_NEAR(this->loads.telescope_slide.force.dot(d.motion.posture.telescope.e), friction, 1e-9 * (1 + std::abs(friction)));
     }
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const Needed need = needed(bodies[b], load.bodies[b], d.geometry.gravity);

@@ -1,10 +1,11 @@
 #include "deltadyn/dynamics/mass_matrix.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
+
+#include "support/core_instances.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
@@ -79,9 +80,9 @@ TYPED_TEST(MassMatrix, IsTheSecondDerivativeOfTheKineticEnergy) {
     Matrix<double, kSize, kSize> expected;
     for (int i = 0; i < kSize; ++i) {
       for (int j = 0; j < kSize; ++j) {
-        expected(i, j) = static_cast<double>(oracles::mass_matrix_entry(
-            oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q),
-            static_cast<std::size_t>(i), static_cast<std::size_t>(j), numbers(this->task.z)));
+        expected(i, j) = static_cast<double>(
+            oracles::mass_matrix_entry(oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q),
+                                       static_cast<std::size_t>(i), static_cast<std::size_t>(j), numbers(this->task.z)));
       }
     }
     EXPECT_THAT((mass_matrix<Layout>(this->geometry, this->motion.posture, p)), IsNear(expected, 1e-12 * expected.norm()));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/core_instances.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
@@ -60,9 +61,13 @@ class Regressor : public ::testing::Test {
 using Robots = ::testing::Types<Delta3, LinearDelta3, Delta4, TurningPlate, Axis, LinearAxis>;
 TYPED_TEST_SUITE(Regressor, Robots);
 
-TYPED_TEST(Regressor, TimesSharedParametersIsTheOracleTorque) { this->template expect_oracle_torque<Limbs::shared>(); }
+TYPED_TEST(Regressor, TimesSharedParametersIsTheOracleTorque) {
+  this->template expect_oracle_torque<Limbs::shared>();
+}
 
-TYPED_TEST(Regressor, TimesIndividualParametersIsTheOracleTorque) { this->template expect_oracle_torque<Limbs::individual>(); }
+TYPED_TEST(Regressor, TimesIndividualParametersIsTheOracleTorque) {
+  this->template expect_oracle_torque<Limbs::individual>();
+}
 
 // One column at a time, so that no two mistakes can hide each other; a single entry need not be a consistent body.
 TYPED_TEST(Regressor, EachColumnIsTheOracleTorqueOfItsParameter) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/core_instances.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
@@ -22,7 +23,9 @@ Vec3<Real> vee(const Mat3<Real>& M) {
   return Vec3<Real>(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)) / 2;
 }
 
-Vector3<double> rounded(const Vec3<Real>& v) { return v.cast<double>(); }
+Vector3<double> rounded(const Vec3<Real>& v) {
+  return v.cast<double>();
+}
 
 template <class R>
 class BodyMotionOf : public ::testing::Test {};

@@ -1,10 +1,10 @@
 #include "deltadyn/kinematics/forward.hpp"
 
 #include <gtest/gtest.h>
-
 #include <limits>
 
 #include "deltadyn/kinematics/inverse.hpp"
+
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"

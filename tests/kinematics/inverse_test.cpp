@@ -1,10 +1,10 @@
 #include "deltadyn/kinematics/inverse.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
 
+#include "support/core_instances.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
 

@@ -1,9 +1,9 @@
 #include "deltadyn/kinematics/motion.hpp"
 
 #include <gtest/gtest.h>
-
 #include <limits>
 
+#include "support/core_instances.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
@@ -94,8 +94,7 @@ TEST_F(MotionOfDelta4, TelescopeLengthHasTheRatesOfTheLoopEquations) {
   for (int trial = 0; trial < 100; ++trial) {
     draw();
     const auto mechanism = oracle_of(geometry);
-    const auto y = oracles::plate(mechanism, in_time(motion.posture.q, motion.qd, motion.qdd),
-                                  numbers(task.z));
+    const auto y = oracles::plate(mechanism, in_time(motion.posture.q, motion.qd, motion.qdd), numbers(task.z));
     const auto length = oracles::bar_length(mechanism, y);
     const double scale = size(motion.qdd);
     EXPECT_NEAR(motion.telescope.length_d, static_cast<double>(length.slope.value), 1e-12 * scale);

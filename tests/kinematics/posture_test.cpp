@@ -1,11 +1,12 @@
 #include "deltadyn/kinematics/posture.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 #include "deltadyn/kinematics/inverse.hpp"
 #include "deltadyn/kinematics/motion.hpp"
+
+#include "support/core_instances.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/kinematics/motion.hpp"
+
+#include "support/core_instances.hpp"
 #include "support/random_robot.hpp"
 
 namespace deltadyn::testing_support {

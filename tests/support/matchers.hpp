@@ -3,11 +3,10 @@
 /// \file
 /// Matrices compared as wholes, with both printed when they differ.
 
-#include <gmock/gmock.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <gmock/gmock.h>
 #include <sstream>
 #include <string>
 

@@ -5,6 +5,7 @@
 
 #include "deltadyn/model/geometry.hpp"
 #include "deltadyn/model/parameter_layout.hpp"
+
 #include "oracles/lagrange.hpp"
 
 namespace deltadyn::testing_support {

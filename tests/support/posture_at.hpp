@@ -4,6 +4,7 @@
 /// The posture at drive coordinates for every type, also where the library has no forward kinematics in closed form.
 
 #include "deltadyn/kinematics/motion.hpp"
+
 #include "support/oracle_of.hpp"
 
 namespace deltadyn::testing_support {

@@ -1,0 +1,5 @@
+#include "support/core_instances.hpp"
+
+namespace deltadyn {
+DELTADYN_SLOPE_INSTANCES(, Axis)
+}  // namespace deltadyn
