@@ -23,11 +23,13 @@ constexpr double kPaperPlate = 0.05;
 }
 
 void require_positive(double value, const char* what) {
-  if (!(std::isfinite(value) && value > 0)) refuse(fmt::format("{} is {}, but must be positive", what, value), "give a value above 0, or leave it to the default");
+  if (!(std::isfinite(value) && value > 0))
+    refuse(fmt::format("{} is {}, but must be positive", what, value), "give a value above 0, or leave it to the default");
 }
 
 void require_not_negative(double value, const char* what) {
-  if (!(std::isfinite(value) && value >= 0)) refuse(fmt::format("{} is {}, but must not be negative", what, value), "give 0 or more, or leave it to the default");
+  if (!(std::isfinite(value) && value >= 0))
+    refuse(fmt::format("{} is {}, but must not be negative", what, value), "give 0 or more, or leave it to the default");
 }
 
 double arm_length(const RobotDescription& robot) {

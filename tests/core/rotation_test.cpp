@@ -1,8 +1,7 @@
 #include "deltadyn/core/rotation.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 #include "support/matchers.hpp"
 

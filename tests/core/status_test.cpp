@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <set>
 #include <string>
 
@@ -18,7 +17,9 @@ TEST(StatusMessage, TellsEveryStatusApart) {
   EXPECT_EQ(messages.count("unknown status"), 0U);
 }
 
-TEST(StatusMessage, IsPlain) { EXPECT_THAT(message(Status::unreachable), ::testing::HasSubstr("out of reach")); }
+TEST(StatusMessage, IsPlain) {
+  EXPECT_THAT(message(Status::unreachable), ::testing::HasSubstr("out of reach"));
+}
 
 }  // namespace
 }  // namespace deltadyn

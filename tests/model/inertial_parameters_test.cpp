@@ -1,8 +1,7 @@
 #include "deltadyn/model/inertial_parameters.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
@@ -37,7 +36,8 @@ TYPED_TEST(InertialParametersTest, PseudoInertiaIsTheSumOfOuterProductsOfThePoin
     const Vector<T, 4> h(T(place(random)), T(place(random)), T(place(random)), T(1));
     const T m = T(0.7), x = h(0), y = h(1), z = h(2);
     InertialVector<T> p;
-    p << m, m * x, m * y, m * z, m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y), -m * x * y, -m * y * z, -m * x * z;
+    p << m, m * x, m * y, m * z, m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y), -m * x * y, -m * y * z,
+        -m * x * z;
     const PseudoInertia<T> difference = to_pseudo_inertia(p) - m * h * h.transpose();
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), T(8) * std::numeric_limits<T>::epsilon());
   }
@@ -107,7 +107,7 @@ TYPED_TEST(InertialParametersTest, ToleranceIsFreeOfUnits) {
   using T = TypeParam;
   InertialVector<T> p;
   p << T(1), T(0.3), T(0), T(0), T(0.2), T(0.2), T(0.2), T(0), T(0), T(0);  // pivots 1, 1, 1, 1 - 0.09/0.1
-  for (const T unit : {T(1), T(1e-3), T(1e3)}) {  // metre, kilometre, millimetre
+  for (const T unit : {T(1), T(1e-3), T(1e3)}) {                            // metre, kilometre, millimetre
     InertialVector<T> q = p;
     q.template segment<3>(1) *= unit;
     q.template tail<6>() *= unit * unit;

@@ -2,7 +2,6 @@
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
-
 #include <limits>
 #include <random>
 
@@ -74,8 +73,8 @@ TYPED_TEST(LogCholeskyTest, InverseIsExactBothWays) {
     const InertialVector<T> p = from_log_cholesky(pi);
     ASSERT_EQ(to_log_cholesky(p, back), Status::ok);
     // the way back loses the digits that the condition of U costs
-    const T condition = (T(1) + pi.template tail<6>().squaredNorm()) *
-                        std::exp(T(2) * (pi.template segment<3>(1).cwiseAbs().maxCoeff() + T(1)));
+    const T condition =
+        (T(1) + pi.template tail<6>().squaredNorm()) * std::exp(T(2) * (pi.template segment<3>(1).cwiseAbs().maxCoeff() + T(1)));
     const T epsilon = std::numeric_limits<T>::epsilon();
     EXPECT_LT((back - pi).norm(), T(200) * epsilon * condition * condition);
     EXPECT_LT((from_log_cholesky(back) - p).norm(), T(200) * epsilon * condition * p.norm());

@@ -1,7 +1,6 @@
 #include "deltadyn/model/parameter_layout.hpp"
 
 #include <gtest/gtest.h>
-
 #include <set>
 #include <vector>
 

@@ -55,7 +55,9 @@ struct Dual {
 };
 
 /// The number at the bottom of a nest.
-inline Real base(const Real& x) { return x; }
+inline Real base(const Real& x) {
+  return x;
+}
 template <class S>
 Real base(const Dual<S>& x) {
   return base(x.value);

@@ -2,9 +2,8 @@
 
 #include "oracles/lagrange.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace oracles {
 namespace {
@@ -27,8 +26,8 @@ Mechanism delta() {
   m.bar_bottom = V(0.02L, -0.01L, 0.04L);
   for (int i = 0; i < 3; ++i) {
     const Real a = 2.1L * i;
-    m.limbs.push_back({a, turn<Real>(2, a) * V(0.2L, 0, 0), V(0, 1, 0), V(0.4L, 0, 0), 1.0L, 0.1L,
-                       turn<Real>(2, a) * V(0.05L, 0, 0), 0});
+    m.limbs.push_back(
+        {a, turn<Real>(2, a) * V(0.2L, 0, 0), V(0, 1, 0), V(0.4L, 0, 0), 1.0L, 0.1L, turn<Real>(2, a) * V(0.05L, 0, 0), 0});
   }
   return m;
 }

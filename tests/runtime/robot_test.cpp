@@ -1,15 +1,15 @@
 #include "deltadyn/runtime/robot.hpp"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 #include <limits>
 
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
+
 #include "support/descriptions.hpp"
 #include "support/matchers.hpp"
 #include "support/random_robot.hpp"
@@ -105,10 +105,9 @@ TEST(Robot, GivesTheTermsOfTheEquationsOfMotion) {
 
 TEST(Robot, NamesItsColumnsInTheOrderOfTheRegressor) {
   const auto axis = make_robot(axis_description(DriveKind::revolute));
-  EXPECT_THAT(axis->parameter_names(),
-              ElementsAre("upper_arm.m", "upper_arm.mcx", "upper_arm.mcy", "upper_arm.mcz", "upper_arm.Ixx", "upper_arm.Iyy",
-                          "upper_arm.Izz", "upper_arm.Ixy", "upper_arm.Iyz", "upper_arm.Ixz",
-                          "drive1.viscous", "drive1.coulomb"));
+  EXPECT_THAT(axis->parameter_names(), ElementsAre("upper_arm.m", "upper_arm.mcx", "upper_arm.mcy", "upper_arm.mcz",
+                                                   "upper_arm.Ixx", "upper_arm.Iyy", "upper_arm.Izz", "upper_arm.Ixy",
+                                                   "upper_arm.Iyz", "upper_arm.Ixz", "drive1.viscous", "drive1.coulomb"));
   EXPECT_EQ(axis->parameter_units().back(), "N*m");
   const auto linear = make_robot(axis_description(DriveKind::prismatic), all_columns(1));
   EXPECT_EQ(linear->parameter_units().back(), "N");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "support/descriptions.hpp"
 
 namespace deltadyn {

@@ -1,3 +1,5 @@
 #pragma once
 
-inline double twice(float value) { return 2.0 * value; }
+inline double twice(float value) {
+  return 2.0 * value;
+}
