@@ -5,8 +5,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
-#include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,83 +18,13 @@
 #include "deltadyn/signal/log_columns.hpp"
 #include "deltadyn/simulation/simulate.hpp"
 
+#include "simulate/effect_flag.hpp"
 #include "tool_support.hpp"
 
 namespace {
 
 using namespace deltadyn;
 using tools::ToolRun;
-
-/// "stribeck@drive2:friction=2,rate=0.25,exponent=2". Throws Error(usage) that says what is known.
-Effect parse_effect(const std::string& text, const RobotDescription& robot) {
-  const auto at = text.find('@'), colon = text.find(':');
-  const std::string where = "--effect " + text;
-  if (at == std::string::npos || (colon != std::string::npos && colon < at)) {
-    throw Error("an effect is written NAME@JOINT:key=value,...", where,
-                "e.g. --effect stribeck@drive2:friction=2,rate=0.25,exponent=2", ExitCode::usage);
-  }
-  const std::string name = text.substr(0, at), joint = text.substr(at + 1, colon == std::string::npos ? colon : colon - at - 1);
-  const EffectKind* kind = find_effect_kind(name);
-  if (kind == nullptr) {
-    std::string known;
-    for (const EffectKind& each : effect_catalogue()) known += (known.empty() ? "" : " ") + each.name;
-    throw Error("there is no effect '" + name + "'", where, "use one of: " + known, ExitCode::usage);
-  }
-  Effect effect;
-  effect.id = kind->id;
-  effect.joint = effect_joint(kind->id, joint, robot, where);
-  effect.shape = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(kind->shapes.size()), std::nan(""));
-  effect.amplitude = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(kind->amplitudes.size()), std::nan(""));
-  std::string known;
-  for (const EffectAmplitude& each : kind->amplitudes) known += (known.empty() ? "" : ", ") + each.name;
-  for (const EffectShape& each : kind->shapes) {
-    if (!kind->tied) known += ", " + each.name;
-  }
-  std::istringstream entries(colon == std::string::npos ? "" : text.substr(colon + 1));
-  std::set<std::string> given;
-  for (std::string entry; std::getline(entries, entry, ',');) {
-    const auto equal = entry.find('=');
-    const std::string key = entry.substr(0, equal);
-    double value = 0;
-    try {
-      std::size_t used = 0;
-      value = std::stod(equal == std::string::npos ? "" : entry.substr(equal + 1), &used);
-      if (used != entry.size() - equal - 1 || !std::isfinite(value)) throw std::invalid_argument(entry);
-    } catch (const std::exception&) {
-      throw Error("'" + entry + "' is not key=number", where, name + " has " + known, ExitCode::usage);
-    }
-    if (!given.insert(key).second) throw Error(key + " is given twice", where, "give each number once", ExitCode::usage);
-    bool found = false;
-    for (std::size_t k = 0; k < kind->amplitudes.size(); ++k) {
-      if (kind->amplitudes[k].name != key) continue;
-      if (kind->amplitudes[k].positive && !(value >= 0))
-        throw Error(key + " cannot be negative", where, "give a positive number", ExitCode::usage);
-      effect.amplitude(static_cast<Eigen::Index>(k)) = value;
-      found = true;
-    }
-    for (std::size_t k = 0; k < kind->shapes.size(); ++k) {
-      if (kind->shapes[k].name != key) continue;
-      const std::vector<double>& grid = kind->shapes[k].grid;
-      const bool positive = !grid.empty() && *std::min_element(grid.begin(), grid.end()) > 0;
-      if (positive && !(value > 0)) throw Error(key + " must be positive", where, "give a number above 0", ExitCode::usage);
-      effect.shape(static_cast<Eigen::Index>(k)) = value;
-      found = true;
-    }
-    if (!found) throw Error("the effect " + name + " has no '" + key + "'", where, "it has " + known, ExitCode::usage);
-  }
-  if (!effect.shape.allFinite() || !effect.amplitude.allFinite()) {
-    for (std::size_t k = 0; k < kind->amplitudes.size(); ++k) {
-      // One of several amplitudes may be left out: it is 0 then.
-      if (kind->amplitudes.size() > 1 && std::isnan(effect.amplitude(static_cast<Eigen::Index>(k))) &&
-          effect.amplitude.array().isFinite().any()) {
-        effect.amplitude(static_cast<Eigen::Index>(k)) = 0;
-      }
-    }
-    if (!effect.shape.allFinite() || !effect.amplitude.allFinite())
-      throw Error("a number of the effect " + name + " is missing", where, "give all of " + known, ExitCode::usage);
-  }
-  return effect;
-}
 
 class Simulate {
  public:
@@ -114,6 +42,13 @@ class Simulate {
            "effect NAME@JOINT:key=value,... e.g. stribeck@drive2:friction=2,rate=0.25,exponent=2; may be given several times")
         ->type_name("TEXT")
         ->take_all();
+    app.add_flag_callback(
+        "--list-effects",
+        [] {
+          tools::list_effects();
+          throw CLI::Success();
+        },
+        "print the effects, where each can act and the numbers it takes, and end");
     app.add_option("--effects", effects_file_,
                    "effects as delta-diagnose writes them, effect,joint,parameter,value,unit,std (CSV)")
         ->type_name("FILE");
@@ -168,7 +103,7 @@ class Simulate {
     const Eigen::VectorXd p = matched(table, *robot);
     std::vector<Effect> effects;
     if (!effects_file_.empty()) effects = read_effects(effects_file_, description);
-    for (const std::string& text : effects_) effects.push_back(parse_effect(text, description));
+    for (const std::string& text : effects_) effects.push_back(tools::parse_effect(text, description));
     complete_options(description, run);
     const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);
     Plant plant(description, robot->parameter_names(), p, effects, options_.plant);
@@ -197,8 +132,20 @@ class Simulate {
     return match.value;
   }
 
+  /// A resolution for drives that the robot does not have would be lost without a word.
+  void check_encoders(const RobotDescription& robot) const {
+    bool turns = false, slides = false;
+    for (int j = 0; j < robot.drives(); ++j) (robot.kind_of_drive(j) == DriveKind::revolute ? turns : slides) = true;
+    if (encoder_bits_ > 0 && !turns)
+      throw Error("--encoder-bits is for revolute drives, and this robot has none", "", "give --encoder-step-m", ExitCode::usage);
+    if (encoder_step_m_ > 0 && !slides)
+      throw Error("--encoder-step-m is for prismatic drives, and this robot has none", "", "give --encoder-bits",
+                  ExitCode::usage);
+  }
+
   void complete_options(const RobotDescription& robot, const ToolRun& run) {
     const auto n = static_cast<std::size_t>(robot.drives());
+    check_encoders(robot);
     options_.seed = run.seed;
     options_.control_rate_hz = control_rate_hz_ > 0 ? control_rate_hz_ : options_.log_rate_hz;
     options_.controller.law = law_ == "computed-torque" ? ControlLaw::computed_torque

@@ -235,6 +235,10 @@ void Plant::start(const DriveVector& q, const DriveVector& qd) {
   }
   Impl::Terms all;
   if (m.terms_at(m.x, all) != Status::ok) {
+    if (m.soft > 0) {
+      throw Error(fmt::format("too little inertia is left behind the spring or play of drive {}", m.parts.soft.front().drive + 1),
+                  "simulation", "give play a larger share of the load (0.3 or more)", ExitCode::usage);
+    }
     throw Error("the mass matrix of the plant is not positive definite", "simulation",
                 "the parameters are not physically consistent; look at masses and inertias");
   }
@@ -340,8 +344,10 @@ double Plant::energy() const {
 DriveVector Plant::inverse(double time, const DriveVector& q, const DriveVector& qd, const DriveVector& qdd) {
   Impl& m = *impl_;
   if (m.soft > 0) {
-    throw Error("a spring or play in a drive has no torque that a given motion takes", "simulation",
-                "simulate in closed loop, without --inverse", ExitCode::usage);
+    throw Error(fmt::format("drive {} has a spring or play: the motor's motion then needs derivatives of the arm's motion that a "
+                            "trajectory does not have, or has jumps",
+                            m.parts.soft.front().drive + 1),
+                "--inverse", "simulate in closed loop, without --inverse", ExitCode::usage);
   }
   State state = State::Zero(m.size());
   state.head(m.n) = q;

@@ -90,6 +90,11 @@ Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixX
             case EffectId::saturation: y += a * saturation(before(k), effect.shape(0)); break;
             case EffectId::torque_constant_error: y += a * torque_constant_error(before(k)); break;
             case EffectId::current_lag:
+              if (effect.shape.size() > 1 && effect.shape(1) > 0) {  // the log holds the command, before the lag
+                const Eigen::Index low = std::max<Eigen::Index>(k - 1, 0), high = std::min(k + 1, n - 1);
+                if (high > low) y += a * current_lead((before(high) - before(low)) / (static_cast<double>(high - low) * period));
+                break;
+              }
               // The torque's mean over each half of a sample, so that the lag adds no delay of its own.
               if (k > 0 && a > 0) {
                 lag.step(before(k - 1), 0.5 * period);

@@ -44,6 +44,19 @@ class Recorder {
   }
 };
 
+[[noreturn]] void lost(double time, double error, long clipped) {
+  const std::string loop = "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains";
+  const std::string why = clipped > 0 ? fmt::format("the drives met their torque limits at {} control samples", clipped)
+                                      : "the loop is unstable or too weak";
+  throw Error(
+      fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why), "simulation",
+      clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the robot "
+                    "file the drives' true effort, or, if the loop is unstable, " +
+                        loop
+                  : loop,
+      ExitCode::no_convergence);
+}
+
 SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,
                        const SimulationOptions& options, Eigen::Index first, Eigen::Index samples) {
   const int n = reference.drives();
@@ -139,12 +152,7 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
       record.reading.row(row) = reading;
       const Eigen::VectorXd error = wanted.q - record.q.row(row).transpose();
       if (!(error.cwiseAbs().maxCoeff() < kLost)) {
-        throw Error(
-            fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: the loop is unstable or too "
-                        "weak",
-                        time, error.cwiseAbs().maxCoeff()),
-            "simulation", "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains",
-            ExitCode::no_convergence);
+        lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
       }
       squares += error.cwiseAbs2();
       result.largest_error = result.largest_error.cwiseMax(error.cwiseAbs());

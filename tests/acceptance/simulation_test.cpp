@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -139,9 +140,64 @@ TEST_F(VirtualRobot, AnUnknownEffectIsRefusedWithTheKnownOnes) {
   EXPECT_EQ(key.code, 2);
   EXPECT_NE(key.err.find("friction, rate, exponent"), std::string::npos) << key.err;
   const ToolResult joint = run(simulate("t.csv", "log.csv", {"--effect", "stribeck@drive9:friction=1,rate=1,exponent=1"}));
-  EXPECT_NE(joint.code, 0);
+  EXPECT_EQ(joint.code, 2) << "a flag is wrong, not a file";
   EXPECT_NE(joint.err.find("drive4"), std::string::npos) << joint.err;
   EXPECT_FALSE(fs::exists(path("log.csv")));
+}
+
+TEST_F(VirtualRobot, InverseModeRefusesASpringAndPlay) {
+  plan("t.csv", 1, 0.4, 1);
+  for (const char* effect : {"joint_elasticity@drive2:inertia_over_stiffness=1e-5", "backlash@drive2:share=0.6,gap=0.01"}) {
+    const ToolResult refused = run(simulate("t.csv", "log.csv", {"--inverse", "--effect", effect}));
+    EXPECT_EQ(refused.code, 2) << refused.out << refused.err;
+    EXPECT_NE(refused.err.find("drive 2 has a spring or play"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("without --inverse"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(path("log.csv")));
+    succeed(simulate("t.csv", "closed.csv", {"--effect", effect}));
+  }
+}
+
+// What the list says an effect takes is what the flag takes: every effect is built from its list entry and simulated.
+TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
+  plan("t.csv", 0.5, 0.4, 1);
+  std::istringstream list(succeed({"delta-simulate", "--list-effects"}).out);
+  std::string line, effect, keys;
+  const auto usual = [](const std::string& key) {
+    if (key == "kind" || key == "recorded") return "1";
+    if (key == "share") return "0.5";  // of the load, of a peak or of a torque constant
+    return key == "inertia_over_stiffness" ? "1e-5" : "0.01";
+  };
+  int count = 0;
+  const auto finish = [&] {
+    if (effect.empty()) return;
+    const ToolResult result = run(simulate("t.csv", "log.csv", {"--effect", effect + ":" + keys}));
+    EXPECT_EQ(result.code, 0) << effect << ":" << keys << "\n" << result.err;
+    // Nothing at all is refused, and the message names what the list names.
+    const ToolResult empty = run(simulate("t.csv", "none.csv", {"--effect", effect}));
+    EXPECT_EQ(empty.code, 2) << effect;
+    EXPECT_NE(empty.err.find(keys.substr(0, keys.find('='))), std::string::npos) << empty.err;
+    ++count;
+  };
+  while (std::getline(list, line)) {
+    std::istringstream words(line);
+    std::string first, second;
+    words >> first >> second;
+    const auto indent = line.find_first_not_of(' ');
+    if (indent == 0 && line.find("  @") != std::string::npos) {  // name  @place
+      finish();
+      const auto at = line.find('@');
+      const std::string place = line.substr(at, line.find_first_of(" ,", at) - at);
+      effect = first + (place == "@driveK" ? "@drive1" : place);
+      keys.clear();
+    } else if (indent == 4) {  // key [unit] limits
+      keys += (keys.empty() ? "" : ",") + first + "=" + usual(first);
+    } else if (indent == 0) {
+      finish();
+      effect.clear();
+    }
+  }
+  finish();
+  EXPECT_EQ(count, 28);
 }
 
 TEST_F(VirtualRobot, AnUnstableLoopIsToldAndLeavesNoLog) {

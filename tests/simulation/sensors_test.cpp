@@ -65,6 +65,13 @@ TEST_F(Recorded, LagIsAFirstOrderLowPass) {
   EXPECT_LT((lagged - exact).tail(kRows - 100).cwiseAbs().maxCoeff(), 2e-3);
 }
 
+TEST_F(Recorded, CommandBeforeTheLagLeadsTheTorque) {
+  constexpr double T = 0.005, w = 2 * std::numbers::pi * 3;
+  const Eigen::VectorXd command = with(effect_of(EffectId::current_lag, 0, {T}, {T, 1}));
+  const Eigen::VectorXd exact = 10 * ((w * t.array()).sin() + w * T * (w * t.array()).cos());
+  EXPECT_LT((command - exact).segment(10, kRows - 20).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 TEST_F(Recorded, SaturationAndTorqueConstant) {
   EXPECT_NEAR(with(effect_of(EffectId::saturation, 0, {1}, {6})).maxCoeff(), 6, 1e-12);
   EXPECT_NEAR(with(effect_of(EffectId::saturation, 0, {0.5}, {6})).maxCoeff(), 8, 1e-3);

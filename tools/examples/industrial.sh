@@ -6,26 +6,10 @@
 # Uses the installed tools: those beside this script, else those on the PATH.
 set -euo pipefail
 
-here="$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)"
-usage() { sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-[ $# -ge 1 ] || { usage >&2; exit 2; }
-case "$1" in -h | --help) usage; exit 0 ;; esac
-out="$1"
+. "$(dirname -- "${BASH_SOURCE[0]}")/study.bash"
+start_study industrial.sh 6 "$@"
 starts=8 # a number of starts, not a time, so that every run plans the same
-if [ "${2:-}" = --short ]; then starts=1; elif [ $# -gt 1 ]; then usage >&2; exit 2; fi
-if [ -e "$out" ] && [ -n "$(ls -A -- "$out" 2>/dev/null || echo file)" ]; then
-  echo "industrial.sh: $out is there already and not empty; give another folder" >&2
-  exit 2
-fi
-mkdir -p -- "$out"
-
-bin="$here/../../bin"
-[ -x "$bin/delta-identify" ] || bin="$(dirname -- "$(command -v delta-identify)")"
-programs="$bin/../libexec/deltadyn"
-data="$bin/../share/deltadyn"
-run() { printf '$'; printf ' %s' "${@//$bin\//}"; printf '\n'; "$@"; }
-# The verdict is part of the study: a model that does not predict (exit code 5) is what it shows.
-judge() { run "$@" || { code=$?; [ "$code" = 5 ] || exit "$code"; }; }
+if [ -n "$short" ]; then starts=1; fi
 
 cp -- "$data/robots/irb360_6_1600.urdf" "$out/robot.urdf"
 cp -- "$data/studies/industrial/plant.csv" "$data/studies/industrial/prior_simple.csv" \
@@ -36,7 +20,8 @@ plan() {
   run "$bin/delta-excite" "$out/robot.urdf" -o "$out/$1.csv" --workspace half-ball --workspace-center-m 0,0,-0.80 \
     --workspace-radius-m 0.35 --drive-velocity-rad-s "6,6,6,$2" --drive-acceleration-rad-s2 "60,60,60,$3" --platform-velocity-m-s 4 \
     --platform-acceleration-m-s2 50 --yaw-velocity-rad-s "$2" --yaw-acceleration-rad-s2 "$3" --yaw-range-rad "$4" \
-    --base-frequency-hz 0.1,0.3 --harmonics 5 --periodic --params "$out/prior_geometric.csv" --starts "$starts" --time-limit-s 600 --seed "$5"
+    --base-frequency-hz 0.1,0.3 --harmonics 5 --periodic --params "$out/prior_geometric.csv" \
+    --drive-torque-n-m 55,55,55,4 --starts "$starts" --time-limit-s 600 --seed "$5"
 }
 plan fast 48.17 240.9 40 1
 plan slow 3.054 8.727 3 2

@@ -6,20 +6,8 @@
 # Uses the installed tools: those beside this script, else those on the PATH.
 set -euo pipefail
 
-here="$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)"
-usage() { sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-[ $# -eq 1 ] || { usage >&2; exit 2; }
-case "$1" in -h | --help) usage; exit 0 ;; esac
-out="$1"
-if [ -e "$out" ] && [ -n "$(ls -A -- "$out" 2>/dev/null || echo file)" ]; then
-  echo "missing-effect.sh: $out is there already and not empty; give another folder" >&2
-  exit 2
-fi
-mkdir -p -- "$out"
-
-bin="$here/../../bin"
-[ -x "$bin/delta-diagnose" ] || bin="$(dirname -- "$(command -v delta-diagnose)")"
-run() { printf '$'; printf ' %s' "${@//$bin\//}"; printf '\n'; "$@"; }
+. "$(dirname -- "${BASH_SOURCE[0]}")/study.bash"
+start_study missing-effect.sh 6 "$@"
 
 run "$bin/delta-model" create delta4 --base-radius 0.2 --platform-radius 0.05 --upper-arm 0.525 --strut 1.106 --strut-spacing 0.1 \
   --drive-range-rad "-0.9,1.6;-0.9,1.6;-0.9,1.6;-50,50" --drive-velocity-rad-s 6,6,6,48 --drive-acceleration-rad-s2 60,60,60,240 \
@@ -36,8 +24,7 @@ for speed in 48 6 24; do
     -o "$out/log$speed.csv"
   seed=$((seed + 1))
 done
-run "$bin/delta-identify" "$out/robot.urdf" "$out/log48.csv" "$out/log6.csv" -o "$out/params.csv" --report "$out/identification.html" ||
-  [ $? = 5 ] # the verdict is part of the story
+judge "$bin/delta-identify" "$out/robot.urdf" "$out/log48.csv" "$out/log6.csv" -o "$out/params.csv" --report "$out/identification.html"
 run "$bin/delta-diagnose" "$out/robot.urdf" --params "$out/params.csv" "$out/log48.csv" "$out/log6.csv" --holdout "$out/log24.csv" \
   -o "$out/diagnosis.csv" --effects-out "$out/effects.csv" --params-out "$out/improved.csv" --report "$out/diagnosis.html"
 echo "report: $out/diagnosis.html"

@@ -24,7 +24,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kDrives = 4;
-constexpr double kSmallestError = 1e-3;  // [%] that a figure shows
+constexpr double kSmallestError = 0.01;  // [%] that a figure shows
 constexpr PlotColor kColors[] = {PlotColor::vermillion, PlotColor::green};
 
 bool is_friction(const std::string& name) {

@@ -5,26 +5,10 @@
 # Uses the installed tools: those beside this script, else those on the PATH.
 set -euo pipefail
 
-here="$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)"
-usage() { sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-[ $# -ge 1 ] || { usage >&2; exit 2; }
-case "$1" in -h | --help) usage; exit 0 ;; esac
-out="$1"
+. "$(dirname -- "${BASH_SOURCE[0]}")/study.bash"
+start_study surrogate.sh 5 "$@"
 starts=8 # a number of starts, not a time, so that every run plans the same
-if [ "${2:-}" = --short ]; then starts=1; elif [ $# -gt 1 ]; then usage >&2; exit 2; fi
-if [ -e "$out" ] && [ -n "$(ls -A -- "$out" 2>/dev/null || echo file)" ]; then
-  echo "surrogate.sh: $out is there already and not empty; give another folder" >&2
-  exit 2
-fi
-mkdir -p -- "$out"
-
-bin="$here/../../bin"
-[ -x "$bin/delta-identify" ] || bin="$(dirname -- "$(command -v delta-identify)")"
-programs="$bin/../libexec/deltadyn"
-data="$bin/../share/deltadyn"
-run() { printf '$'; printf ' %s' "${@//$bin\//}"; printf '\n'; "$@"; }
-# A verdict (exit code 5) does not end the study: its figures do, at the end.
-judge() { run "$@" || { code=$?; [ "$code" = 5 ] || exit "$code"; }; }
+if [ -n "$short" ]; then starts=1; fi
 
 cp -- "$data/robots/mujoco_delta4.urdf" "$out/robot.urdf"
 cp -- "$data/studies/surrogate/nominal.csv" "$out/nominal.csv"
