@@ -107,7 +107,8 @@ SearchResult local_search(const DesignProblem& problem, const Eigen::VectorXd& s
     } catch (const std::runtime_error&) {  // NLopt's general failure: no descent from here
       break;
     }
-    if (evaluator.best_rating() < before + kLeastGain) break;
+    // Where nothing can be evaluated the rating stays minus infinity, and there is no slope to follow either.
+    if (!(evaluator.best_rating() >= before + kLeastGain) || !std::isfinite(evaluator.best_rating())) break;
     before = evaluator.best_rating();
   }
   return {evaluator.best().size() > 0 ? evaluator.best() : start, evaluator.evaluations()};

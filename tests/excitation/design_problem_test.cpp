@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
+#include "../../src/excitation/search.hpp"
 #include "excitation/excitation_setup.hpp"
 #include "support/random_robot.hpp"
 
@@ -138,6 +139,18 @@ TEST(DesignProblem, SmoothLimitsLieInsideTheTrueOnesByLittle) {
     EXPECT_GE(e.constraints.maxCoeff(), e.worst - 1);
     EXPECT_LE(e.constraints.maxCoeff(), e.worst - 1 + std::log(2.0 * settings.samples / settings.windows) / settings.sharpness);
   }
+}
+
+// There is no slope to follow; the search must end, and not ask for ever.
+TEST(LocalSearch, EndsWhereTheStartCannotBeEvaluated) {
+  const ExcitationSetup setup = excitation_setup("delta3", 300);
+  const DesignProblem problem(setup.space, *setup.limits, {});
+  Eigen::VectorXd start = Eigen::VectorXd::Constant(problem.variables(), 100);
+  int asked = 0;
+  const SearchResult found = local_search(problem, start, 50, [&asked] { return ++asked > 10000; });
+  EXPECT_LT(asked, 10000);
+  start(start.size() - 1) = 1;
+  EXPECT_EQ(found.best.head(start.size() - 1), start.head(start.size() - 1));
 }
 
 TEST(DesignProblem, SaysWhereItCannotBeEvaluated) {
