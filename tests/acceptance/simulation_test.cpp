@@ -145,6 +145,27 @@ TEST_F(VirtualRobot, AnUnknownEffectIsRefusedWithTheKnownOnes) {
   EXPECT_FALSE(fs::exists(path("log.csv")));
 }
 
+TEST_F(VirtualRobot, AResolutionForDrivesThatAreNotThereIsRefused) {
+  plan("t.csv", 1, 0.4, 1);
+  const ToolResult refused = run(simulate("t.csv", "log.csv", {"--encoder-step-m", "1e-6"}));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("--encoder-bits"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(path("log.csv")));
+}
+
+TEST_F(VirtualRobot, AMotionBeyondTheTorqueIsToldAsSuch) {
+  plan("t.csv", 2, 0.4, 1);
+  std::string robot = read_text(path("robot.urdf"));
+  for (auto at = robot.find("effort=\""); at != std::string::npos; at = robot.find("effort=\"", at + 1)) {
+    robot.replace(at, robot.find('"', at + 8) + 1 - at, "effort=\"3\"");
+  }
+  (void)folder.write("robot.urdf", robot);
+  const ToolResult lost = run(simulate("t.csv", "log.csv"));
+  EXPECT_EQ(lost.code, 4) << lost.out;
+  EXPECT_NE(lost.err.find("met their torque limits"), std::string::npos) << lost.err;
+  EXPECT_NE(lost.err.find("--drive-torque-n-m"), std::string::npos) << lost.err;
+}
+
 TEST_F(VirtualRobot, InverseModeRefusesASpringAndPlay) {
   plan("t.csv", 1, 0.4, 1);
   for (const char* effect : {"joint_elasticity@drive2:inertia_over_stiffness=1e-5", "backlash@drive2:share=0.6,gap=0.01"}) {
