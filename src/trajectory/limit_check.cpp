@@ -10,13 +10,13 @@ using Eigen::Index;
 
 namespace {
 
-/// The parameters without Coulomb friction, whose torque is smooth in time.
-Eigen::VectorXd smooth_part(const Robot& robot, const Eigen::VectorXd& parameters) {
-  Eigen::VectorXd smooth = parameters;
+/// Columns of Coulomb friction that a model uses.
+std::vector<Index> coulomb_columns(const Robot& robot, const Eigen::VectorXd& parameters) {
+  std::vector<Index> columns;
   const std::vector<std::string>& names = robot.parameter_names();
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (names[k].ends_with(".coulomb")) smooth(static_cast<Index>(k)) = 0;
-  return smooth;
+  for (Index k = 0; k < parameters.size(); ++k)
+    if (names[static_cast<std::size_t>(k)].ends_with(".coulomb") && parameters(k) != 0) columns.push_back(k);
+  return columns;
 }
 
 }  // namespace
@@ -49,26 +49,36 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
   for (const Limit& limit : limits.list(robot.description())) check.uses.push_back({limit, -1, 0, 0});
   const auto count = static_cast<Index>(check.uses.size());
   Eigen::MatrixXd usage(count, samples + 1), values(count, samples + 1);
-  // What jumps in a torque, when a joint turns back, is kept apart: it has no bend, but may last up to the next sample.
-  Eigen::MatrixXd jumping = Eigen::MatrixXd::Zero(count, samples + 1);
+  // Coulomb friction jumps where a joint turns back, be it for a moment between two samples. It counts in full, whichever way the
+  // joint turns, on the side of the rest of the torque, which is smooth in time: at a reversal both signs occur anyway.
+  const bool torque = limits.parameters.size() > 0;
+  const std::vector<Index> columns = torque ? coulomb_columns(robot, limits.parameters) : std::vector<Index>();
+  Eigen::MatrixXd Y(n, robot.parameters());
   LimitedState state;
   state.x.resize(3 * n);
   state.drives.resize(3 * n);
   state.tau.resize(n);
   Eigen::VectorXd q(n), qd(n), qdd(n);
-  const bool torque = limits.parameters.size() > 0;
-  const Eigen::VectorXd smooth = torque ? smooth_part(robot, limits.parameters) : Eigen::VectorXd();
-  Eigen::VectorXd smooth_tau(n);
+  Eigen::VectorXd friction(n);
   const auto time_of = [&](Index i) { return motion.duration_s * static_cast<double>(i) / samples; };
   for (Index i = 0; i <= samples; ++i) {
     const TaskState task = motion.at(time_of(i));
     Status status = robot.to_drives(task, q, qd, qdd);
-    if (status == Status::ok && torque) status = robot.inverse_dynamics(q, qd, qdd, limits.parameters, state.tau);
-    if (status == Status::ok && torque) status = robot.inverse_dynamics(q, qd, qdd, smooth, smooth_tau);
+    if (status == Status::ok && torque) status = robot.regressor(q, qd, qdd, Y);
     if (status != Status::ok) {
       check.reachable = false;
       check.unreachable_at_s = time_of(i);
       return check;
+    }
+    if (torque) {
+      state.tau = Y * limits.parameters;
+      friction.setZero();
+      for (const Index column : columns) {
+        const Eigen::VectorXd part = Y.col(column) * limits.parameters(column);
+        state.tau -= part;
+        friction += part.cwiseAbs();
+      }
+      for (int drive = 0; drive < n; ++drive) state.tau(drive) += std::copysign(friction(drive), state.tau(drive));
     }
     state.x << task.z, task.zd, task.zdd;
     state.drives << q, qd, qdd;
@@ -76,9 +86,6 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
       const Limit& limit = check.uses[static_cast<std::size_t>(k)].limit;
       values(k, i) = limited_value(limit, limits, state);
       usage(k, i) = usage_of(limit, values(k, i));
-      if (limit.quantity != LimitedQuantity::tau) continue;
-      jumping(k, i) = usage_slope(limit) * (state.tau(limit.index) - smooth_tau(limit.index));
-      usage(k, i) -= jumping(k, i);
     }
   }
   for (Index k = 0; k < count; ++k) {
@@ -89,11 +96,7 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
     use.load = -std::numeric_limits<double>::infinity();
     for (Index i = 0; i <= samples; ++i) {
       const double between = std::max({bend(i - 1), bend(i), bend(i + 1)}) / 4;
-      const Index first = std::max<Index>(i - 1, 0), near = std::min<Index>(i + 1, samples) - first + 1;
-      const auto jumps = jumping.row(k).segment(first, near);
-      const double load =
-          std::max(limit_load(use.limit, usage(k, i) + jumps.maxCoeff()), limit_load(use.limit, usage(k, i) + jumps.minCoeff())) +
-          between;
+      const double load = limit_load(use.limit, usage(k, i)) + between;
       if (load <= use.load) continue;
       use = {use.limit, load, values(k, i), time_of(i)};
     }
