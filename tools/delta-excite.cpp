@@ -218,6 +218,7 @@ class Excite {
     const auto segments = static_cast<double>(options_.speeds.size());
     Following time;
     time.plan_s = unit * segments * (kPlanShare + kSamplesShare * 1e-5 * duration_s_ * options_.rate_hz);
+    if (!params_file_.empty()) time.plan_s *= 2;  // torques are looked at, too
     if (!report_file_.empty()) time.report_s = (0.5 + 0.5 * segments) * std::max(kReport_s, kReportShare * unit);
     return time;
   }
