@@ -124,6 +124,21 @@ std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits
   return series.scaled(centre, low);
 }
 
+/// The limits as the search takes them, which the final check agrees with: Coulomb friction always on the side of the rest of the
+/// torque, as if it took its share of the limit away.
+MotionLimits without_friction(const Robot& robot, MotionLimits limits) {
+  for (Index k = 0; k < limits.parameters.size(); ++k) {
+    const std::string& name = robot.parameter_names()[static_cast<std::size_t>(k)];
+    if (!name.ends_with(".coulomb")) continue;
+    for (int i = 0; i < robot.drives(); ++i) {
+      const double left = limits.tau(i) - std::abs(limits.parameters(k));
+      if (name == fmt::format("drive{}.coulomb", i + 1) && left > 0) limits.tau(i) = left;
+    }
+    limits.parameters(k) = 0;
+  }
+  return limits;
+}
+
 struct Candidate {
   FourierSeries series;
   double value = -std::numeric_limits<double>::infinity();  ///< of the criterion with the other segments, true signs
@@ -154,7 +169,13 @@ class SegmentSearch {
  public:
   SegmentSearch(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options, const Clock& clock,
                 MatrixXd other_information, double share)
-      : space_(space), limits_(limits), options_(options), clock_(clock), other_(std::move(other_information)), share_(share) {}
+      : space_(space),
+        limits_(limits),
+        search_limits_(without_friction(*space.robot, limits)),
+        options_(options),
+        clock_(clock),
+        other_(std::move(other_information)),
+        share_(share) {}
 
   [[nodiscard]] ProblemSettings settings(bool polish) const {
     ProblemSettings s;
@@ -223,7 +244,7 @@ class SegmentSearch {
   /// Local search from a series, then made to keep the true limits. Nothing if that cannot be.
   [[nodiscard]] std::optional<Candidate> improve(const FourierSeries& start, bool polish, double deadline_s,
                                                  long& evaluations) const {
-    const DesignProblem problem(space_, limits_, settings(polish));
+    const DesignProblem problem(space_, search_limits_, settings(polish));
     const detail::SearchResult found =
         detail::local_search(problem, problem.variables_of(start), polish ? kPolishEvaluations : kSearchEvaluations,
                              [&] { return clock_.over(deadline_s); });
@@ -247,6 +268,7 @@ class SegmentSearch {
  private:
   const DesignSpace& space_;
   const MotionLimits& limits_;
+  MotionLimits search_limits_;
   const ExcitationOptions& options_;
   const Clock& clock_;
   MatrixXd other_;
