@@ -48,8 +48,11 @@ constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of th
 constexpr double kPassOverMotion = 0.6;  // low pass of regressor and torque, not that of the motion, bounds the band
 constexpr double kGoodScore = 1.03;
 constexpr double kLeastCutoff_hz = 20;      // below, nothing of a reversal would be left out but everything
+constexpr double kMostCutoff_hz = 25;       // above, encoder noise in the accelerations outweighs what is gained beside reversals
 constexpr double kSettled = 0.1;            // change of an amplitude that least squares without noise model may make
-constexpr double kRestFloor = 0.015;        // share of the largest rate below which friction is that of rest
+constexpr double kRestFloor = 0.015;        // share of a log's largest rate below which friction is that of rest
+constexpr double kRestOfAll = 0.02;         // share of the largest rate in all logs for which the same holds ...
+constexpr double kMostRest = 0.12;          // ... but no more than this share of a slow log's own, which must show something
 constexpr double kFewestRowsPerBase = 8.0;  // usable rows of a drive in units of base parameters a drive
 
 bool same_log(const Log& a, const Log& b) {
@@ -65,7 +68,7 @@ double widest_good_cutoff_hz(const std::vector<CutoffPoint>& points) {
   for (const CutoffPoint& point : points) {
     if (point.score <= kGoodScore * best) cutoff_hz = std::max(cutoff_hz, point.cutoff_hz);
   }
-  return std::max(cutoff_hz, kLeastCutoff_hz);
+  return std::clamp(cutoff_hz, kLeastCutoff_hz, kMostCutoff_hz);
 }
 
 ProcessingOptions diagnosis_processing(const Robot& robot, const std::vector<Log>& logs, const DiagnosisOptions& options,
@@ -93,6 +96,42 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
     out.rows -= 2;
   }
   return out;
+}
+
+/// Rates of the joints that have friction, samples x joints.
+MatrixXd friction_rates(const Robot& robot, const PreparedLog& log) {
+  MatrixXd rates(log.t_s.size(), robot.friction_joints());
+  VectorXd v(robot.friction_joints());
+  for (Index k = 0; k < rates.rows(); ++k) {
+    if (robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v) != Status::ok) v.setZero();
+    rates.row(k) = v.transpose();
+  }
+  return rates;
+}
+
+/// Leaves friction at rest out of slow logs, too: what is slow is measured by the fastest log.
+void leave_rest_out(const Robot& robot, std::vector<PreparedLog*> logs) {
+  std::vector<MatrixXd> rates;
+  VectorXd largest = VectorXd::Zero(robot.friction_joints());
+  for (const PreparedLog* log : logs) {
+    rates.push_back(friction_rates(robot, *log).cwiseAbs());
+    largest = largest.cwiseMax(rates.back().colwise().maxCoeff().transpose());
+  }
+  const auto limbs = static_cast<Index>(robot.description().limbs.size());
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const VectorXd own = rates[l].colwise().maxCoeff().transpose();
+    for (Index joint = 0; joint < largest.size(); ++joint) {
+      const double threshold = std::min(kRestOfAll * largest(joint), kMostRest * own(joint));
+      for (Index k = 0; k < rates[l].rows(); ++k) {
+        if (rates[l](k, joint) >= threshold) continue;
+        if (joint < robot.drives()) {
+          logs[l]->reversal(k, joint) = true;
+        } else {
+          logs[l]->reversal.row(k).head(limbs) = true;  // the telescope bar's friction acts on the limbs' drives
+        }
+      }
+    }
+  }
 }
 
 /// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
@@ -153,13 +192,19 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
 
   const BaseParameters base = find_base_parameters(robot);
   ProcessingOptions processing;
-  std::vector<LogRows> rows;
+  std::vector<LogRows> rows, held;
   try {
     processing = diagnosis_processing(robot, logs, options, out.cutoff_hz);
     report(0.05);
-    for (std::size_t l = 0; l < logs.size(); ++l) {
-      rows.push_back(make_log_rows(robot, base, prepared(robot, logs[l], processing), static_cast<int>(l) + 1));
-    }
+    std::vector<PreparedLog> ready;
+    for (const Log& log : logs) ready.push_back(prepared(robot, log, processing));
+    if (held_log) ready.push_back(prepared(robot, *held_log, processing));
+    std::vector<PreparedLog*> each;
+    for (PreparedLog& log : ready) each.push_back(&log);
+    leave_rest_out(robot, each);
+    for (std::size_t l = 0; l < logs.size(); ++l)
+      rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
+    if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
   } catch (const Error& error) {
     double length = 0;
     for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
@@ -184,10 +229,12 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   const VectorXd p_fit = refit_parameters(base, rows, p);
   const EffectModel model(robot);
   for (LogRows& log : rows) log.signals = model.signals(log.log, p_fit);
-  const GenericBasis basis = make_generic_basis(rows);
+  for (LogRows& log : held) log.signals = model.signals(log.log, p_fit);
+  const GenericBasis basis = make_generic_basis(rows, held);
   const EffectSearch search(model, rows, basis, known);
   report(0.15);
   detail::SearchContext context{robot, model, base, rows, basis, search, options, processing, p_fit};
+  context.holdout = held.empty() ? nullptr : &held.front();
   for (const Log& log : logs) {
     context.position_noise.emplace_back();
     for (Index j = 0; j < log.q.cols(); ++j) context.position_noise.back().push_back(position_noise(log.q.col(j)));
@@ -195,13 +242,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   detail::SearchResult found = detail::search_effects(context, out);
   report(0.9);
 
-  std::optional<LogRows> held;
-  if (held_log) {
-    held = make_log_rows(robot, base, prepared(robot, *held_log, processing), 0);
-    held->signals = model.signals(held->log, p_fit);
-  }
   detail::describe_drives(context, found, out);
-  detail::judge(context, found, held ? &*held : nullptr, known, out);
+  detail::judge(context, found, known, out);
   if (options.identify && !out.named.empty()) {
     try {
       IdentificationOptions identification;

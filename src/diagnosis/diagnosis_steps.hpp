@@ -22,6 +22,7 @@ struct SearchContext {
   const ProcessingOptions& processing;
   const Eigen::VectorXd& p;
   PerLogAndDrive<double> position_noise = {};
+  const LogRows* holdout = nullptr;  ///< evaluated in `basis` behind the logs
 };
 
 struct SearchResult {
@@ -46,11 +47,22 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out);
 void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out);
 
 /// Steps 9 and 10: names, unknown structure, proof on the hold-out log, what to do next.
-void judge(const SearchContext& context, const SearchResult& found, const LogRows* holdout, const std::vector<Effect>& known,
-           Diagnosis& out);
+void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
 
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
+
+/// What a re-fit of the base parameters leaves of a torque, in the rows of the logs [N m | N]: C a - Y b for the b that takes most.
+struct Remainder {
+  Eigen::VectorXd beta;                    ///< b (and amplitudes of the known effects)
+  PerLogAndDrive<Eigen::VectorXd> torque;  ///< [log][drive]; empty where there is none
+};
+/// \param columns  [log][drive] rows x k, empty where a drive is not reached
+[[nodiscard]] Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
+                                     const PerLogAndDrive<Eigen::MatrixXd>& columns, const Eigen::VectorXd& amplitude);
+/// Mean square of a remainder over the noise variance of each drive.
+[[nodiscard]] Eigen::VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
+                                           const PerLogAndDrive<double>& floor);
 
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.

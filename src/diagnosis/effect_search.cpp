@@ -15,28 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kNoisePasses = 3;
-constexpr double kRidge = 1e-6;  // of the generic basis, whose hats overlap
-
-/// Coefficients of the generic basis of one drive beside the problem's residual, and the dof it takes.
-VectorXd basis_coefficients(const WhiteProblem& problem, const GenericBasis& basis, std::size_t drive, double& fitted) {
-  const Index columns = basis.columns.front()[drive].cols();
-  MatrixXd G = MatrixXd::Zero(columns, columns);
-  VectorXd u = VectorXd::Zero(columns);
-  for (const WhiteSegment& segment : problem.segments) {
-    if (segment.drive != drive) continue;
-    const MatrixXd C = segment.whitener.apply(basis.columns[segment.log][drive]);
-    G += C.transpose() * C;
-    u += C.transpose() * problem.r.segment(segment.offset, segment.rows());
-  }
-  const VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
-  scaled.diagonal().array() += kRidge;
-  const VectorXd coefficients = scale.asDiagonal() * scaled.ldlt().solve(VectorXd(scale.asDiagonal() * u));
-  fitted = static_cast<double>(Eigen::FullPivHouseholderQR<MatrixXd>(scaled).setThreshold(1e-4).rank());
-  return coefficients;
-}
-
 PerLogAndDrive<MatrixXd> columns_of(const PerLogAndDrive<MatrixXd>& rows, Index first, Index count) {
   PerLogAndDrive<MatrixXd> out = rows;
   for (auto& log : out) {
@@ -90,58 +68,6 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
 
 }  // namespace
 
-PerLogAndDrive<NoiseModel> estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
-                                          const PerLogAndDrive<MatrixXd>& extra, PerLogAndDrive<double>* floor_rms) {
-  const std::size_t n = logs.front().usable.size();
-  PerLogAndDrive<NoiseModel> noise(logs.size(), std::vector<NoiseModel>(n));
-  // Drives weighted by their torque to begin with.
-  for (std::size_t l = 0; l < logs.size(); ++l) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto tau = logs[l].tau.col(static_cast<Index>(j));
-      noise[l][j].std = std::max(1e-2 * std::sqrt(tau.squaredNorm() / static_cast<double>(tau.size())), 1e-9);
-    }
-  }
-  if (floor_rms != nullptr) floor_rms->assign(logs.size(), std::vector<double>(n, 0.0));
-  for (int pass = 0; pass < kNoisePasses; ++pass) {
-    const WhiteProblem problem(logs, noise, extra);
-    const Index b = logs.front().Y.front().cols();
-    PerLogAndDrive<NoiseModel> next = noise;
-    for (std::size_t j = 0; j < n; ++j) {
-      double fitted = 0;
-      const VectorXd coefficients = basis_coefficients(problem, basis, j, fitted);
-      double drive_rows = 0;
-      for (const WhiteSegment& segment : problem.segments)
-        drive_rows += segment.drive == j ? static_cast<double>(segment.rows()) : 0.0;
-      const double spent = fitted + static_cast<double>(problem.Q.cols()) / static_cast<double>(n);
-      const double correction = std::sqrt(drive_rows / std::max(drive_rows - spent, 0.2 * drive_rows));
-      for (const WhiteSegment& segment : problem.segments) {
-        if (segment.drive != j) continue;
-        const LogRows& log = logs[segment.log];
-        VectorXd e =
-            log.tau.col(static_cast<Index>(j)) - log.Y[j] * problem.beta.head(b) - basis.columns[segment.log][j] * coefficients;
-        if (!extra.empty()) e -= extra[segment.log][j] * problem.beta.tail(problem.beta.size() - b);
-        NoiseModel& model = next[segment.log][j];
-        if (pass + 1 < kNoisePasses) {
-          model = fit_noise_model(e, log.usable[j]);
-        } else {
-          // Same colour, the scale of the white residual itself.
-          const VectorXd white = segment.whitener.apply(e);
-          model = noise[segment.log][j];
-          model.std *= std::sqrt(white.squaredNorm() / std::max<double>(1, static_cast<double>(white.size()))) * correction;
-        }
-        if (floor_rms != nullptr) {
-          const auto count = static_cast<double>(std::max<Index>(1, log.usable[j].count()));
-          (*floor_rms)[segment.log][j] = correction * std::sqrt(log.usable[j].select(e.array(), 0.0).square().sum() / count);
-        }
-        const double floor = 1e-9 * std::max(log.tau.col(static_cast<Index>(j)).cwiseAbs().maxCoeff(), 1e-9);
-        model.std = std::max(model.std, floor);
-      }
-    }
-    noise = std::move(next);
-  }
-  return noise;
-}
-
 EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
                            const std::vector<Effect>& known)
     : model_(model),
@@ -194,9 +120,9 @@ std::vector<LogRows> EffectSearch::corrected(const std::vector<AcceptedEffect>& 
   return out;
 }
 
-PerLogAndDrive<NoiseModel> EffectSearch::noise_beside(const std::vector<AcceptedEffect>& accepted,
-                                                      PerLogAndDrive<double>* floor) const {
-  return estimate_noise(corrected(accepted), basis_, extra(accepted), floor);
+NoiseEstimate EffectSearch::noise_beside(const std::vector<AcceptedEffect>& accepted,
+                                         const PerLogAndDrive<NoiseModel>* start) const {
+  return estimate_noise(corrected(accepted), basis_, extra(accepted), start);
 }
 
 EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,

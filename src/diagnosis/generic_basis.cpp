@@ -76,6 +76,11 @@ double load(const LogRows& log, Index, Index sample, Index j, Index) {
 double torque(const LogRows& log, Index, Index sample, Index j, Index) {
   return log.signals.torque(sample, j);
 }
+double torque_rate(const LogRows& log, Index, Index sample, Index j, Index) {
+  const MatrixXd& tau = log.signals.torque;
+  const Index before = std::max<Index>(sample - 1, 0), after = std::min(sample + 1, tau.rows() - 1);
+  return (tau(after, j) - tau(before, j)) / (static_cast<double>(after - before) * log.signals.sample_time_s);
+}
 double time(const LogRows& log, Index row, Index, Index, Index) {
   return log.t_s(row) - log.t_s(0);
 }
@@ -97,6 +102,7 @@ const std::vector<Coordinate>& coordinates() {
                                               {"acceleration", 7, acceleration, unit},
                                               {"load", 6, torque, unit},
                                               {"load", 4, load, direction},
+                                              {"torque rate", 4, torque_rate, unit},
                                               {"time", 6, time, unit},
                                               {"time", 4, time, rate},
                                               {"other joints", 4, other_position, unit, true},
@@ -107,12 +113,13 @@ const std::vector<Coordinate>& coordinates() {
 
 }  // namespace
 
-GenericBasis make_generic_basis(const std::vector<LogRows>& logs) {
+GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vector<LogRows>& more) {
   GenericBasis out;
   const Index n = logs.front().tau.cols();
-  out.columns.resize(logs.size());
+  out.columns.resize(logs.size() + more.size());
   for (auto& log : out.columns) log.resize(static_cast<std::size_t>(n));
   out.coordinate.resize(static_cast<std::size_t>(n));
+  out.blocks.resize(static_cast<std::size_t>(n));
   for (Index j = 0; j < n; ++j) {
     const auto drive = static_cast<std::size_t>(j);
     // Fewer knots for short logs: at least some twenty rows a column, or the basis would fit the noise.
@@ -130,9 +137,10 @@ GenericBasis make_generic_basis(const std::vector<LogRows>& logs) {
         }
         const std::vector<double> knot = knots(values, std::max(2, static_cast<int>(std::lround(share * coordinate.count))));
         if (knot.size() < 2) continue;
+        out.blocks[drive].emplace_back(static_cast<Index>(out.coordinate[drive].size()), static_cast<Index>(knot.size()));
         for (std::size_t k = 0; k < knot.size(); ++k) out.coordinate[drive].push_back(coordinate.name);
-        for (std::size_t l = 0; l < logs.size(); ++l) {
-          const LogRows& log = logs[l];
+        for (std::size_t l = 0; l < logs.size() + more.size(); ++l) {
+          const LogRows& log = l < logs.size() ? logs[l] : more[l - logs.size()];
           MatrixXd& to = out.columns[l][drive];
           const Index first = to.cols();
           to.conservativeResize(log.rows(), first + static_cast<Index>(knot.size()));

@@ -108,6 +108,7 @@ std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<Log
       const bool is_known =
           std::any_of(known.begin(), known.end(), [&](const Effect& e) { return e.id == kind.id && e.joint == joint; });
       if (is_known || base_holds(robot, hypothesis)) continue;
+      if (joint >= 0) hypothesis.largest_torque = scales[static_cast<std::size_t>(joint + 1)].largest_torque;
       // Every combination of the shapes' start values.
       for (const EffectShape& shape : kind.shapes) {
         const std::vector<double> grid = grid_of(shape, hypothesis, scales[static_cast<std::size_t>(joint + 1)], logs, robot);

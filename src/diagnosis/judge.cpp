@@ -1,9 +1,13 @@
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
+
+#include "deltadyn/signal/reversal_mask.hpp"
 
 #include "diagnosis_steps.hpp"
 
@@ -17,8 +21,12 @@ namespace {
 
 constexpr double kExplained = 0.8;          // of the structure that names must explain
 constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
-constexpr double kCarriesOver = 0.3;        // of the hold-out gap that an effect must close
-constexpr double kHoldoutGap = 1.25;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
+constexpr double kSlowOverNoise = 35;       // noise with a correlation of 0.98 at 1 kHz comes to 20
+constexpr double kSlowOverOthers = 5;
+constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close
+constexpr double kHoldoutGap = 1.4;   // rms over floor from which a hold-out log contradicts a model that fits the training logs
 constexpr double kBlock_s = 0.25;
 constexpr int kResamples = 1000;
 
@@ -27,6 +35,7 @@ struct HoldoutProof {
   MatrixXd before, after;
   std::vector<RowMask> usable;
   VectorXd rms_before, rms_after, floor;
+  VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
 };
 
 double rms_of(const VectorXd& e, const RowMask& usable) {
@@ -67,16 +76,21 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
   out.rms_before.resize(n);
   out.rms_after.resize(n);
   out.floor.resize(n);
+  out.unsure.resize(n);
+  const WhiteProblem& training = *found.before.problem;
+  const MatrixXd covariance =
+      MatrixXd(training.X.transpose() * training.X).completeOrthogonalDecomposition().pseudoInverse().topLeftCorner(b, b);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
   std::vector<LogRows> alone = {held};
   alone.front().tau = corrected;
-  PerLogAndDrive<double> floor;
-  (void)estimate_noise(alone, make_generic_basis(alone), extra, &floor);
+  const PerLogAndDrive<double> floor = estimate_noise(alone, make_generic_basis(alone), extra).floor_rms;
   for (Index j = 0; j < n; ++j) {
     const auto drive = static_cast<std::size_t>(j);
     out.before.col(j) = held.tau.col(j) - held.Y[drive] * beta0.head(b) -
                         extra[0][drive].leftCols(beta0.size() - b) * beta0.tail(beta0.size() - b);
     out.after.col(j) = corrected.col(j) - held.Y[drive] * beta1.head(b) - extra[0][drive] * beta1.tail(beta1.size() - b);
+    const MatrixXd Y_cov = held.Y[drive] * covariance;
+    out.unsure(j) = rms_of(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(), held.usable[drive]);
     out.rms_before(j) = rms_of(out.before.col(j), held.usable[drive]);
     out.rms_after(j) = rms_of(out.after.col(j), held.usable[drive]);
     // The same log fitted by everything: a model from other logs cannot be expected to do better.
@@ -249,13 +263,38 @@ void say(const SearchContext& context, Diagnosis& out) {
   out.next.push_back("Go on with the improved parameters and the effect file (--params-out, --effects-out).");
 }
 
+/// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that of the other
+/// drives: the noise model can follow anything slow, but such a residual is not noise. Returns the drive or nothing.
+std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context, const Diagnosis& out) {
+  const double pass_hz = context.processing.torque_cutoff_ratio * context.processing.cutoff_hz;
+  std::vector<double> over_noise, over_torque;
+  for (std::size_t j = 0; j < out.drives.size(); ++j) {
+    double noise = 0, torque = 0;
+    for (const LogRows& log : context.logs) {
+      const auto tau = log.log.tau.col(static_cast<Index>(j));
+      noise += position_noise(tau) * std::sqrt(std::min(1.0, 2 * pass_hz / log.log.rate_hz)) /
+               static_cast<double>(context.logs.size());
+      torque = std::max(torque, tau.cwiseAbs().maxCoeff());
+    }
+    over_noise.push_back(out.drives[j].rms_after / std::max(noise, 1e-300));
+    over_torque.push_back(out.drives[j].rms_after / std::max(torque, 1e-300));
+  }
+  if (over_torque.size() < 2) return std::nullopt;
+  const auto worst = static_cast<std::size_t>(std::max_element(over_torque.begin(), over_torque.end()) - over_torque.begin());
+  std::vector<double> others = over_torque;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(worst));
+  std::sort(others.begin(), others.end());
+  if (over_noise[worst] > kSlowOverNoise && over_torque[worst] > kSlowOverOthers * others[others.size() / 2]) return worst;
+  return std::nullopt;
+}
+
 }  // namespace
 
-void judge(const SearchContext& context, const SearchResult& found, const LogRows* holdout, const std::vector<Effect>& known,
-           Diagnosis& out) {
+void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out) {
   const Index n = context.robot.drives();
-  std::vector<double> rows(static_cast<std::size_t>(n), 0.0);
-  for (const WhiteSegment& segment : found.before.problem->segments) rows[segment.drive] += static_cast<double>(segment.rows());
+  const LogRows* holdout = context.holdout;
+  std::optional<HoldoutProof> proof;
+  if (holdout != nullptr) proof = prove(context, found, *holdout, known);
 
   // What the generic basis still sees.
   double left = 0, worst = 0;
@@ -263,19 +302,31 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
   bool unexplained = false;
   for (Index j = 0; j < n; ++j) {
     const auto drive = static_cast<std::size_t>(j);
-    const double excess = std::max(0.0, found.structure_after(j) - found.null.omnibus[drive].quantile(0.5));
-    left += excess;
-    const double share = excess / std::max(1.0, rows[drive]);
+    left += std::max(0.0, found.structure_after(j) - found.null.omnibus[drive].quantile(0.5));
+    if (found.null.omnibus[drive].p_value(found.structure_after(j)) >= kStructureChance) continue;
+    const VectorXd clear = found.omnibus_after.clear_part(*found.after.problem, found.after.problem->r, drive);
+    PerLogAndDrive<MatrixXd> columns(context.logs.size(), std::vector<MatrixXd>(static_cast<std::size_t>(n)));
+    for (std::size_t l = 0; l < context.logs.size(); ++l) columns[l][drive] = context.basis.columns[l][drive];
+    const Remainder structure = remainder_of(context, *found.after.problem, columns, clear);
+    const double share = noise_shares(context, structure, found.floor)(j);
+    double repeated = 1;  // share of the hold-out log's residual that the same function explains there
+    if (holdout != nullptr) {
+      const VectorXd there =
+          context.basis.columns.back()[drive] * clear - holdout->Y[drive] * structure.beta.head(context.base.count());
+      const VectorXd e = proof->after.col(j);
+      const double before = rms_of(e, holdout->usable[drive]), after = rms_of(e - there, holdout->usable[drive]);
+      repeated = 1 - after * after / std::max(before * before, 1e-300);
+    }
     if (share > worst) {
       worst = share;
       worst_drive = drive;
     }
-    if (share > kMaterialStructure && found.null.omnibus[drive].p_value(found.structure_after(j)) < kStructureChance)
-      unexplained = true;
+    unexplained |= share > kOvertStructure || (share > kMaterialStructure && repeated > kRepeated);
   }
   const double gain = std::max(0.0, found.before.problem->r.squaredNorm() - found.after.problem->r.squaredNorm());
   out.explained_share = gain > 0 ? gain / (gain + left) : 0.0;
 
+  double largest_share = 0;  // of the noise variance, by a named effect
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
@@ -300,6 +351,8 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
     one.gain = fit.gain;
     one.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
     // An effect that was taken in beside others can have gained more alone than all of them together.
+    const Remainder torque = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude);
+    largest_share = std::max(largest_share, noise_shares(context, torque, found.floor).maxCoeff());
     one.explained_share = fit.gain / std::max({gain + left, fit.gain, 1e-300});
     one.confusable = found.sets[k];
     one.drives = drives_of(fit, *found.before.problem, n);
@@ -322,7 +375,6 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
   }
 
   if (holdout != nullptr) {
-    const HoldoutProof proof = prove(context, found, *holdout, known);
     DiagnosisTrace trace;
     trace.file = holdout->log.file;
     trace.holdout = true;
@@ -330,8 +382,8 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
     trace.q = holdout->q;
     trace.qd = holdout->qd;
     trace.torque = holdout->tau;
-    trace.before = proof.before;
-    trace.after = proof.after;
+    trace.before = proof->before;
+    trace.after = proof->after;
     trace.usable.resize(holdout->rows(), n);
     for (Index j = 0; j < n; ++j) trace.usable.col(j) = holdout->usable[static_cast<std::size_t>(j)];
     out.traces.push_back(std::move(trace));
@@ -339,9 +391,9 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
     for (NamedEffect& one : out.named) {
       double before = 0, after = 0, floor = 0;
       for (const int j : one.drives) {
-        before += proof.rms_before(j) * proof.rms_before(j);
-        after += proof.rms_after(j) * proof.rms_after(j);
-        floor += proof.floor(j) * proof.floor(j);
+        before += proof->rms_before(j) * proof->rms_before(j);
+        after += proof->rms_after(j) * proof->rms_after(j);
+        floor += proof->floor(j) * proof->floor(j);
         if (std::count(touched.begin(), touched.end(), j) == 0) touched.push_back(j);
       }
       const auto count = static_cast<double>(std::max<std::size_t>(1, one.drives.size()));
@@ -350,25 +402,38 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
       one.rms_floor = std::sqrt(floor / count);
     }
     if (!touched.empty()) {
-      shrink_of(proof, *holdout, touched, context.options.seed, out);
+      shrink_of(*proof, *holdout, touched, context.options.seed, out);
       double gap = 0;
-      for (const int j : touched) gap = std::max(gap, proof.rms_before(j) / std::max(proof.floor(j), 1e-300));
+      for (const int j : touched) gap = std::max(gap, proof->rms_before(j) / std::max(proof->floor(j), 1e-300));
       const bool worse = out.gap_shrink < 0;  // then even a small gap speaks against the name
       if (out.verdict != DiagnosisVerdict::unknown_structure && (worse || (gap > 1.05 && out.gap_shrink < kCarriesOver))) {
-        out.verdict = DiagnosisVerdict::unknown_structure;
-        out.region = place_of(out, static_cast<std::size_t>(touched.front()));
-        out.lines.push_back(fmt::format(
-            "{} fits the training logs but closes {:.0f} % of the gap on the hold-out log only: it is not what is missing.",
-            out.named.front().name, 100 * out.gap_shrink));
+        const std::string line = fmt::format(
+            "{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.", out.named.front().name,
+            out.named.front().joint,
+            worse ? std::string("makes the model worse") : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
+        if (largest_share > kMaterialStructure) {
+          out.verdict = DiagnosisVerdict::unknown_structure;
+          out.region = place_of(out, static_cast<std::size_t>(touched.front()));
+          out.lines.push_back(line);
+        } else {
+          // Chance, or a trace of no use to anybody.
+          out.verdict = DiagnosisVerdict::nothing_missing;
+          out.notes.push_back(line);
+          out.named.clear();
+          out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+          out.p_no_gain = 1;
+        }
       }
     }
     if (out.verdict == DiagnosisVerdict::nothing_missing) {
       for (Index j = 0; j < n; ++j) {
-        const double here = proof.rms_before(j) / std::max(proof.floor(j), 1e-300);
-        const double there =
-            out.drives[static_cast<std::size_t>(j)].rms / std::max(out.drives[static_cast<std::size_t>(j)].floor, 1e-300);
-        // Slow noise makes the floor of one log look low: the residual itself must be larger than in training, too.
-        const bool larger = proof.rms_before(j) > kHoldoutGap * out.drives[static_cast<std::size_t>(j)].rms;
+        const DriveFit& training = out.drives[static_cast<std::size_t>(j)];
+        const double here = proof->rms_before(j) / std::max(proof->floor(j), 1e-300);
+        // What noise has left open in the parameters shows in every other log. And slow noise makes the floor of one log look low:
+        // the residual itself must be larger than in training, too.
+        const double expected = std::hypot(std::max(training.rms, proof->floor(j)), proof->unsure(j));
+        const bool larger = proof->rms_before(j) > kHoldoutGap * expected;
+        const double there = std::hypot(training.rms / std::max(training.floor, 1e-300), proof->unsure(j) / proof->floor(j));
         if (larger && here > kHoldoutGap * std::max(1.0, there)) {
           out.verdict = DiagnosisVerdict::not_testable;
           out.region = fmt::format("drive {}", j + 1);
@@ -387,6 +452,13 @@ void judge(const SearchContext& context, const SearchResult& found, const LogRow
       one.rms_floor = out.drives[j].floor;
     }
     out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
+  }
+  if (out.verdict == DiagnosisVerdict::nothing_missing || out.verdict == DiagnosisVerdict::not_testable) {
+    if (const std::optional<std::size_t> slow = drive_with_slow_residual(context, out)) {
+      out.verdict = DiagnosisVerdict::unknown_structure;
+      out.region = fmt::format("drive {}, a slow torque of {:.3g} rms that the motion does not explain", *slow + 1,
+                               out.drives[*slow].rms_after);
+    }
   }
   if (found.before.problem->Q.cols() < context.base.count() + amplitude_count(known) &&
       out.verdict == DiagnosisVerdict::nothing_missing) {

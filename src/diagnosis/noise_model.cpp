@@ -10,22 +10,65 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double NoiseModel::total_std() const {
-  // Impulse response; a stable model has died out after a few thousand rows.
-  VectorXd memory = VectorXd::Zero(std::max<Index>(1, order()));
-  double sum = 1.0;
-  memory(0) = 1.0;
-  for (int k = 0; k < 20000 && order() > 0; ++k) {
-    const double next = ar.dot(memory.head(order()));
-    for (Index i = order() - 1; i > 0; --i) memory(i) = memory(i - 1);
-    memory(0) = next;
+namespace {
+
+/// A stable model has died out after a few thousand rows.
+std::vector<double> impulse_response(const VectorXd& ar) {
+  constexpr std::size_t kLongest = 20000;
+  std::vector<double> h = {1.0};
+  double sum = 1.0, recent = 1.0;  // squares: of all, and of the last order() values
+  const auto order = static_cast<std::size_t>(ar.size());
+  while (order > 0 && h.size() < kLongest && recent > 1e-10 * sum) {
+    double next = 0;
+    for (std::size_t k = 0; k < std::min(order, h.size()); ++k) next += ar(static_cast<Index>(k)) * h[h.size() - 1 - k];
+    h.push_back(next);
     sum += next * next;
-    if (memory.squaredNorm() < 1e-10 * sum) break;
+    recent = 0;
+    for (std::size_t k = 0; k < std::min(order, h.size()); ++k) recent += h[h.size() - 1 - k] * h[h.size() - 1 - k];
   }
+  return h;
+}
+
+}  // namespace
+
+double NoiseModel::total_std() const {
+  double sum = 0;
+  for (const double h : impulse_response(ar)) sum += h * h;
   return std * std::sqrt(sum);
 }
 
-NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, Index largest_order) {
+NoiseModel with_white_share(const NoiseModel& noise, double share) {
+  constexpr Index kLeastOrder = 8;  // an autoregression beside white noise has no finite order
+  if (noise.order() == 0) return noise;
+  const Index order = std::max(noise.order(), kLeastOrder);
+  const std::vector<double> h = impulse_response(noise.ar);
+  VectorXd covariance = VectorXd::Zero(order + 1);
+  for (Index lag = 0; lag <= order; ++lag) {
+    for (std::size_t k = static_cast<std::size_t>(lag); k < h.size(); ++k)
+      covariance(lag) += h[k] * h[k - static_cast<std::size_t>(lag)];
+  }
+  covariance *= noise.std * noise.std / (1 + share);  // as large as before in all
+  covariance(0) *= 1 + share;
+  // Levinson's recursion for the autoregression with this covariance.
+  NoiseModel out;
+  out.ar.resize(0);
+  double power = covariance(0);
+  for (Index m = 1; m <= order; ++m) {
+    double reflection = covariance(m);
+    for (Index k = 0; k < m - 1; ++k) reflection -= out.ar(k) * covariance(m - 1 - k);
+    reflection /= power;
+    VectorXd next(m);
+    for (Index k = 0; k < m - 1; ++k) next(k) = out.ar(k) - reflection * out.ar(m - 2 - k);
+    next(m - 1) = reflection;
+    out.ar = next;
+    power *= 1 - reflection * reflection;
+  }
+  out.std = std::sqrt(power);
+  return out;
+}
+
+NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, Index largest_order,
+                           double damping) {
   // Forward and backward errors of each run of usable rows (Burg 1968).
   struct Run {
     VectorXd forward, backward;
@@ -83,6 +126,20 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
       best.std = std::sqrt(power);
     }
   }
+  if (!(damping < 1) || best.order() == 0) return best;
+  double factor = 1;
+  for (double& coefficient : best.ar) coefficient *= factor *= damping;
+  double sum = 0, innovations = 0;
+  for (Index t = best.order(); t < residual.size(); ++t) {
+    // `run` usable rows stand right before row t.
+    Index run = 0;
+    while (run < best.order() && usable(t - 1 - run)) ++run;
+    if (run < best.order() || !usable(t)) continue;
+    const double innovation = residual(t) - best.ar.dot(residual.segment(t - best.order(), best.order()).reverse());
+    sum += innovation * innovation;
+    ++innovations;
+  }
+  if (innovations > 0) best.std = std::max(std::sqrt(sum / innovations), 1e-300);
   return best;
 }
 

@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kClear = 3.5;         // standard deviations
 constexpr double kTailShare = 0.25;    // of the runs that the tail is fitted to
 constexpr int kTrialRuns = 3;          // to tell which columns encoder noise moves
 constexpr int kPilotRuns = 12;         // to average what it fakes
@@ -28,7 +29,8 @@ constexpr double kSensitive = 0.01;    // change of a column, as a share of its 
 constexpr double kLeastTorque = 0.05;  // share of the spectrum that is the torque's own at least
 constexpr Index kSpectrumLags = 24;
 constexpr double kBiasDoubt = 0.3;   // share of a faked score that the noise's variance may be wrong by
-constexpr double kLeastGram = 0.25;  // of a Gram matrix that is left at least when the noise's own squares are taken off
+constexpr double kLeastClean = 0.6;  // of a Gram matrix that is left at least when the noise's own squares are taken off
+constexpr double kMostNoise = 0.75;  // share of a column's squares
 constexpr std::size_t kGramRuns = 4;
 
 /// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples to spare
@@ -134,6 +136,14 @@ VectorXd Omnibus::gains(const WhiteProblem& problem, const VectorXd& r) const {
     out(static_cast<Index>(j)) = (root_[j].transpose() * u).squaredNorm();
   }
   return out;
+}
+
+VectorXd Omnibus::clear_part(const WhiteProblem& problem, const VectorXd& r, std::size_t drive) const {
+  const VectorXd Q_r = problem.Q.transpose() * r;
+  const VectorXd u = white_[drive].inner(r, Q_r, problem.segments, 0, white_[drive].cols);
+  VectorXd t = root_[drive].transpose() * u;  // of unit variance if there is nothing but noise
+  t = (t.array().abs() > kClear).select(t, 0.0);
+  return root_[drive] * t;
 }
 
 std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhiteProblem& problem, const VectorXd& r,
@@ -330,7 +340,9 @@ void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>&
     }
     for (std::size_t s = 0; s < noise.size(); ++s) {
       const double share = noise[s].trace() / std::max(signature.gram[s].trace(), 1e-300);
-      signature.clean[s] = std::max(kLeastGram, 1 - share);
+      signature.clean[s] = std::max(kLeastClean, 1 - share);
+      // A column that is mostly encoder noise says nothing about the effect.
+      if (share > kMostNoise) signature.kept[s] = 0;
     }
   }
 }

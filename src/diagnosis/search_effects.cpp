@@ -16,9 +16,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kProvisional = 20;      // gain that lets an effect into the noise model before the null is known
+constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
+constexpr int kHygienic = 4;         // further ones that may be needed for what counts as hygiene only
+constexpr std::size_t kProvisionalCandidates = 6;
 constexpr double kFormError = 0.12;      // of a plain effect's gain: what the catalogue's form may leave of the true one
 constexpr double kFormElsewhere = 0.03;  // the same for what that form leaves on other drives
+constexpr double kSimplerGain =
+    0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
 constexpr std::size_t kBestForPairs = 10;
 constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined before they are compared
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
@@ -38,12 +42,19 @@ std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch
   return order;
 }
 
+/// Is the second effect the first one with fewer parameters?
+bool holds(EffectId rich, EffectId simple) {
+  return (rich == EffectId::directional_efficiency && simple == EffectId::load_dependent_friction) ||
+         (rich == EffectId::limb_inertia_mismatch && simple == EffectId::rotor_inertia);
+}
+
 /// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be noise that
 /// the null knows, and must not stand in the way of the next.
 std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
                             const std::function<bool(const Fit&)>& counts = {}) {
-  std::optional<Fit> best;
+  std::optional<Fit> best, simpler;
   double best_worth = 0;
+  std::vector<Fit> fits;
   const auto order = by_worth(search, state);
   for (std::size_t k = 0; k < std::min(kRefined, order.size()); ++k) {
     if (!(state.scores[order[k]].gain > 0)) continue;
@@ -52,8 +63,69 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
     const double worth = search.worth(order[k], fit.gain, state);
     if (!best || worth > best_worth) {
       best_worth = worth;
-      best = std::move(fit);
+      best = fit;
     }
+    fits.push_back(std::move(fit));
+  }
+  if (!best) return best;
+  // The forms of the catalogue are not exact: a richer one must not win by following what is wrong with a simpler one.
+  const auto& hypotheses = search.hypotheses();
+  const Hypothesis& winner = hypotheses[best->hypothesis];
+  for (Fit& fit : fits) {
+    const Hypothesis& other = hypotheses[fit.hypothesis];
+    if (other.joint != winner.joint || !holds(winner.id, other.id) || fit.gain < kSimplerGain * best->gain) continue;
+    if (!simpler || fit.gain > simpler->gain) simpler = std::move(fit);
+  }
+  return simpler ? simpler : best;
+}
+
+/// The same noise without its memory: smooth effects, which an autoregression takes for noise, show in it.
+PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise) {
+  for (auto& log : noise) {
+    for (NoiseModel& one : log) {
+      one.std = one.total_std();
+      one.ar.resize(0);
+    }
+  }
+  return noise;
+}
+
+/// The effect that raises the likelihood most when the noise is estimated again beside it, among the best by their gain with and
+/// without the noise's memory. None if no effect raises it enough.
+std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots& pilots,
+                               const std::vector<AcceptedEffect>& provisional, const NoiseEstimate& estimate) {
+  const EffectSearch& search = context.search;
+  std::vector<Fit> candidates;
+  for (const auto& noise : {estimate.noise, without_memory(estimate.noise)}) {
+    const EffectSearch::State state = search.state(noise, provisional, &pilots);
+    const auto order = by_worth(search, state);
+    for (std::size_t k = 0; k < std::min(kProvisionalCandidates, order.size()); ++k) {
+      if (state.scores[order[k]].gain > 0) candidates.push_back(search.refine(state, order[k]));
+    }
+  }
+  const double rows = [&] {
+    double sum = 0;
+    for (const LogRows& log : context.logs) {
+      for (const RowMask& usable : log.usable) sum += static_cast<double>(usable.count());
+    }
+    return sum;
+  }();
+  // All start from the same noise and take one pass, the model without a further effect, too.
+  const double reference = search.noise_beside(provisional, &estimate.noise).log_likelihood;
+  std::vector<double> gain(candidates.size(), 0.0);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    std::vector<AcceptedEffect> with = provisional;
+    with.push_back(search.accept(candidates[k]));
+    gain[k] = 2 * (search.noise_beside(with, &estimate.noise).log_likelihood - reference) -
+              search.hypotheses()[candidates[k].hypothesis].freedom() * std::log(rows);
+  }
+  std::optional<Fit> best;
+  double most = kProvisional;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (gain[k] <= most) continue;
+    most = gain[k];
+    best = candidates[k];
   }
   return best;
 }
@@ -169,6 +241,9 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
 bool counts(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
   const double grid = std::min(fit.grid_gain, fit.gain);
   if (fit.gain < kMaterial * rows_per_drive(context, *state.problem)) return false;
+  // Slow noise hides slow torques, so that a quick trace far below the noise can gain much.
+  const Remainder torque = remainder_of(context, *state.problem, fit.rows, fit.effect.amplitude);
+  if (noise_shares(context, torque, found.floor).sum() < kMaterial) return false;
   return found.null.family_p(fit.hypothesis, grid) <= context.options.false_naming_rate;
 }
 
@@ -187,8 +262,8 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   };
 
   // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this coarser.
-  found.noise = search.noise_beside({}, &found.floor);
-  EffectSearch::State state = search.state(found.noise, {}, nullptr);
+  NoiseEstimate estimate = search.noise_beside({});
+  EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
   const double pass_hz =
       std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
   const EncoderPilots pilots(context.model, context.base, context.logs, context.p, *state.problem, search.hypotheses(),
@@ -198,15 +273,15 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
 
   // Provisional effects, so that the noise model is not made of what is missing.
   std::vector<AcceptedEffect> provisional;
-  state = search.state(found.noise, provisional, &pilots);
-  for (int step = 0; step < options.max_effects; ++step) {
-    const std::optional<Fit> fit = best_fit(search, state);
-    if (!fit || search.worth(fit->hypothesis, fit->gain, state) < kProvisional) break;
+  for (int step = 0; step < options.max_effects + kHygienic; ++step) {
+    std::optional<Fit> fit = most_likely(context, pilots, provisional, estimate);
+    if (!fit) break;
     provisional.push_back(search.accept(*fit));
-    found.noise = search.noise_beside(provisional, &found.floor);
-    state = search.state(found.noise, provisional, &pilots);
-    report(0.3 + 0.05 * (step + 1));
+    estimate = search.noise_beside(provisional);
+    report(0.3 + 0.03 * (step + 1));
   }
+  found.noise = estimate.noise;
+  found.floor = estimate.floor_rms;
 
   // The null, beside the base model, with that noise.
   found.before = search.state(found.noise, {}, &pilots);

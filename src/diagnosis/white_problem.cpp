@@ -201,15 +201,15 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
       gain.amplitude = VectorXd::Constant(1, amount);
     } else {
       gain = constrained_gain(signature.gram[s], u, positive);
-      const double largest = kind.amplitudes.front().largest;
-      if (k == 1 && std::abs(gain.amplitude(0)) > largest) {
-        const double amount = gain.amplitude(0) > 0 ? largest : -largest;
-        gain.amplitude(0) = amount;
-        gain.gain = 2 * amount * u(0) - amount * amount * signature.gram[s](0, 0);
-      } else {
-        // ... and a fitted one too small.
-        gain.amplitude = (gain.amplitude / signature.clean[s]).cwiseMin(largest).cwiseMax(-largest);
+      bool too_large = false;
+      for (Index c = 0; c < k; ++c) too_large |= std::abs(gain.amplitude(c)) > hypothesis.largest(static_cast<std::size_t>(c));
+      // ... and a fitted one too small.
+      if (!too_large) gain.amplitude /= signature.clean[s];
+      for (Index c = 0; c < k; ++c) {
+        const double largest = hypothesis.largest(static_cast<std::size_t>(c));
+        gain.amplitude(c) = std::clamp(gain.amplitude(c), -largest, largest);
       }
+      if (too_large) gain.gain = 2 * gain.amplitude.dot(u) - gain.amplitude.dot(signature.gram[s] * gain.amplitude);
     }
     if (gain.gain > best.gain) best = {gain.gain, s, gain.amplitude};
   }

@@ -94,13 +94,13 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
   }
   if (name == "load_dependent_friction") {
     return on_drive(name, drive == 3 ? 0 : drive, [=](const Moment& m, double v, double) {
-      return (0.02 + 0.10 * size) * std::abs(m.motor(drive == 3 ? 0 : drive)) * sign_of(v, width);
+      return (0.02 + 0.10 * size) * std::abs(m.transmitted(drive == 3 ? 0 : drive)) * sign_of(v, width);
     });
   }
   if (name == "directional_efficiency") {
     return on_drive(name, limb, [=](const Moment& m, double v, double) {
-      const double power = m.motor(limb) * v;
-      return (0.03 + 0.12 * size) * std::abs(m.motor(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, width);
+      const double power = m.transmitted(limb) * v;
+      return (0.03 + 0.12 * size) * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, width);
     });
   }
   if (name == "presliding") {  // LuGre in place of part of the Coulomb friction, with bristle damping

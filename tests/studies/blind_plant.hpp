@@ -22,6 +22,7 @@ struct Moment {
   double t = 0;
   int log = 0;                   ///< 0 fast, 1 slow, 2 hold-out
   Eigen::VectorXd q, qd, motor;  ///< motor: torque on the shafts before losses
+  Eigen::VectorXd transmitted;   ///< what Coulomb and viscous friction leave of it
   Eigen::Vector3d r = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
   Eigen::MatrixXd J;  ///< dz/dq
 };
@@ -100,7 +101,7 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
       if (hidden.parameters) hidden.parameters(*plant, l, p);
     }
     // A random Fourier path in the workspace, from rest on.
-    const double base_hz = l == 1 ? 0.1 : 0.2;
+    const double base_hz = l == 0 ? 0.3 : (l == 1 ? 0.1 : 0.2);
     const double speed = l == 1 ? 0.35 : 1.0;
     Eigen::MatrixXd a(n, 10);
     for (int i = 0; i < a.size(); ++i) a(i) = uniform(random);
@@ -175,6 +176,7 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
         now.v = (J * rate).head<3>();
       }
       const Eigen::VectorXd plain = load;
+      now.transmitted = motor - plain;
       int at = 0;
       for (const Hidden& hidden : blind.hidden) {
         if (hidden.resist) {

@@ -3,11 +3,13 @@
 ///
 ///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside
 ///     blind_study summary OUT.csv
+///     blind_study write PART INDEX FOLDER               the robot and the three logs of one case, to look at
 ///
 /// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken up again.
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
@@ -15,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/io/log_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
 #include "studies/blind_case.hpp"
 
 namespace {
@@ -36,8 +40,19 @@ int main(int argc, char** argv) {
     blind::print_summary(blind::read_outcomes(words[1]));
     return 0;
   }
+  if (words.size() == 4 && words[0] == "write") {
+    const blind::Case one = blind::make_case(words[1], std::stoi(words[2]));
+    std::filesystem::create_directories(words[3]);
+    const auto robot = make_robot(one.robot);
+    NamedValues parameters;
+    for (int k = 0; k < robot->parameters(); ++k)
+      parameters[robot->parameter_names()[static_cast<std::size_t>(k)]] = one.parameters(k);
+    write_robot_file(words[3] + "/robot.urdf", one.robot, parameters);
+    for (const Log& log : blind::record(one)) write_log(words[3] + "/" + log.file + ".csv", log, one.robot);
+    return 0;
+  }
   if (words.size() < 4) {
-    std::cerr << "usage: blind_study effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | summary OUT.csv\n";
+    std::cerr << "usage: blind_study effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | write PART INDEX FOLDER\n";
     return 2;
   }
   const int first = std::stoi(words[1]), count = std::stoi(words[2]);

@@ -9,18 +9,11 @@
 #include <memory>
 #include <vector>
 
-#include "deltadyn/diagnosis/generic_basis.hpp"
+#include "deltadyn/diagnosis/noise_estimate.hpp"
 #include "deltadyn/diagnosis/null_study.hpp"
 #include "deltadyn/diagnosis/white_problem.hpp"
 
 namespace deltadyn {
-
-/// AR noise of every drive and log from the residual of base model, accepted effects and generic basis; refined in white rows, then
-/// scaled so that the white residual has unit variance.
-/// \param floor  if given, [log][drive] rms of that residual in the rows themselves: no model can do better [N m | N]
-[[nodiscard]] PerLogAndDrive<NoiseModel> estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
-                                                        const PerLogAndDrive<Eigen::MatrixXd>& extra,
-                                                        PerLogAndDrive<double>* floor = nullptr);
 
 /// An effect that the model holds, with its columns in the rows of the logs.
 struct AcceptedEffect {
@@ -52,8 +45,9 @@ class EffectSearch {
   [[nodiscard]] std::vector<LogRows> corrected(const std::vector<AcceptedEffect>& accepted) const;
   /// [log][drive] columns of the known effects and the other accepted ones.
   [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<AcceptedEffect>& accepted) const;
-  [[nodiscard]] PerLogAndDrive<NoiseModel> noise_beside(const std::vector<AcceptedEffect>& accepted,
-                                                        PerLogAndDrive<double>* floor = nullptr) const;
+  /// \param start  as in estimate_noise()
+  [[nodiscard]] NoiseEstimate noise_beside(const std::vector<AcceptedEffect>& accepted,
+                                           const PerLogAndDrive<NoiseModel>* start = nullptr) const;
 
   /// Problem and signatures of all hypotheses beside the accepted effects.
   struct State {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/diagnosis/log_rows.hpp"
@@ -17,8 +18,12 @@ struct GenericBasis {
   std::vector<std::vector<Eigen::MatrixXd>> columns;
   /// Which coordinate each column belongs to, for each drive: "position", "speed", ...
   std::vector<std::vector<std::string>> coordinate;
+  /// First column and number of columns of each function of one coordinate, for each drive.
+  std::vector<std::vector<std::pair<Eigen::Index, Eigen::Index>>> blocks;
 };
 
-[[nodiscard]] GenericBasis make_generic_basis(const std::vector<LogRows>& logs);
+/// \param logs   set the knots
+/// \param more   evaluated with the same knots, behind those of `logs`
+[[nodiscard]] GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vector<LogRows>& more = {});
 
 }  // namespace deltadyn

@@ -4,6 +4,7 @@
 /// What could be missing: every effect of the catalogue at every place of the robot, with the start values of its shape.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,16 @@ struct Hypothesis {
   int joint;                            ///< drive from 0, or -1
   std::vector<Eigen::VectorXd> shapes;  ///< start values, at least one (possibly without entries)
   Eigen::Index amplitudes = 1;          ///< columns a shape
+  double largest_torque = 1e300;        ///< of its joint in the logs [N m | N]: no force amplitude is larger
 
   [[nodiscard]] const EffectKind& kind() const { return effect_kind(id); }
   [[nodiscard]] std::string name() const { return kind().name; }
   [[nodiscard]] std::string joint_name() const { return effect_joint_name(id, joint); }
+  /// Largest size of an amplitude that makes sense.
+  [[nodiscard]] double largest(std::size_t amplitude) const {
+    const EffectAmplitude& one = kind().amplitudes[amplitude];
+    return one.unit == "{F}" ? std::min(one.largest, largest_torque) : one.largest;
+  }
   /// Parameters that a fit would spend on it.
   [[nodiscard]] int freedom() const {
     return static_cast<int>(amplitudes) + static_cast<int>(kind().shapes.size()) - (kind().tied ? 1 : 0);

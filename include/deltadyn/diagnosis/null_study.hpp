@@ -40,6 +40,8 @@ class Omnibus {
   [[nodiscard]] Eigen::VectorXd gains(const WhiteProblem& problem, const Eigen::VectorXd& r) const;
   /// Independent columns of each drive's basis.
   [[nodiscard]] const std::vector<Eigen::Index>& ranks() const { return ranks_; }
+  /// Coefficients of the basis for the part of the structure of one drive that stands out of the noise.
+  [[nodiscard]] Eigen::VectorXd clear_part(const WhiteProblem& problem, const Eigen::VectorXd& r, std::size_t drive) const;
   /// Gain of each coordinate of the basis alone, for one drive: where the structure lies.
   [[nodiscard]] std::vector<std::pair<std::string, double>> by_coordinate(const WhiteProblem& problem, const Eigen::VectorXd& r,
                                                                           std::size_t drive) const;

@@ -1,0 +1,50 @@
+#include <Eigen/QR>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem, const PerLogAndDrive<MatrixXd>& columns,
+                       const VectorXd& amplitude) {
+  VectorXd white = VectorXd::Zero(problem.rows);
+  for (const WhiteSegment& segment : problem.segments) {
+    const MatrixXd& raw = columns[segment.log][segment.drive];
+    if (raw.size() > 0) white.segment(segment.offset, segment.rows()) = segment.whitener.apply(raw * amplitude);
+  }
+  const VectorXd norm = problem.X.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = problem.X * norm.asDiagonal();
+  Remainder out;
+  const MatrixXd information = scaled.transpose() * scaled;
+  out.beta = norm.asDiagonal() * information.completeOrthogonalDecomposition().solve(VectorXd(scaled.transpose() * white));
+  const Index b = context.base.count();
+  for (std::size_t l = 0; l < context.logs.size(); ++l) {
+    out.torque.emplace_back();
+    for (std::size_t j = 0; j < context.logs[l].usable.size(); ++j) {
+      VectorXd torque = -context.logs[l].Y[j] * out.beta.head(b);
+      if (columns[l][j].size() > 0) torque += columns[l][j] * amplitude;
+      out.torque.back().push_back(std::move(torque));
+    }
+  }
+  return out;
+}
+
+VectorXd noise_shares(const SearchContext& context, const Remainder& remainder, const PerLogAndDrive<double>& floor) {
+  const std::size_t drives = context.logs.front().usable.size();
+  VectorXd out(static_cast<Index>(drives));
+  for (std::size_t j = 0; j < drives; ++j) {
+    double square = 0, noise = 0;
+    for (std::size_t l = 0; l < context.logs.size(); ++l) {
+      const RowMask& usable = context.logs[l].usable[j];
+      square += usable.select(remainder.torque[l][j].array(), 0.0).square().sum();
+      noise += static_cast<double>(usable.count()) * floor[l][j] * floor[l][j];
+    }
+    out(static_cast<Index>(j)) = square / std::max(noise, 1e-300);
+  }
+  return out;
+}
+
+}  // namespace deltadyn::detail
