@@ -110,7 +110,7 @@ class Diagnose {
       context.command_line = command_line_;
       write_file(report_file_, diagnosis_report(*robot, result, context));
     }
-    tell(result, run);
+    tell(result, description, run);
     return ExitCode::done;
   }
 
@@ -155,8 +155,9 @@ class Diagnose {
                   : (one.confusable.empty() ? verdict_name(DiagnosisVerdict::named) : verdict_name(DiagnosisVerdict::confusable));
       if (unknown) {
         // The name that does not suffice is no name: it stands in the report only.
-        file.print("{},{},,,,{},{},,,,,,{},{},{},{}\n", rank, verdict, one.p_value, one.explained_share, clean(result.region),
-                   one.rms_before, one.rms_before, one.rms_floor);
+        // Nothing is added to the model, so that its error stays what it was.
+        file.print("{},{},,,,{},{},,,,,,{},{},{},{}\n", rank, verdict, result.p_value, result.explained_share,
+                   clean(result.region), one.rms_before, one.rms_before, one.rms_floor);
         break;
       }
       std::string shape = effect_shape_text(one.effect, robot.description());
@@ -206,7 +207,7 @@ class Diagnose {
     fmt::print("{}; wrote {}\n", plan->note, plan_file_);
   }
 
-  void tell(const Diagnosis& result, ToolRun& run) const {
+  void tell(const Diagnosis& result, const RobotDescription& robot, ToolRun& run) const {
     fmt::print("{}\n", result.headline);
     for (const std::string& line : result.lines) fmt::print("  {}\n", line);
     if (std::isfinite(result.gap_shrink)) {
@@ -233,15 +234,19 @@ class Diagnose {
     out.add("p_value", result.p_value);
     out.add("explained_share", result.explained_share);
     if (name) {
-      out.add("amplitude", result.named.front().effect.amplitude(0));
-      out.add("confusable_with", joined(result.named.front().confusable));
+      const Effect& first = result.named.front().effect;
+      out.add("amplitude", first.amplitude(0), effect_unit(effect_kind(first.id).amplitudes[0].unit, first.joint, robot));
+      std::vector<EffectCandidate> sets;
+      for (const NamedEffect& one : result.named) sets.insert(sets.end(), one.confusable.begin(), one.confusable.end());
+      out.add("confusable_with", joined(sets));
     }
     if (std::isfinite(result.gap_shrink)) out.add("gap_shrink", result.gap_shrink);
     if (result.needed_s) out.add("needed_length_s", *result.needed_s, "s");
     if (result.cutoff_hz > 0) out.add("cutoff_hz", result.cutoff_hz, "Hz");
     for (std::size_t j = 0; j < result.drives.size(); ++j) {
-      out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms);
-      out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor);
+      const char* unit = robot.kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N*m" : "N";
+      out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms, unit);
+      out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor, unit);
     }
     out.add("null_runs", result.null_runs);
     out.add("total_time_s", result.total_time_s, "s");

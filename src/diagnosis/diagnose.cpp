@@ -49,11 +49,13 @@ constexpr double kPassOverMotion = 0.6;  // low pass of regressor and torque, no
 constexpr double kGoodScore = 1.03;
 constexpr double kLeastCutoff_hz = 20;      // below, nothing of a reversal would be left out but everything
 constexpr double kMostCutoff_hz = 25;       // above, encoder noise in the accelerations outweighs what is gained beside reversals
+constexpr double kWideCutoff_hz = 40;       // the same where reversals are so many that little else is left
+constexpr double kLeastUsable = 0.35;       // share of a drive's rows that must be left, else the band is made wider
 constexpr double kSettled = 0.1;            // change of an amplitude that least squares without noise model may make
 constexpr double kRestFloor = 0.015;        // share of a log's largest rate below which friction is that of rest
 constexpr double kRestOfAll = 0.02;         // share of the largest rate in all logs for which the same holds ...
 constexpr double kMostRest = 0.12;          // ... but no more than this share of a slow log's own, which must show something
-constexpr double kFewestRowsPerBase = 8.0;  // usable rows of a drive in units of base parameters a drive
+constexpr double kFewestRowsPerBase = 4.0;  // usable rows of a drive in units of base parameters a drive
 
 bool same_log(const Log& a, const Log& b) {
   if (a.samples() != b.samples() || a.q.cols() != b.q.cols()) return false;
@@ -68,15 +70,17 @@ double widest_good_cutoff_hz(const std::vector<CutoffPoint>& points) {
   for (const CutoffPoint& point : points) {
     if (point.score <= kGoodScore * best) cutoff_hz = std::max(cutoff_hz, point.cutoff_hz);
   }
-  return std::clamp(cutoff_hz, kLeastCutoff_hz, kMostCutoff_hz);
+  return std::max(cutoff_hz, kLeastCutoff_hz);
 }
 
-ProcessingOptions diagnosis_processing(const Robot& robot, const std::vector<Log>& logs, const DiagnosisOptions& options,
-                                       double& cutoff_hz) {
-  ProcessingOptions out = options.processing;
-  out.periods = Periods::ignore;
-  out.reversal_floor = std::max(out.reversal_floor, kRestFloor);
-  cutoff_hz = options.choose_cutoff ? widest_good_cutoff_hz(scan_cutoffs(robot, logs, out, options.threads)) : out.cutoff_hz;
+/// What the diagnosis leaves out beside the user's choice.
+ProcessingOptions without_rest(ProcessingOptions options) {
+  options.periods = Periods::ignore;
+  options.reversal_floor = std::max(options.reversal_floor, kRestFloor);
+  return options;
+}
+
+ProcessingOptions diagnosis_processing(const std::vector<Log>& logs, ProcessingOptions out, double cutoff_hz) {
   double rate_hz = 1e12;
   for (const Log& log : logs) rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
   out.cutoff_hz = std::min(kMotionOverPass * cutoff_hz, 0.35 * rate_hz);
@@ -94,6 +98,23 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
   if (out.rows > 10) {
     out.first += out.stride;
     out.rows -= 2;
+  }
+  return out;
+}
+
+/// Usable rows of the drive that has fewest.
+struct UsableRows {
+  double rows = 1e12, share = 1;
+};
+UsableRows fewest_usable(const std::vector<LogRows>& logs) {
+  UsableRows out;
+  for (std::size_t j = 0; j < logs.front().usable.size(); ++j) {
+    double rows = 0, all = 0;
+    for (const LogRows& log : logs) {
+      rows += static_cast<double>(log.usable[j].count());
+      all += static_cast<double>(log.rows());
+    }
+    if (rows < out.rows) out = {rows, rows / std::max(all, 1.0)};
   }
   return out;
 }
@@ -193,18 +214,28 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   const BaseParameters base = find_base_parameters(robot);
   ProcessingOptions processing;
   std::vector<LogRows> rows, held;
+  const ProcessingOptions wanted = without_rest(options.processing);
   try {
-    processing = diagnosis_processing(robot, logs, options, out.cutoff_hz);
+    const double widest_hz =
+        options.choose_cutoff ? widest_good_cutoff_hz(scan_cutoffs(robot, logs, wanted, options.threads)) : wanted.cutoff_hz;
     report(0.05);
-    std::vector<PreparedLog> ready;
-    for (const Log& log : logs) ready.push_back(prepared(robot, log, processing));
-    if (held_log) ready.push_back(prepared(robot, *held_log, processing));
-    std::vector<PreparedLog*> each;
-    for (PreparedLog& log : ready) each.push_back(&log);
-    leave_rest_out(robot, each);
-    for (std::size_t l = 0; l < logs.size(); ++l)
-      rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
-    if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
+    // A narrow band has less encoder noise, but every reversal takes more rows.
+    for (const double most_hz : {kMostCutoff_hz, kWideCutoff_hz}) {
+      out.cutoff_hz = options.choose_cutoff ? std::min(widest_hz, most_hz) : widest_hz;
+      processing = diagnosis_processing(logs, wanted, out.cutoff_hz);
+      std::vector<PreparedLog> ready;
+      for (const Log& log : logs) ready.push_back(prepared(robot, log, processing));
+      if (held_log) ready.push_back(prepared(robot, *held_log, processing));
+      std::vector<PreparedLog*> each;
+      for (PreparedLog& log : ready) each.push_back(&log);
+      leave_rest_out(robot, each);
+      rows.clear();
+      held.clear();
+      for (std::size_t l = 0; l < logs.size(); ++l)
+        rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
+      if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
+      if (!(widest_hz > most_hz) || fewest_usable(rows).share > kLeastUsable) break;
+    }
   } catch (const Error& error) {
     double length = 0;
     for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
@@ -213,13 +244,9 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     return finish();
   }
   // Rows enough to fit the base model and still see something beside it?
-  double fewest = 1e12, length = 0;
+  double length = 0;
   for (const LogRows& log : rows) length += log.t_s(log.rows() - 1) - log.t_s(0);
-  for (std::size_t j = 0; j < rows.front().usable.size(); ++j) {
-    double count = 0;
-    for (const LogRows& log : rows) count += static_cast<double>(log.usable[j].count());
-    fewest = std::min(fewest, count);
-  }
+  const double fewest = fewest_usable(rows).rows;
   const double needed = std::max(120.0, kFewestRowsPerBase * base.count());
   if (fewest < needed) {
     detail::say_too_short(length, 1.2 * length * needed / std::max(fewest, 1.0), out);

@@ -22,6 +22,8 @@ namespace {
 constexpr double kExplained = 0.8;          // of the structure that names must explain
 constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
 constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
+constexpr double kShows = 0.005;            // of the noise variance: less of an effect cannot be seen in the hold-out log
+constexpr double kAsksAgain = 0.4;          // of an effect's amplitude that the hold-out log must ask for
 constexpr double kSlowOverNoise = 35;       // noise with a correlation of 0.98 at 1 kHz comes to 20
 constexpr double kSlowOverOthers = 5;
 constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
@@ -216,8 +218,8 @@ std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot
   for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
     const auto at = static_cast<Index>(k);
     const double std = one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0.0;
-    text += fmt::format("{}{} {:.4g} +- {:.2g} {}", text.empty() ? "" : ", ", kind.amplitudes[k].name, one.effect.amplitude(at),
-                        1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
+    text += fmt::format("{}{} {:.4g} +- {:.2g} {} (95 %)", text.empty() ? "" : ", ", kind.amplitudes[k].name,
+                        one.effect.amplitude(at), 1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
   }
   return text;
 }
@@ -260,7 +262,29 @@ void say(const SearchContext& context, Diagnosis& out) {
   out.headline = out.verdict == DiagnosisVerdict::named
                      ? "Missing: " + names + "."
                      : "Missing: " + names + ", or an effect that these logs cannot tell from it.";
-  out.next.push_back("Go on with the improved parameters and the effect file (--params-out, --effects-out).");
+  out.next.push_back(context.options.identify
+                         ? "Go on with the improved parameters and the effect file."
+                         : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
+}
+
+/// Would the hold-out log ask for this effect, too, beside all the others? Its amplitude there, over the one that was found, is about 1
+/// for a property of the robot and about 0 for chance. True where the hold-out log hardly shows the effect.
+bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof, const Fit& fit) {
+  const LogRows& held = *context.holdout;
+  const Hypothesis one{fit.effect.id, fit.effect.joint, {fit.effect.shape}, fit.effect.amplitude.size()};
+  const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, one);
+  const VectorXd beta = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude).beta;
+  double inner = 0, square = 0, count = 0;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    if (rows[j].size() == 0) continue;
+    const VectorXd torque = rows[j] * fit.effect.amplitude - held.Y[j] * beta.head(context.base.count());
+    const VectorXd without = proof.after.col(static_cast<Index>(j)) + torque;
+    const double weight = 1 / std::max(proof.floor(static_cast<Index>(j)) * proof.floor(static_cast<Index>(j)), 1e-300);
+    inner += weight * held.usable[j].select(torque.array() * without.array(), 0.0).sum();
+    square += weight * held.usable[j].select(torque.array(), 0.0).square().sum();
+    count += static_cast<double>(held.usable[j].count());
+  }
+  return square < kShows * count || inner > kAsksAgain * square;
 }
 
 /// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that of the other
@@ -326,7 +350,10 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
   const double gain = std::max(0.0, found.before.problem->r.squaredNorm() - found.after.problem->r.squaredNorm());
   out.explained_share = gain > 0 ? gain / (gain + left) : 0.0;
 
-  double largest_share = 0;  // of the noise variance, by a named effect
+  double largest_share = 0, largest_gain = 0;  // share of the noise variance, by a named effect
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
+    if (!found.hygiene[k]) largest_gain = std::max(largest_gain, found.fits[k].gain);
+  }
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
@@ -341,6 +368,11 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
                         "not counted as an effect",
                         hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
       }
+      continue;
+    }
+    if (holdout != nullptr && fit.gain < largest_gain && !carries_over(context, found, *proof, fit)) {
+      out.notes.push_back(fmt::format("{} at {} fits the training logs, but not the hold-out log: a trace, not named",
+                                      hypothesis.name(), hypothesis.joint_name()));
       continue;
     }
     NamedEffect one;

@@ -19,8 +19,9 @@ namespace {
 constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
 constexpr int kHygienic = 4;         // further ones that may be needed for what counts as hygiene only
 constexpr std::size_t kProvisionalCandidates = 6;
-constexpr double kFormError = 0.12;      // of a plain effect's gain: what the catalogue's form may leave of the true one
-constexpr double kFormElsewhere = 0.03;  // the same for what that form leaves on other drives
+constexpr double kFormError = 0.12;        // of a plain effect's gain: what the catalogue's form may leave of the true one
+constexpr double kMaterialFurther = 0.05;  // kMaterial of every effect beside the first
+constexpr double kFormElsewhere = 0.03;    // the same for what that form leaves on other drives
 constexpr double kSimplerGain =
     0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
 constexpr std::size_t kBestForPairs = 10;
@@ -238,12 +239,14 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   return set;
 }
 
-bool counts(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
+/// \param material  smallest share of the noise variance
+bool counts(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit,
+            double material = kMaterial) {
   const double grid = std::min(fit.grid_gain, fit.gain);
   if (fit.gain < kMaterial * rows_per_drive(context, *state.problem)) return false;
   // Slow noise hides slow torques, so that a quick trace far below the noise can gain much.
   const Remainder torque = remainder_of(context, *state.problem, fit.rows, fit.effect.amplitude);
-  if (noise_shares(context, torque, found.floor).sum() < kMaterial) return false;
+  if (noise_shares(context, torque, found.floor).sum() < material) return false;
   return found.null.family_p(fit.hypothesis, grid) <= context.options.false_naming_rate;
 }
 
@@ -300,8 +303,9 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
-    std::optional<Fit> fit = best_fit(
-        search, state, [&](const Fit& one) { return counts(context, found, state, one) && !form_error(context, found, one); });
+    std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
+      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_error(context, found, one);
+    });
     if (!fit) break;
     found.hygiene.push_back(hygienic(context, *fit));
     named += found.hygiene.back() ? 0 : 1;

@@ -20,15 +20,15 @@ using Eigen::Index;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// The version in the comment on top; 0 if there is none (a file written by hand).
+/// The version in the comment on top; -1 if there is none (a file written by hand).
 int version_of(const std::string& path) {
   std::ifstream file(path);
   std::string line;
-  int version = 0;
+  int version = -1;
   while (std::getline(file, line) && !line.empty() && line[0] == '#') {
     if (std::sscanf(line.c_str(), "# deltadyn effects %d", &version) == 1) return version;
   }
-  return 0;
+  return -1;
 }
 
 /// Place of a parameter among shapes and amplitudes.
@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
 
 std::vector<Effect> read_effects(const std::string& path, const RobotDescription& robot) {
   const int version = version_of(path);
-  if (version != 0 && version != kEffectFileVersion) {
+  if (version != -1 && version != kEffectFileVersion) {
     throw Error(fmt::format("the effect file is of version {}, this program reads version {}", version, kEffectFileVersion), path,
                 "run delta-diagnose again with --effects-out to write it anew");
   }
