@@ -13,12 +13,12 @@ run "$bin/delta-model" create delta4 --base-radius 0.2 --platform-radius 0.05 --
   --drive-range-rad "-0.9,1.6;-0.9,1.6;-0.9,1.6;-50,50" --drive-velocity-rad-s 6,6,6,48 --drive-acceleration-rad-s2 60,60,60,240 \
   -o "$out/robot.urdf"
 run "$bin/delta-model" prior "$out/robot.urdf" -o "$out/truth.csv"
-# Fast, slow, and one that takes no part. A number of starts, not a time, so that every run plans the same.
+# Fast, slow, and one that takes no part; calm enough that rows are left between the reversals. A number of starts, not a time, so that every run plans the same.
 seed=1
 for speed in 48 6 24; do
   run "$bin/delta-excite" "$out/robot.urdf" -o "$out/motion$speed.csv" --workspace half-ball --workspace-center-m 0,0,-0.80 \
-    --workspace-radius-m 0.3 --drive-velocity-rad-s "4,4,4,$speed" --drive-acceleration-rad-s2 40,40,40,200 --yaw-range-rad 40 \
-    --starts 1 --time-limit-s 60 --seed $seed
+    --workspace-radius-m 0.3 --drive-velocity-rad-s "3,3,3,$speed" --drive-acceleration-rad-s2 20,20,20,200 --yaw-range-rad 40 \
+    --base-frequency-hz 0.1,0.2 --starts 1 --time-limit-s 60 --seed $seed
   run "$bin/delta-simulate" "$out/robot.urdf" --params "$out/truth.csv" --trajectory "$out/motion$speed.csv" \
     --effect shear_thinning@drive4:friction=0.4,rate=2.5,exponent=0 --encoder-bits 19 --torque-noise-n-m 0.1,0.1,0.1,0.012 --seed $seed \
     -o "$out/log$speed.csv"

@@ -1,0 +1,190 @@
+// delta-diagnose with the installed tools: simulated logs in which an effect is hidden, bad input, and the labelled and measured logs.
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "deltadyn/io/csv.hpp"
+#include "deltadyn/io/effect_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/io/trajectory_file.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+#include "acceptance/tool_run.hpp"
+#include "identification/synthetic_log.hpp"
+
+namespace deltadyn::acceptance {
+namespace {
+
+constexpr const char* kNullRuns = "40";  // enough for plain cases
+
+/// Three motions of the delta4: fast, slow, hold-out.
+class Diagnosing : public ::testing::Test {
+ protected:
+  Diagnosing() {
+    (void)folder.write("robot.urdf", read_text(installed("robots/mujoco_delta4.urdf")));
+    (void)folder.write("truth.csv", read_text(installed("logs/mujoco_delta4/truth.csv")));
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder.path(name); }
+
+  void record(const std::string& name, double frequency_hz, std::uint64_t seed, const Words& effect,
+              double duration_s = 10) const {
+    const auto robot = make_robot(read_robot_file(path("robot.urdf")));
+    const Eigen::VectorXd p = values(read_parameters(path("truth.csv")), robot->parameter_names(), robot->parameter_units());
+    testing_support::SyntheticOptions options;
+    options.duration_s = duration_s;
+    options.base_frequency_hz = frequency_hz;
+    options.seed = seed;
+    const Log log = testing_support::synthetic_log(*robot, p, options);
+    TrajectorySamples samples;
+    samples.t_s = log.t_s;
+    samples.q = log.q;
+    samples.qd = log.qd;
+    samples.qdd = log.qdd;
+    complete_task(*robot, samples);
+    write_trajectory(path("motion.csv"), samples, robot->description());
+    succeed(Words{"delta-simulate", path("robot.urdf"), "--params", path("truth.csv"), "--trajectory", path("motion.csv"), "-o",
+                  path(name), "--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)} +
+            effect);
+  }
+  void record_all(const Words& effect) const {
+    record("fast.csv", 0.2, 1, effect);
+    record("slow.csv", 0.08, 2, effect);
+    record("check.csv", 0.15, 3, effect);
+  }
+  [[nodiscard]] Words diagnose(const std::string& params, const Words& flags = {}) const {
+    return Words{"delta-diagnose", path("robot.urdf"), "--params",  path(params),
+                 path("fast.csv"), path("slow.csv"),   "--holdout", path("check.csv"),
+                 "--null-runs",    kNullRuns,          "-o",        path("diagnosis.csv"),
+                 "--summary",      path("summary.csv")} +
+           flags;
+  }
+  [[nodiscard]] std::map<std::string, std::string> summary() const { return read_summary(path("summary.csv")); }
+
+  const testing::TemporaryFolder folder;
+};
+
+TEST_F(Diagnosing, NothingIsMissingWhereNothingIsHidden) {
+  record_all({});
+  succeed(diagnose("truth.csv"));
+  EXPECT_EQ(summary().at("verdict"), "nothing-missing");
+  EXPECT_EQ(summary().at("effect"), "");
+}
+
+TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
+  // The paper's drive 4: friction that bends over (VIII.C).
+  record_all({"--effect", "shear_thinning@drive4:friction=0.4,rate=2.5,exponent=0"});
+  succeed(diagnose("truth.csv", {"--effects-out", path("effects.csv"), "--params-out", path("improved.csv")}));
+  const auto first = summary();
+  EXPECT_EQ(first.at("verdict"), "named");
+  EXPECT_EQ(first.at("effect"), "shear_thinning");
+  EXPECT_EQ(first.at("class"), "velocity-shape");
+  EXPECT_EQ(first.at("joint"), "drive4");
+  EXPECT_GE(number(first, "gap_shrink"), 0.9);
+  const auto effects = read_effects(path("effects.csv"), read_robot_file(path("robot.urdf")));
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_EQ(effects[0].id, EffectId::shear_thinning);
+
+  succeed(diagnose("improved.csv", {"--effects", path("effects.csv")}));
+  EXPECT_EQ(summary().at("verdict"), "nothing-missing");
+}
+
+TEST_F(Diagnosing, TellsTheSizeOfAStribeckEffect) {
+  record_all({"--effect", "stribeck@drive2:friction=2,rate=0.25,exponent=2"});
+  succeed(diagnose("truth.csv"));
+  EXPECT_EQ(summary().at("effect"), "stribeck");
+  EXPECT_EQ(summary().at("joint"), "drive2");
+  figure("stribeck_size_error", std::abs(number(summary(), "amplitude") / 2 - 1), 0.05);
+}
+
+TEST_F(Diagnosing, SaysWhenTheLogsAreTooShort) {
+  record("fast.csv", 0.5, 1, {}, 1.5);
+  succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o", path("diagnosis.csv"),
+           "--summary", path("summary.csv")});
+  EXPECT_EQ(summary().at("verdict"), "not-testable");
+  EXPECT_GT(number(summary(), "needed_length_s"), 1.5);
+}
+
+TEST_F(Diagnosing, RefusesInputThatWouldProveNothing) {
+  record("fast.csv", 0.5, 1, {}, 2);
+  (void)folder.write("slow.csv", read_text(path("fast.csv")));
+  (void)folder.write("check.csv", read_text(path("fast.csv")));
+  const ToolResult same = run(diagnose("truth.csv"));
+  EXPECT_EQ(same.code, 2);
+  EXPECT_NE(same.err.find("hold-out log is one of the training logs"), std::string::npos) << same.err;
+  EXPECT_FALSE(fs::exists(path("diagnosis.csv")));
+
+  (void)folder.write("old.csv", "# deltadyn effects 0\neffect,joint,parameter,value,unit,std\n");
+  const ToolResult old = run(diagnose("truth.csv", {"--effects", path("old.csv")}));
+  EXPECT_EQ(old.code, 3);
+  EXPECT_NE(old.err.find("version 0"), std::string::npos) << old.err;
+
+  (void)folder.write("robot.urdf", read_text(installed("robots/linear_delta3.urdf")));
+  EXPECT_EQ(
+      run({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o", path("diagnosis.csv")})
+          .code,
+      3);
+}
+
+/// The data folder, or empty.
+std::string shared_data(const std::string& file) {
+  const char* folder = std::getenv("DELTADYN_SHARED_DATA");  // NOLINT(concurrency-mt-unsafe)
+  if (folder == nullptr || !fs::exists(fs::path(folder) / file)) return {};
+  return folder;
+}
+
+struct Labelled {
+  const char* folder;
+  const char* verdict;
+  const char* effect;
+  const char* joint;
+};
+
+class LabelledLog : public ::testing::TestWithParam<Labelled> {};
+
+TEST_P(LabelledLog, IsDiagnosedRight) {
+  const std::string data = shared_data("mujoco_delta4/labelled/lag/fast.csv");
+  if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_delta4/labelled";
+  const std::string logs = data + "/mujoco_delta4/labelled/" + GetParam().folder;
+  const testing::TemporaryFolder folder;
+  succeed({"delta-diagnose", installed("robots/mujoco_delta4.urdf"), "--params", data + "/mujoco_delta4/truth.csv",
+           logs + "/fast.csv", logs + "/slow.csv", "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o",
+           folder.path("diagnosis.csv"), "--summary", folder.path("summary.csv")});
+  const auto summary = read_summary(folder.path("summary.csv"));
+  EXPECT_EQ(summary.at("verdict"), GetParam().verdict);
+  EXPECT_EQ(summary.at("effect"), GetParam().effect);
+  EXPECT_EQ(summary.at("joint"), GetParam().joint);
+  if (*GetParam().effect != '\0') figure("gap_left", 1 - number(summary, "gap_shrink"), 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Diagnosing, LabelledLog,
+                         ::testing::Values(Labelled{"null_white", "nothing-missing", "", ""},
+                                           Labelled{"stribeck_2", "named", "stribeck", "drive2"},
+                                           Labelled{"hose", "named", "hose_force", "platform"},
+                                           Labelled{"lag", "named", "current_lag", "robot"}),
+                         [](const auto& tested) { return std::string(tested.param.folder); });
+
+TEST(MeasuredAxis, HasViscousFrictionThatDiffersByDirectionAndNothingElse) {
+  const std::string data = shared_data("emps/identification.csv");
+  if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with emps/identification.csv";
+  const testing::TemporaryFolder folder;
+  const std::string robot = installed("robots/emps.urdf");
+  succeed({"delta-identify", robot, data + "/emps/identification.csv", "-o", folder.path("params.csv")});
+  succeed({"delta-diagnose", robot, "--params", folder.path("params.csv"), data + "/emps/identification.csv", "--holdout",
+           data + "/emps/verification.csv", "--null-runs", kNullRuns, "-o", folder.path("diagnosis.csv"), "--effects-out",
+           folder.path("effects.csv"), "--params-out", folder.path("improved.csv"), "--summary", folder.path("summary.csv")});
+  const auto summary = read_summary(folder.path("summary.csv"));
+  EXPECT_EQ(summary.at("effect"), "asymmetric_viscous");
+  EXPECT_EQ(number(summary, "effects"), 1);
+  // Published (Janot, Gautier, Brunot 2019): 166.7061 and 240.4236 N s/m by direction.
+  const double viscous = read_parameters(folder.path("improved.csv")).find("drive1.viscous")->value;
+  const double by_direction = read_effects(folder.path("effects.csv"), read_robot_file(robot)).at(0).amplitude(0);
+  figure("viscous_forward_percent", 100 * std::abs((viscous + by_direction) / 166.7061 - 1), 1.0);
+  figure("viscous_backward_percent", 100 * std::abs((viscous - by_direction) / 240.4236 - 1), 1.0);
+}
+
+}  // namespace
+}  // namespace deltadyn::acceptance
