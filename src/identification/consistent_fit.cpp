@@ -206,7 +206,9 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
   const double limit = summary.data_cost_min + options.data_misfit_rise;
   double low = std::log(lowest), high = std::log(highest);
   double chosen = low;
-  if (visit(highest) <= limit) chosen = low = high;
+  // Where the largest lambda does not converge, data and prior contradict each other: it costs more than is admitted.
+  const std::optional<double> largest = try_visit(highest);
+  if (largest && *largest <= limit) chosen = low = high;
   while (high - low > 0.1) {
     const double middle = 0.5 * (low + high);
     const std::optional<double> cost = try_visit(std::exp(middle));

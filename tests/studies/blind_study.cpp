@@ -19,6 +19,7 @@
 
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+
 #include "studies/blind_case.hpp"
 
 namespace {
@@ -52,7 +53,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (words.size() < 4) {
-    std::cerr << "usage: blind_study effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | write PART INDEX FOLDER\n";
+    std::cerr << "usage: blind_study effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | write PART "
+                 "INDEX FOLDER\n";
     return 2;
   }
   const int first = std::stoi(words[1]), count = std::stoi(words[2]);
