@@ -1,0 +1,37 @@
+#pragma once
+
+/// \file
+/// The proof on a log that took no part (diagnosis page, step 10): its residuals without and with what was found.
+
+#include <cstdint>
+#include <vector>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+/// Rows of the hold-out log: residuals before and after, and the floor.
+struct HoldoutProof {
+  Eigen::MatrixXd before, after;
+  std::vector<RowMask> usable;
+  Eigen::VectorXd rms_before, rms_after, floor;
+  Eigen::VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
+};
+
+/// Root mean square over the usable rows.
+[[nodiscard]] double rms_of(const Eigen::VectorXd& e, const RowMask& usable);
+
+/// \param known  effects that the model held before
+[[nodiscard]] HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
+                                 const std::vector<Effect>& known);
+
+/// Gap shrink over some drives, each in units of its floor, and its bootstrap interval, into `out`.
+void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector<int>& drives, std::uint64_t seed,
+               Diagnosis& out);
+
+/// Would the hold-out log ask for this effect, too, beside all the others? Its amplitude there, over the one that was found, is about 1
+/// for a property of the robot and about 0 for chance. True where the hold-out log hardly shows the effect.
+[[nodiscard]] bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof,
+                                const Fit& fit);
+
+}  // namespace deltadyn::detail
