@@ -50,7 +50,7 @@ constexpr double kGoodScore = 1.03;
 constexpr double kLeastCutoff_hz = 20;      // below, nothing of a reversal would be left out but everything
 constexpr double kMostCutoff_hz = 25;       // above, encoder noise in the accelerations outweighs what is gained beside reversals
 constexpr double kWideCutoff_hz = 40;       // the same where reversals are so many that little else is left
-constexpr double kLeastUsable = 0.35;       // share of a drive's rows that must be left, else the band is made wider
+constexpr double kLeastUsable = 0.1;        // share of a drive's rows that every log must keep, else the band is made wider
 constexpr double kSettled = 0.1;            // change of an amplitude that least squares without noise model may make
 constexpr double kRestFloor = 0.015;        // share of a log's largest rate below which friction is that of rest
 constexpr double kRestOfAll = 0.02;         // share of the largest rate in all logs for which the same holds ...
@@ -63,7 +63,6 @@ bool same_log(const Log& a, const Log& b) {
 }
 
 /// The highest cut-off that is as good as the best one: smooth motions leave the choice open, and a narrow band widens every reversal.
-/// What noise a wide band lets in, the whitening weighs.
 double widest_good_cutoff_hz(const std::vector<CutoffPoint>& points) {
   double best = std::numeric_limits<double>::infinity(), cutoff_hz = 0;
   for (const CutoffPoint& point : points) best = std::min(best, point.score);
@@ -102,19 +101,21 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
   return out;
 }
 
-/// Usable rows of the drive that has fewest.
+/// Usable rows of the drive that has fewest in all logs, and the smallest share that a log keeps of one drive's rows: a fast log that
+/// is nearly gone leaves a fit of the slow one.
 struct UsableRows {
   double rows = 1e12, share = 1;
 };
 UsableRows fewest_usable(const std::vector<LogRows>& logs) {
   UsableRows out;
   for (std::size_t j = 0; j < logs.front().usable.size(); ++j) {
-    double rows = 0, all = 0;
+    double rows = 0;
     for (const LogRows& log : logs) {
-      rows += static_cast<double>(log.usable[j].count());
-      all += static_cast<double>(log.rows());
+      const auto usable = static_cast<double>(log.usable[j].count());
+      rows += usable;
+      out.share = std::min(out.share, usable / static_cast<double>(std::max<Index>(1, log.rows())));
     }
-    if (rows < out.rows) out = {rows, rows / std::max(all, 1.0)};
+    out.rows = std::min(out.rows, rows);
   }
   return out;
 }
@@ -234,7 +235,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
       for (std::size_t l = 0; l < logs.size(); ++l)
         rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
       if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
-      if (!(widest_hz > most_hz) || fewest_usable(rows).share > kLeastUsable) break;
+      if (!(widest_hz > out.cutoff_hz) || fewest_usable(rows).share > kLeastUsable) break;
     }
   } catch (const Error& error) {
     double length = 0;
