@@ -10,11 +10,9 @@
 #include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
-#include "deltadyn/io/trajectory_file.hpp"
-#include "deltadyn/runtime/robot.hpp"
 
 #include "acceptance/tool_run.hpp"
-#include "identification/synthetic_log.hpp"
+#include "acceptance/virtual_robot.hpp"
 
 namespace deltadyn::acceptance {
 namespace {
@@ -22,33 +20,14 @@ namespace {
 constexpr const char* kNullRuns = "40";  // enough for plain cases
 
 /// Three motions of the delta4: fast, slow, hold-out.
-class Diagnosing : public ::testing::Test {
+class Diagnosing : public VirtualRobot {
  protected:
-  Diagnosing() {
-    (void)folder.write("robot.urdf", read_text(installed("robots/mujoco_delta4.urdf")));
-    (void)folder.write("truth.csv", read_text(installed("logs/mujoco_delta4/truth.csv")));
-  }
-  [[nodiscard]] std::string path(const std::string& name) const { return folder.path(name); }
-
   void record(const std::string& name, double frequency_hz, std::uint64_t seed, const Words& effect,
               double duration_s = 10) const {
-    const auto robot = make_robot(read_robot_file(path("robot.urdf")));
-    const Eigen::VectorXd p = values(read_parameters(path("truth.csv")), robot->parameter_names(), robot->parameter_units());
-    testing_support::SyntheticOptions options;
-    options.duration_s = duration_s;
-    options.base_frequency_hz = frequency_hz;
-    options.seed = seed;
-    const Log log = testing_support::synthetic_log(*robot, p, options);
-    TrajectorySamples samples;
-    samples.t_s = log.t_s;
-    samples.q = log.q;
-    samples.qd = log.qd;
-    samples.qdd = log.qdd;
-    complete_task(*robot, samples);
-    write_trajectory(path("motion.csv"), samples, robot->description());
-    succeed(Words{"delta-simulate", path("robot.urdf"), "--params", path("truth.csv"), "--trajectory", path("motion.csv"), "-o",
-                  path(name), "--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)} +
-            effect);
+    plan("motion.csv", duration_s, frequency_hz, seed);
+    succeed(simulate(
+        "motion.csv", name,
+        Words{"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)} + effect));
   }
   void record_all(const Words& effect) const {
     record("fast.csv", 0.2, 1, effect);
@@ -63,8 +42,6 @@ class Diagnosing : public ::testing::Test {
            flags;
   }
   [[nodiscard]] std::map<std::string, std::string> summary() const { return read_summary(path("summary.csv")); }
-
-  const testing::TemporaryFolder folder;
 };
 
 TEST_F(Diagnosing, NothingIsMissingWhereNothingIsHidden) {
