@@ -109,14 +109,6 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
   return out;
 }
 
-VectorXd WhiteProblem::whiten_torque(const PerLogAndDrive<VectorXd>& torque) const {
-  VectorXd out(rows);
-  for (const WhiteSegment& segment : segments) {
-    out.segment(segment.offset, segment.rows()) = segment.whitener.apply(torque[segment.log][segment.drive]);
-  }
-  return out;
-}
-
 Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
   const Index k = inner.size();
   std::vector<Index> free;

@@ -56,8 +56,6 @@ class WhiteProblem {
                const PerLogAndDrive<Eigen::MatrixXd>& extra = {});
 
   [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<Eigen::MatrixXd>& columns) const;
-  /// One column vector a drive and log in place of the torque.
-  [[nodiscard]] Eigen::VectorXd whiten_torque(const PerLogAndDrive<Eigen::VectorXd>& torque) const;
 
   std::vector<WhiteSegment> segments;
   Eigen::Index rows = 0;
