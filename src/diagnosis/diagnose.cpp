@@ -162,12 +162,14 @@ void settle_amplitudes(const Robot& robot, const std::vector<Log>& logs, const V
                        Diagnosis& out) {
   const std::vector<Effect> settled = estimate_amplitudes(robot, logs, p, out.effects, processing);
   for (std::size_t k = 0; k < settled.size(); ++k) {
-    const VectorXd& before = out.effects[k].amplitude;
-    if ((settled[k].amplitude - before).norm() > kSettled * before.norm()) continue;
+    Effect& effect = out.effects[k];
+    const VectorXd change = settled[k].amplitude - effect.amplitude;
+    if (change.norm() > kSettled * effect.amplitude.norm()) continue;
+    effect.amplitude = settled[k].amplitude;
+    if (effect.amplitude_std.size() == change.size()) effect.amplitude_std = effect.amplitude_std.cwiseMax(change.cwiseAbs());
     for (NamedEffect& one : out.named) {
-      if (one.effect.id == settled[k].id && one.effect.joint == settled[k].joint) one.effect.amplitude = settled[k].amplitude;
+      if (one.effect.id == effect.id && one.effect.joint == effect.joint) one.effect = effect;
     }
-    out.effects[k].amplitude = settled[k].amplitude;
   }
 }
 

@@ -49,6 +49,10 @@ void describe_drives(const SearchContext& context, const SearchResult& found, Di
 /// Steps 9 and 10: names, unknown structure, proof on the hold-out log, what to do next.
 void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
 
+/// Standard deviations of a fit's amplitudes, its shape being fitted along: the larger of what the noise model and what the residual's
+/// own blocks say.
+[[nodiscard]] Eigen::VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit);
+
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
 

@@ -24,7 +24,16 @@ namespace deltadyn::blind {
 struct Outcome {
   std::string truth, joint, verdict, named, set, noise;  ///< truth and named: "effect@joint;effect@joint"
   double strength = 0, gap_shrink = 0, share = 0, time_s = 0;
+  double size = 0, found_size = 0, found_std = 0;  ///< of a single effect; 0 where forms cannot be compared
 };
+
+/// Size of an effect in one number: two amplitudes of a wave or an angle are a length.
+inline void size_of(const Effect& effect, double& size, double& std) {
+  const auto has_std = effect.amplitude_std.size() == effect.amplitude.size();
+  const bool plane = effect.id == EffectId::torque_ripple || effect.id == EffectId::base_tilt;
+  size = plane ? effect.amplitude.norm() : std::abs(effect.amplitude(0));
+  std = !has_std ? 0.0 : plane ? effect.amplitude_std.dot(effect.amplitude.cwiseAbs()) / size : effect.amplitude_std(0);
+}
 
 inline Case make_case(const std::string& part, int index) {
   Random random(1000003u * static_cast<unsigned>(index + 1) + (part == "effects" ? 1u
@@ -94,12 +103,17 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
     out.named += (out.named.empty() ? "" : ";") + one.name + "@" + one.joint;
     for (const EffectCandidate& other : one.confusable) out.set += (out.set.empty() ? "" : ";") + other.name + "@" + other.joint;
   }
+  if (names && blind.hidden.size() == 1 && result.named.front().name == blind.hidden.front().truth &&
+      std::isfinite(blind.hidden.front().amplitude)) {
+    out.size = blind.hidden.front().amplitude;
+    size_of(result.named.front().effect, out.found_size, out.found_std);
+  }
   return out;
 }
 
 inline std::string to_line(const std::string& id, const Outcome& o) {
-  return fmt::format("{},{},{:.3g},{},{},{},{},{:.3f},{:.3f},{:.1f}", id, o.truth, o.strength, o.noise, o.verdict, o.named, o.set,
-                     o.share, o.gap_shrink, o.time_s);
+  return fmt::format("{},{},{:.3g},{},{},{},{},{:.3f},{:.3f},{:.1f},{:.5g},{:.5g},{:.3g}", id, o.truth, o.strength, o.noise,
+                     o.verdict, o.named, o.set, o.share, o.gap_shrink, o.time_s, o.size, o.found_size, o.found_std);
 }
 
 using Outcomes = std::vector<std::pair<std::string, Outcome>>;
@@ -111,17 +125,20 @@ inline Outcomes read_outcomes(const std::string& path) {
     std::vector<std::string> field;
     std::istringstream stream(line);
     for (std::string part; std::getline(stream, part, ',');) field.push_back(part);
-    if (field.size() < 10) continue;
-    Outcome o{field[1],
-              "",
-              field[4],
-              field[5],
-              field[6],
-              field[3],
-              std::stod(field[2]),
-              std::stod(field[8]),
-              std::stod(field[7]),
-              std::stod(field[9])};
+    if (field.size() < 13) continue;
+    Outcome o;
+    o.truth = field[1];
+    o.strength = std::stod(field[2]);
+    o.noise = field[3];
+    o.verdict = field[4];
+    o.named = field[5];
+    o.set = field[6];
+    o.share = std::stod(field[7]);
+    o.gap_shrink = std::stod(field[8]);
+    o.time_s = std::stod(field[9]);
+    o.size = std::stod(field[10]);
+    o.found_size = std::stod(field[11]);
+    o.found_std = std::stod(field[12]);
     all.emplace_back(field[0], o);
   }
   return all;

@@ -21,6 +21,12 @@ inline double sign_of(double v, double width = 0.008) {
   return std::tanh(v / width);
 }
 
+/// A hidden effect whose size the catalogue states in the same way.
+inline Hidden sized(Hidden hidden, double amplitude) {
+  hidden.amplitude = amplitude;
+  return hidden;
+}
+
 using Random = std::mt19937_64;
 
 inline double between(Random& random, double low, double high) {
@@ -87,21 +93,29 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
     });
   }
   if (name == "asymmetric_coulomb") {
-    return on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)) - 0.0 * v; });
+    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)); }), 0.5 * F);
   }
   if (name == "asymmetric_viscous") {
-    return on_drive(name, drive, [=](const Moment&, double v, double) { return v > 0 ? 0.8 * F * v / fast : 0.0; });
+    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return v > 0 ? 0.8 * F * v / fast : 0.0; }),
+                 0.4 * F / fast);  // the other half is viscous friction
   }
   if (name == "load_dependent_friction") {
-    return on_drive(name, drive == 3 ? 0 : drive, [=](const Moment& m, double v, double) {
-      return (0.02 + 0.10 * size) * std::abs(m.transmitted(drive == 3 ? 0 : drive)) * sign_of(v, width);
-    });
+    const double mu = 0.02 + 0.10 * size;
+    const int loaded = drive == 3 ? 0 : drive;
+    return sized(on_drive(name, loaded,
+                          [=](const Moment& m, double v, double) {
+                            return mu * std::abs(m.transmitted(loaded)) * sign_of(v, 0.008);
+                          }),
+                 mu);
   }
   if (name == "directional_efficiency") {
-    return on_drive(name, limb, [=](const Moment& m, double v, double) {
-      const double power = m.transmitted(limb) * v;
-      return (0.03 + 0.12 * size) * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, width);
-    });
+    const double loss = 0.03 + 0.12 * size;
+    return sized(on_drive(name, limb,
+                          [=](const Moment& m, double v, double) {
+                            const double power = m.transmitted(limb) * v;
+                            return loss * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, 0.008);
+                          }),
+                 loss);
   }
   if (name == "presliding") {  // LuGre in place of part of the Coulomb friction, with bristle damping
     const double x = fast * (0.02 + 0.06 * u), share = 0.15 + 0.5 * size;
@@ -127,9 +141,11 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
   }
   if (name == "torque_ripple") {
     const double n = drive == 3 ? 3.3 + 2 * u : 17.7 + 30 * u, phase = between(random, 0, 6);
-    return on_drive(name, drive, [=](const Moment&, double, double q) {
-      return 0.5 * F * (std::sin(n * q + phase) + 0.15 * std::sin(2 * n * q));
-    });
+    return sized(on_drive(name, drive,
+                          [=](const Moment&, double, double q) {
+                            return 0.5 * F * (std::sin(n * q + phase) + 0.15 * std::sin(2 * n * q));
+                          }),
+                 0.5 * F);
   }
   if (name == "position_dependent_friction") {
     const double n = drive == 3 ? 1.0 : 4.3 + 5 * u, phase = between(random, 0, 6);
@@ -139,18 +155,18 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
   }
   if (name ==
       "joint_elasticity") {  // a real spring would need the motor as a body of its own; here its first resonance in the load path
-    const double w = 2 * 3.14159265 * (14 + 16 * (1 - size)), zeta = 0.15;
+    const double w = 2 * 3.14159265 * (14 + 16 * (1 - size));
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
     out.record = [=](int, Eigen::MatrixXd& tau, Eigen::MatrixXd&, double dt) {
       // The recorded torque is that of the motor's side: the load's, filtered by the inverse of the spring's resonance.
       Eigen::VectorXd y = tau.col(limb);
       const Eigen::VectorXd x = y;
       for (Eigen::Index k = 1; k + 1 < x.size(); ++k) {
-        y(k) = x(k) - ((x(k + 1) - 2 * x(k) + x(k - 1)) / (dt * dt) + 0.0 * zeta) / (w * w) * 0.5;
+        y(k) = x(k) - (x(k + 1) - 2 * x(k) + x(k - 1)) / (dt * dt) / (w * w) * 0.5;
       }
       tau.col(limb) = y;
     };
-    return out;
+    return sized(out, 0.5 / (w * w));
   }
   if (name == "rotor_inertia") {
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
@@ -160,7 +176,7 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
           p(k) += 0.01 + 0.06 * size;
       }
     };
-    return out;
+    return sized(out, 0.01 + 0.06 * size);
   }
   if (name == "limb_inertia_mismatch") {  // a lump of mass on one arm
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
@@ -174,7 +190,7 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
         if (text == arm + ".Iyy" || text == arm + ".Izz") p(k) += m * x * x;
       }
     };
-    return out;
+    return sized(out, m * x);
   }
   if (name == "base_tilt") {
     Hidden out{name, "robot", {}, 0, {}, {}, {}, 0};
@@ -183,7 +199,7 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
       robot.gravity =
           9.81 * Eigen::Vector3d(std::sin(angle) * std::cos(about), std::sin(angle) * std::sin(about), -std::cos(angle));
     };
-    return out;
+    return sized(out, angle);
   }
   if (name == "payload") {
     Hidden out{name, "platform", {}, 0, {}, {}, {}, 0};
@@ -192,13 +208,13 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
         if (robot.parameter_names()[static_cast<std::size_t>(k)] == "platform.m") p(k) += 0.05 + 0.5 * size;
       }
     };
-    return out;
+    return sized(out, 0.05 + 0.5 * size);
   }
   if (name == "torque_constant_error") {
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
     const double eps = (u > 0.5 ? 1 : -1) * (0.01 + 0.08 * size);
     out.record = [=](int, Eigen::MatrixXd& tau, Eigen::MatrixXd&, double) { tau.col(limb) *= 1 + eps; };
-    return out;
+    return sized(out, std::abs(eps));
   }
   if (name == "time_skew") {
     Hidden out{name, "robot", {}, 0, {}, {}, {}, 0};
@@ -211,11 +227,11 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
         tau.row(k) = x.row(low) + (at - static_cast<double>(low)) * (x.row(low + 1) - x.row(low));
       }
     };
-    return out;
+    return sized(out, 1e-3 * delay);
   }
   if (name == "current_lag") {
     Hidden out{name, "robot", {}, 0, {}, {}, {}, 0.0015 + 0.004 * size};
-    return out;
+    return sized(out, 0.0015 + 0.004 * size);
   }
   if (name == "thermal_drift") {
     const double T = 3 + 8 * u;
@@ -245,7 +261,7 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
   Hidden out{"kinematic_offset", "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
   const double off = 0.004 + 0.03 * size;
   out.record = [=](int, Eigen::MatrixXd&, Eigen::MatrixXd& q, double) { q.col(limb).array() += off; };
-  return out;
+  return sized(out, off);
 }
 
 /// Kinds that the catalogue does not have.
