@@ -256,20 +256,39 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     return finish();
   }
 
-  const VectorXd p_fit = refit_parameters(base, rows, p);
   const EffectModel model(robot);
-  for (LogRows& log : rows) log.signals = model.signals(log.log, p_fit);
-  for (LogRows& log : held) log.signals = model.signals(log.log, p_fit);
-  const GenericBasis basis = make_generic_basis(rows, held);
-  const EffectSearch search(model, rows, basis, known);
+  VectorXd p_fit = refit_parameters(base, rows, p);
+  const auto fill_signals = [&] {
+    for (std::vector<LogRows>* group : {&rows, &held}) {
+      for (LogRows& log : *group) log.signals = model.signals(log.log, p_fit);
+    }
+  };
+  fill_signals();
+  GenericBasis basis = make_generic_basis(rows, held);
+  auto search = std::make_unique<EffectSearch>(model, rows, basis, known);
   report(0.15);
-  detail::SearchContext context{robot, model, base, rows, basis, search, options, processing, p_fit};
-  context.holdout = held.empty() ? nullptr : &held.front();
+  PerLogAndDrive<double> position_noises;
   for (const Log& log : logs) {
-    context.position_noise.emplace_back();
-    for (Index j = 0; j < log.q.cols(); ++j) context.position_noise.back().push_back(position_noise(log.q.col(j)));
+    position_noises.emplace_back();
+    for (Index j = 0; j < log.q.cols(); ++j) position_noises.back().push_back(position_noise(log.q.col(j)));
   }
-  detail::SearchResult found = detail::search_effects(context, out);
+  const auto context_of = [&] {
+    detail::SearchContext context{robot, model, base, rows, basis, *search, options, processing, p_fit};
+    context.holdout = held.empty() ? nullptr : &held.front();
+    context.position_noise = position_noises;
+    return context;
+  };
+  detail::SearchResult found = detail::search_effects(context_of(), out);
+  if (!found.accepted.empty()) {
+    // Loads, torques and tilts were those of a model that had to make up for what is missing: once more with the better one.
+    p_fit = closest_parameters(base, found.after.problem->beta.head(base.count()), p);
+    fill_signals();
+    basis = make_generic_basis(rows, held);
+    search = std::make_unique<EffectSearch>(model, rows, basis, known);
+    const NullStudy null = std::move(found.null);
+    found = detail::search_effects(context_of(), out, &null);
+  }
+  const detail::SearchContext context = context_of();
   report(0.9);
 
   detail::describe_drives(context, found, out);

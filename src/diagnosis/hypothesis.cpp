@@ -62,7 +62,7 @@ std::vector<double> grid_of(const EffectShape& shape, const Hypothesis& hypothes
     case ShapeScale::absolute: break;
     case ShapeScale::largest_rate: unit = scale.largest_rate; break;
     case ShapeScale::largest_torque: unit = scale.largest_torque; break;
-    case ShapeScale::displacement: unit = turns ? 1.0 : 0.1; break;
+    case ShapeScale::displacement: unit = std::max(turns ? 1.0 : 0.1, scale.range); break;
     case ShapeScale::range: unit = scale.range; break;
     case ShapeScale::waves: {
       double cutoff_hz = 1e9;

@@ -61,6 +61,11 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
   return out;
 }
 
+VectorXd closest_parameters(const BaseParameters& base, const VectorXd& beta, const VectorXd& around) {
+  const MatrixXd& B = base.B;
+  return around + B.transpose() * (B * B.transpose()).ldlt().solve(beta - B * around);
+}
+
 VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>& logs, const VectorXd& around) {
   const auto b = static_cast<Index>(base.count());
   const std::size_t n = logs.front().usable.size();
@@ -91,8 +96,7 @@ VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>
       weight(static_cast<Index>(j)) = 1.0 / std::max(std::sqrt(square / std::max(count, 1.0)), 1e-9);
     }
   }
-  const MatrixXd& B = base.B;
-  return around + B.transpose() * (B * B.transpose()).ldlt().solve(beta - B * around);
+  return closest_parameters(base, beta, around);
 }
 
 }  // namespace deltadyn

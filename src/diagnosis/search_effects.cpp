@@ -21,9 +21,12 @@ constexpr int kHygienic = 4;         // further ones that may be needed for what
 constexpr std::size_t kProvisionalCandidates = 6;
 constexpr double kFormError = 0.12;        // of a plain effect's gain: what the catalogue's form may leave of the true one
 constexpr double kMaterialFurther = 0.05;  // kMaterial of every effect beside the first
-constexpr double kFormElsewhere = 0.03;    // the same for what that form leaves on other drives
+constexpr double kFormElsewhere = 0.03;    // the same for what that form leaves at another place ...
+constexpr double kFormOther = 0.01;        // ... and for effects of another class there
+constexpr double kReached = 0.05;          // of an effect's squares: a drive with less is not reached
 constexpr double kSimplerGain =
     0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
+constexpr double kSameLoss = 0.5;  // smaller over larger loss of a gear from which both count as one
 constexpr std::size_t kBestForPairs = 10;
 constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined before they are compared
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
@@ -47,6 +50,14 @@ std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch
 bool holds(EffectId rich, EffectId simple) {
   return (rich == EffectId::directional_efficiency && simple == EffectId::load_dependent_friction) ||
          (rich == EffectId::limb_inertia_mismatch && simple == EffectId::rotor_inertia);
+}
+
+/// Does a rich effect lie so near its special case that only the form of the catalogue can have parted them? Losses that depend on the
+/// direction hardly differ less than by a factor of two.
+bool nearly_special(const Fit& rich) {
+  if (rich.effect.id != EffectId::directional_efficiency) return false;
+  const double driving = rich.effect.amplitude(0), back_driving = rich.effect.amplitude(1);
+  return std::min(driving, back_driving) > kSameLoss * std::max(driving, back_driving);
 }
 
 /// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be noise that
@@ -74,7 +85,8 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   const Hypothesis& winner = hypotheses[best->hypothesis];
   for (Fit& fit : fits) {
     const Hypothesis& other = hypotheses[fit.hypothesis];
-    if (other.joint != winner.joint || !holds(winner.id, other.id) || fit.gain < kSimplerGain * best->gain) continue;
+    if (other.joint != winner.joint || !holds(winner.id, other.id)) continue;
+    if (fit.gain < kSimplerGain * best->gain && !nearly_special(*best)) continue;
     if (!simpler || fit.gain > simpler->gain) simpler = std::move(fit);
   }
   return simpler ? simpler : best;
@@ -146,16 +158,36 @@ bool hygienic(const SearchContext& context, const Fit& fit) {
   return fit.effect.id == EffectId::current_lag && samples <= kLagSamples;
 }
 
-/// A second effect where the first one sits already must be more than the error of the first one's form.
-bool form_error(const SearchContext& context, const SearchResult& found, const Fit& fit) {
+/// Squares of a fit's white torque by drive.
+VectorXd squares_by_drive(const Fit& fit, const WhiteProblem& problem, std::size_t drives) {
+  VectorXd out = VectorXd::Zero(static_cast<Index>(drives));
+  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
+    if (fit.white.blocks[s].size() == 0) continue;
+    out(static_cast<Index>(problem.segments[s].drive)) += (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
+  }
+  return out;
+}
+
+/// A further effect where an earlier one acts already must be more than the error of that one's form: the more so at the same place and
+/// in the same class. What the earlier one does on other drives than the further one does not count.
+bool form_error(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
+  const std::size_t drives = context.logs.front().usable.size();
   const Hypothesis& one = context.search.hypotheses()[fit.hypothesis];
+  const VectorXd own = squares_by_drive(fit, *state.problem, drives);
   for (std::size_t k = 0; k < found.fits.size(); ++k) {
     if (found.hygiene[k]) continue;
     const Fit& earlier = found.fits[k];
     const Hypothesis& other = context.search.hypotheses()[earlier.hypothesis];
-    const bool elsewhere = one.joint != other.joint || one.joint < 0;
-    if (elsewhere && one.joint >= 0 && other.joint >= 0) continue;
-    if (fit.gain < (elsewhere ? kFormElsewhere : kFormError) * earlier.gain) return true;
+    const VectorXd theirs = squares_by_drive(earlier, *state.problem, drives);
+    double shared = 0;
+    for (Index j = 0; j < own.size(); ++j) {
+      if (own(j) > kReached * own.sum()) shared += theirs(j);
+    }
+    const double share = shared / std::max(theirs.sum(), 1e-300);
+    const bool here = one.joint == other.joint && one.joint >= 0;
+    const bool alike = one.kind().effect_class == other.kind().effect_class;
+    const double form = here ? kFormError : alike ? kFormElsewhere : kFormOther;
+    if (fit.gain < form * share * earlier.gain) return true;
   }
   return false;
 }
@@ -227,8 +259,13 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     const double raw_lead = r_other.squaredNorm() - r_best.squaredNorm();
     const bool alike = z < kSetLikelihood;
     const bool by_blocks = raw_lead < kSetBootstrap * spread && z < 2 * kSetLikelihood;
-    const bool by_form = lead < kSetForm * best.gain;
+    // An effect with more parameters would have followed a form that the catalogue lacks better, not worse.
+    const Hypothesis& one = context.search.hypotheses()[best.hypothesis];
+    const Hypothesis& alternative = context.search.hypotheses()[h];
+    const bool by_form = lead < kSetForm * best.gain && alternative.freedom() <= one.freedom();
     if (!alike && !by_blocks && !by_form) continue;
+    // Beside its own special case an effect is no alternative: the case would have to be met by chance.
+    if (alternative.joint == one.joint && holds(alternative.id, one.id)) continue;
     EffectCandidate candidate = candidate_of(context, found, other);
     const double cosine = std::abs(s_best.dot(s_other)) / std::max(s_best.norm() * s_other.norm(), 1e-300);
     candidate.why =
@@ -256,7 +293,7 @@ double rows_per_drive(const SearchContext& context, const WhiteProblem& problem)
   return static_cast<double>(problem.rows) / static_cast<double>(context.logs.front().usable.size());
 }
 
-SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
+SearchResult search_effects(const SearchContext& context, Diagnosis& out, const NullStudy* known_null) {
   const EffectSearch& search = context.search;
   const DiagnosisOptions& options = context.options;
   SearchResult found;
@@ -290,13 +327,17 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   found.before = search.state(found.noise, {}, &pilots);
   found.omnibus_before = Omnibus(*found.before.problem, context.basis);
   found.structure_before = found.omnibus_before.gains(*found.before.problem, found.before.problem->r);
-  NullOptions null_options;
-  null_options.runs = options.null_runs;
-  null_options.seed = options.seed;
-  null_options.threads = options.threads;
-  null_options.progress = [&](double share) { report(0.45 + 0.4 * share); };
-  found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
-                              found.omnibus_before, null_options);
+  if (known_null != nullptr) {
+    found.null = *known_null;
+  } else {
+    NullOptions null_options;
+    null_options.runs = options.null_runs;
+    null_options.seed = options.seed;
+    null_options.threads = options.threads;
+    null_options.progress = [&](double share) { report(0.45 + 0.4 * share); };
+    found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
+                                found.omnibus_before, null_options);
+  }
   out.encoder_share = found.null.encoder_share;
 
   // Forward.
@@ -304,7 +345,8 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out) {
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
     std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
-      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_error(context, found, one);
+      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) &&
+             !form_error(context, found, state, one);
     });
     if (!fit) break;
     found.hygiene.push_back(hygienic(context, *fit));

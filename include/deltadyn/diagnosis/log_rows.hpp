@@ -33,8 +33,12 @@ struct LogRows {
 /// The signals are left empty: they need parameters (EffectModel::signals).
 [[nodiscard]] LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLog log, int number);
 
-/// Base parameters by ordinary least squares over all logs and drives, each drive in units of its own residual; with the
-/// parameters of `around` that are closest to reproducing them: p + B^T (B B^T)^-1 (beta - B p).
+/// The parameters closest to `around` that have the base parameters beta: p + B^T (B B^T)^-1 (beta - B p).
+[[nodiscard]] Eigen::VectorXd closest_parameters(const BaseParameters& base, const Eigen::VectorXd& beta,
+                                                 const Eigen::VectorXd& around);
+
+/// Base parameters by ordinary least squares over all logs and drives, each drive in units of its own residual, as
+/// closest_parameters().
 [[nodiscard]] Eigen::VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>& logs,
                                                const Eigen::VectorXd& around);
 
