@@ -285,8 +285,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     fill_signals();
     basis = make_generic_basis(rows, held);
     search = std::make_unique<EffectSearch>(model, rows, basis, known);
-    const NullStudy null = std::move(found.null);
-    found = detail::search_effects(context_of(), out, &null);
+    const detail::SearchResult first = std::move(found);
+    found = detail::search_effects(context_of(), out, &first);
   }
   const detail::SearchContext context = context_of();
   report(0.9);

@@ -41,8 +41,8 @@ struct SearchResult {
 void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Steps 3 to 8 of the procedure.
-/// \param known_null  of the same logs with nearly the same parameters, taken as it is; null: it is simulated
-[[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out, const NullStudy* known_null = nullptr);
+/// \param earlier  a search in the same logs with nearly the same parameters, whose noise and null are taken as they are
+[[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier = nullptr);
 
 /// Fits and structure of every drive, and the list of all effects considered.
 void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out);

@@ -20,11 +20,12 @@ namespace {
 constexpr double kExplained = 0.8;          // of the structure that names must explain
 constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
 constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
-constexpr double kSlowOverNoise = 35;       // noise with a correlation of 0.98 at 1 kHz comes to 20
-constexpr double kSlowOverOthers = 5;
-constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close
-constexpr double kHoldoutGap = 1.4;   // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kSlowOverNoise = 10;       // of a drive's residual; slow noise of all drives comes to 20, hence ...
+constexpr double kSlowOverOthers = 5;       // ... times so much more than the others, and ...
+constexpr double kSlowOverBoth = 175;       // ... the product of the two
+constexpr double kRepeated = 0.05;          // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;        // of the hold-out gap that an effect must close
+constexpr double kHoldoutGap = 1.4;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const Fit& fit, const WhiteProblem& problem, Index drives) {
@@ -158,8 +159,10 @@ std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context
   std::vector<double> others = over_torque;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(worst));
   std::sort(others.begin(), others.end());
-  if (over_noise[worst] > kSlowOverNoise && over_torque[worst] > kSlowOverOthers * others[others.size() / 2]) return worst;
-  return std::nullopt;
+  const double over_others = over_torque[worst] / std::max(others[others.size() / 2], 1e-300);
+  const bool slow =
+      over_noise[worst] > kSlowOverNoise && over_others > kSlowOverOthers && over_noise[worst] * over_others > kSlowOverBoth;
+  return slow ? std::optional<std::size_t>(worst) : std::nullopt;
 }
 
 }  // namespace

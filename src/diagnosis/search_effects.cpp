@@ -293,7 +293,7 @@ double rows_per_drive(const SearchContext& context, const WhiteProblem& problem)
   return static_cast<double>(problem.rows) / static_cast<double>(context.logs.front().usable.size());
 }
 
-SearchResult search_effects(const SearchContext& context, Diagnosis& out, const NullStudy* known_null) {
+SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier) {
   const EffectSearch& search = context.search;
   const DiagnosisOptions& options = context.options;
   SearchResult found;
@@ -302,7 +302,13 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   };
 
   // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this coarser.
-  NoiseEstimate estimate = search.noise_beside({});
+  NoiseEstimate estimate;
+  if (earlier != nullptr) {
+    estimate.noise = earlier->noise;
+    estimate.floor_rms = earlier->floor;
+  } else {
+    estimate = search.noise_beside({});
+  }
   EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
   const double pass_hz =
       std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
@@ -313,7 +319,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
 
   // Provisional effects, so that the noise model is not made of what is missing.
   std::vector<AcceptedEffect> provisional;
-  for (int step = 0; step < options.max_effects + kHygienic; ++step) {
+  for (int step = 0; earlier == nullptr && step < options.max_effects + kHygienic; ++step) {
     std::optional<Fit> fit = most_likely(context, pilots, provisional, estimate);
     if (!fit) break;
     provisional.push_back(search.accept(*fit));
@@ -327,8 +333,8 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   found.before = search.state(found.noise, {}, &pilots);
   found.omnibus_before = Omnibus(*found.before.problem, context.basis);
   found.structure_before = found.omnibus_before.gains(*found.before.problem, found.before.problem->r);
-  if (known_null != nullptr) {
-    found.null = *known_null;
+  if (earlier != nullptr) {
+    found.null = earlier->null;
   } else {
     NullOptions null_options;
     null_options.runs = options.null_runs;

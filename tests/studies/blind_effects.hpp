@@ -93,7 +93,8 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
     });
   }
   if (name == "asymmetric_coulomb") {
-    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)); }), 0.5 * F);
+    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)); }),
+                 0.5 * F);
   }
   if (name == "asymmetric_viscous") {
     return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return v > 0 ? 0.8 * F * v / fast : 0.0; }),
@@ -102,11 +103,10 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
   if (name == "load_dependent_friction") {
     const double mu = 0.02 + 0.10 * size;
     const int loaded = drive == 3 ? 0 : drive;
-    return sized(on_drive(name, loaded,
-                          [=](const Moment& m, double v, double) {
-                            return mu * std::abs(m.transmitted(loaded)) * sign_of(v, 0.008);
-                          }),
-                 mu);
+    return sized(
+        on_drive(name, loaded,
+                 [=](const Moment& m, double v, double) { return mu * std::abs(m.transmitted(loaded)) * sign_of(v, 0.008); }),
+        mu);
   }
   if (name == "directional_efficiency") {
     const double loss = 0.03 + 0.12 * size;

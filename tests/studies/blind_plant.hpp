@@ -37,7 +37,7 @@ struct Hidden {
   std::function<void(RobotDescription&)> robot;                                              ///< changes the machine itself
   std::function<void(const Robot&, int log, Eigen::VectorXd& p)> parameters;                 ///< of the limbs' own layout
   std::function<void(int log, Eigen::MatrixXd& tau, Eigen::MatrixXd& q, double dt)> record;  ///< changes what is recorded
-  double motor_lag_s = 0;  ///< first-order lag between the recorded command and the shaft
+  double motor_lag_s = 0;                                       ///< first-order lag between the recorded command and the shaft
   double amplitude = std::numeric_limits<double>::quiet_NaN();  ///< size as the catalogue states it, if the form has one
 };
 

@@ -60,7 +60,7 @@ enum class ShapeScale {
   absolute,        ///< as it stands
   largest_rate,    ///< share of the joint's largest rate in the logs
   largest_torque,  ///< share of the drive's largest torque in the logs
-  displacement,    ///< [rad] for a revolute joint; a tenth of it in [m] for a prismatic one
+  displacement,    ///< 1 rad or 0.1 m, or the joint's range in the logs if that is wider
   range,           ///< share of the joint's range in the logs
   waves,           ///< waves per range up to the largest one that the pass band lets through
   logs             ///< number of a log, from 1
