@@ -63,6 +63,8 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
     }
     return {true, false, value - spacing, value + spacing};
   }
+  // A level far below the peaks would be a matter of gain or load.
+  if (hypothesis.id == EffectId::saturation) return {true, true, 0.9 * value, 1.1 * value};
   return {true, true, 0.55 * value, 1.8 * value};
 }
 
