@@ -23,6 +23,8 @@ constexpr double kOvertStructure = 1.0;     // of the noise variance: too much t
 constexpr double kSlowOverNoise = 10;       // of a drive's residual; slow noise of all drives comes to 20, hence ...
 constexpr double kSlowOverOthers = 5;       // ... times so much more than the others, and ...
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
+constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
+constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
 constexpr double kRepeated = 0.05;          // of the hold-out residual's square that structure must explain to count
 constexpr double kCarriesOver = 0.5;        // of the hold-out gap that an effect must close
 constexpr double kHoldoutGap = 1.4;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
@@ -136,6 +138,20 @@ void say(const SearchContext& context, Diagnosis& out) {
   out.next.push_back(context.options.identify
                          ? "Go on with the improved parameters and the effect file."
                          : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
+}
+
+/// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
+/// the drive that a log should reach.
+double rate_beyond_logs(const SearchContext& context, const NamedEffect& one) {
+  const EffectId id = one.effect.id;
+  if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return 0;
+  if (!(one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0)))) return 0;
+  const Index j = one.effect.joint;
+  double training = 0;
+  for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
+  double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
+  if (!std::isfinite(wanted)) wanted = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
+  return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
 }
 
 /// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that of the other
@@ -337,6 +353,27 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       one.rms_floor = out.drives[j].floor;
     }
     out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
+  }
+  if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
+    for (const NamedEffect& one : out.named) {
+      const double needed = rate_beyond_logs(context, one);
+      if (!(needed > 0)) continue;
+      out.verdict = DiagnosisVerdict::not_testable;
+      out.region = one.region;
+      out.headline = fmt::format(
+          "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
+          "course at higher speeds.",
+          one.joint);
+      out.lines.push_back(
+          fmt::format("{} fits, with an uncertainty of {:.0f} % of its size: as a term of the model it would be a guess.",
+                      one.name, 100 * one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0))));
+      out.next.push_back(
+          fmt::format("Record {} at {:.2g} rad/s (m/s) or more, too, and give that log beside the slow one.", one.joint, needed));
+      out.named.clear();
+      out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+      out.p_no_gain = 1;
+      break;
+    }
   }
   if (out.verdict == DiagnosisVerdict::nothing_missing || out.verdict == DiagnosisVerdict::not_testable) {
     if (const std::optional<std::size_t> slow = drive_with_slow_residual(context, out)) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "deltadyn/io/csv.hpp"
@@ -67,6 +68,16 @@ TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
 
   succeed(diagnose("improved.csv", {"--effects", path("effects.csv")}));
   EXPECT_EQ(summary().at("verdict"), "nothing-missing");
+}
+
+TEST_F(Diagnosing, GivesNoNameToBendingFrictionFromASlowLogAlone) {
+  // The paper's drive 4 again, moved no faster than the bend.
+  const Words bend = {"--effect", "shear_thinning@drive4:friction=0.4,rate=2.5,exponent=0"};
+  record("slow.csv", 0.02, 2, bend);
+  record("check.csv", 0.15, 3, bend);
+  succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("slow.csv"), "--holdout", path("check.csv"),
+           "--null-runs", kNullRuns, "-o", path("diagnosis.csv"), "--summary", path("summary.csv")});
+  EXPECT_THAT(summary().at("verdict"), ::testing::AnyOf("not-testable", "confusable"));
 }
 
 TEST_F(Diagnosing, TellsTheSizeOfAStribeckEffect) {
