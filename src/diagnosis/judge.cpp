@@ -358,6 +358,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     for (const NamedEffect& one : out.named) {
       const double needed = rate_beyond_logs(context, one);
       if (!(needed > 0)) continue;
+      const bool turns = context.robot.description().kind_of_drive(one.effect.joint) == DriveKind::revolute;
       out.verdict = DiagnosisVerdict::not_testable;
       out.region = one.region;
       out.headline = fmt::format(
@@ -367,8 +368,8 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       out.lines.push_back(
           fmt::format("{} fits, with an uncertainty of {:.0f} % of its size: as a term of the model it would be a guess.",
                       one.name, 100 * one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0))));
-      out.next.push_back(
-          fmt::format("Record {} at {:.2g} rad/s (m/s) or more, too, and give that log beside the slow one.", one.joint, needed));
+      out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
+                                     needed, turns ? "rad/s" : "m/s"));
       out.named.clear();
       out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
       out.p_no_gain = 1;

@@ -196,6 +196,22 @@ inline void print_summary(const Outcomes& all) {
     fmt::print("  mean size of the set {:.2f}; gap shrink: median {:.3f}, smallest {:.3f}\n",
                static_cast<double>(set_size) / found, shrink[shrink.size() / 2], shrink.front());
   }
+  int sizes = 0, close = 0, covered = 0;
+  std::vector<double> strength;
+  for (const Outcome& o : parts["effects"]) {
+    if (o.strength > 0) strength.push_back(o.strength);
+    if (!(o.size > 0)) continue;
+    ++sizes;
+    close += std::abs(o.found_size / o.size - 1) <= 0.05 ? 1 : 0;
+    covered += std::abs(o.found_size - o.size) <= 1.96 * o.found_std ? 1 : 0;
+  }
+  line("  sizes that can be compared: within 5 %", close, sizes);
+  line("  sizes that can be compared: truth inside the 95 % interval", covered, sizes);
+  std::sort(strength.begin(), strength.end());
+  if (!strength.empty()) {
+    fmt::print("  strength (rms torque over noise, where it is a torque): {:.2g} to {:.2g}, median {:.2g}\n", strength.front(),
+               strength.back(), strength[strength.size() / 2]);
+  }
   int both = 0;
   for (const Outcome& o : parts["pairs"]) {
     const auto truth = split(o.truth), named = split(o.named);
