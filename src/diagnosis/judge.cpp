@@ -25,9 +25,11 @@ constexpr double kSlowOverOthers = 5;       // ... times so much more than the o
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
-constexpr double kRepeated = 0.05;          // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;        // of the hold-out gap that an effect must close
-constexpr double kHoldoutGap = 1.4;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kFaster = 1.5;       // times the training logs' largest rate: a hold-out log that tries the course beyond ...
+constexpr double kMetBeyond = 0.9;    // ... and the share of its gap that the name must close there
+constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close
+constexpr double kHoldoutGap = 1.4;   // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const Fit& fit, const WhiteProblem& problem, Index drives) {
@@ -141,16 +143,19 @@ void say(const SearchContext& context, Diagnosis& out) {
 }
 
 /// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
-/// the drive that a log should reach.
-double rate_beyond_logs(const SearchContext& context, const NamedEffect& one) {
+/// the drive that a log should reach. \param gap_shrink  on the hold-out log; NaN without one
+double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
   const EffectId id = one.effect.id;
   if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return 0;
-  if (!(one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0)))) return 0;
   const Index j = one.effect.joint;
   double training = 0;
   for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
+  const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
+  const bool unsure = one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0));
+  const bool fails_there = there > kFaster * training && gap_shrink < kMetBeyond;
+  if (!unsure && !fails_there) return 0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
-  if (!std::isfinite(wanted)) wanted = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
+  if (!std::isfinite(wanted)) wanted = there;
   return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
 }
 
@@ -356,7 +361,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
   }
   if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
     for (const NamedEffect& one : out.named) {
-      const double needed = rate_beyond_logs(context, one);
+      const double needed = rate_beyond_logs(context, one, out.gap_shrink);
       if (!(needed > 0)) continue;
       const bool turns = context.robot.description().kind_of_drive(one.effect.joint) == DriveKind::revolute;
       out.verdict = DiagnosisVerdict::not_testable;
