@@ -16,17 +16,13 @@ constexpr double kShapeStep = 0.02;  // of a shape parameter, either way
 constexpr double kBlock_s = 0.25;    // longer than any memory that counts as noise
 constexpr double kLeastBlocks = 12;  // from which blocks say anything about the noise
 
-/// Shape parameters that the search moves freely.
+/// Shape parameters that are fitted beside the amplitudes.
 std::vector<Index> free_shapes(const Effect& effect) {
   const EffectKind& kind = effect_kind(effect.id);
   std::vector<Index> out;
-  if (kind.tied || effect.id == EffectId::kinematic_offset) return out;
+  if (kind.tied) return out;
   for (std::size_t k = 0; k < kind.shapes.size(); ++k) {
-    const EffectShape& shape = kind.shapes[k];
-    if (shape.scale == ShapeScale::logs || shape.name == "recorded") continue;
-    if (shape.name == "exponent" && effect.id != EffectId::convex_viscous) continue;
-    if (effect.id == EffectId::shear_thinning && effect.shape(1) > 0) continue;
-    out.push_back(static_cast<Index>(k));
+    if (shape_is_free(effect.id, k, effect.shape)) out.push_back(static_cast<Index>(k));
   }
   return out;
 }
@@ -44,6 +40,19 @@ VectorXd white_torque(const SearchContext& context, const WhiteProblem& problem,
 }
 
 }  // namespace
+
+std::vector<std::pair<Index, Index>> row_blocks(const SearchContext& context, const WhiteSegment& segment) {
+  const VectorXd& t_s = context.logs[segment.log].t_s;
+  const auto& source = segment.whitener.source();
+  std::vector<std::pair<Index, Index>> out;
+  for (std::size_t begin = 0; begin < source.size();) {
+    std::size_t end = begin;
+    while (end < source.size() && t_s(source[end]) - t_s(source[begin]) <= kBlock_s) ++end;
+    out.emplace_back(segment.offset + static_cast<Index>(begin), static_cast<Index>(end - begin));
+    begin = end;
+  }
+  return out;
+}
 
 VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit) {
   const WhiteProblem& problem = *state.problem;
@@ -69,16 +78,10 @@ VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& 
   MatrixXd scatter = MatrixXd::Zero(J.cols(), J.cols());
   double blocks = 0;
   for (const WhiteSegment& segment : problem.segments) {
-    const LogRows& log = context.logs[segment.log];
-    const auto& source = segment.whitener.source();
-    for (std::size_t begin = 0; begin < source.size();) {
-      std::size_t end = begin;
-      while (end < source.size() && log.t_s(source[end]) - log.t_s(source[begin]) <= kBlock_s) ++end;
-      const Index at = segment.offset + static_cast<Index>(begin), count = static_cast<Index>(end - begin);
-      const VectorXd score = J.middleRows(at, count).transpose() * r.segment(at, count);
+    for (const auto& [first, count] : row_blocks(context, segment)) {
+      const VectorXd score = J.middleRows(first, count).transpose() * r.segment(first, count);
       scatter += score * score.transpose();
       ++blocks;
-      begin = end;
     }
   }
   if (blocks >= kLeastBlocks) variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));

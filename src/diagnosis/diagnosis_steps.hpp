@@ -4,6 +4,7 @@
 /// The steps of diagnose(), between them the search's result.
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/diagnosis/diagnose.hpp"
@@ -53,6 +54,10 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
 /// Standard deviations of a fit's amplitudes, its shape being fitted along: the larger of what the noise model and what the residual's
 /// own blocks say.
 [[nodiscard]] Eigen::VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit);
+
+/// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first row and number.
+[[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> row_blocks(const SearchContext& context,
+                                                                            const WhiteSegment& segment);
 
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);

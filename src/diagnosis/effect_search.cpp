@@ -49,12 +49,8 @@ struct Reach {
 Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const VectorXd& shape) {
   const EffectShape& kind = hypothesis.kind().shapes[parameter];
   const double value = shape(static_cast<Index>(parameter));
-  if (kind.scale == ShapeScale::logs || hypothesis.id == EffectId::kinematic_offset || kind.name == "recorded") return {};
-  if (kind.name == "exponent") {
-    if (hypothesis.id == EffectId::convex_viscous) return {true, false, std::max(1.2, value - 0.5), value + 0.7};
-    return {};
-  }
-  if (hypothesis.id == EffectId::shear_thinning && shape(1) > 0) return {};
+  if (!shape_is_free(hypothesis.id, parameter, shape)) return {};
+  if (kind.name == "exponent") return {true, false, std::max(1.2, value - 0.5), value + 0.7};
   if (kind.scale == ShapeScale::waves) {
     double spacing = 0.25 * std::abs(value);
     for (const VectorXd& other : hypothesis.shapes) {

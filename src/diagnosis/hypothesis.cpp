@@ -98,6 +98,13 @@ bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
 
 }  // namespace
 
+bool shape_is_free(EffectId id, std::size_t parameter, const VectorXd& shape) {
+  const EffectShape& kind = effect_kind(id).shapes[parameter];
+  if (kind.scale == ShapeScale::logs || id == EffectId::kinematic_offset || kind.name == "recorded") return false;
+  if (kind.name == "exponent") return id == EffectId::convex_viscous;
+  return id != EffectId::shear_thinning || !(shape(1) > 0);  // the power law's reference rate is a matter of units
+}
+
 std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs, const std::vector<Effect>& known) {
   std::vector<MotionScale> scales;
   for (int j = -1; j < robot.drives(); ++j) scales.push_back(scale_of(logs, j));

@@ -370,9 +370,12 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
           "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
           "course at higher speeds.",
           one.joint);
-      out.lines.push_back(
-          fmt::format("{} fits, with an uncertainty of {:.0f} % of its size: as a term of the model it would be a guess.",
-                      one.name, 100 * one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0))));
+      const double unsure = one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0));
+      const std::string reason =
+          unsure > kUnsureCourse
+              ? fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure)
+              : fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * out.gap_shrink);
+      out.lines.push_back(fmt::format("{} fits, {}: as a term of the model it would be a guess.", one.name, reason));
       out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
                                      needed, turns ? "rad/s" : "m/s"));
       out.named.clear();

@@ -32,10 +32,9 @@ constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined b
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
 constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
-constexpr double kBlock_s = 0.25;
-constexpr double kSkewSamples = 1.0;  // a skew up to one sample is a matter of who samples when, not of the robot
-constexpr double kRestShare = 0.03;   // of the largest rate: friction that bends below it is friction at rest
-constexpr double kLagSamples = 0.5;   // and so is so short a lag
+constexpr double kSkewSamples = 1.0;    // a skew up to one sample is a matter of who samples when, not of the robot
+constexpr double kRestShare = 0.03;     // of the largest rate: friction that bends below it is friction at rest
+constexpr double kLagSamples = 0.5;     // and so is so short a lag
 
 std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
   std::vector<std::size_t> order(state.scores.size());
@@ -196,19 +195,7 @@ bool form_error(const SearchContext& context, const SearchResult& found, const E
 double block_std(const SearchContext& context, const WhiteProblem& problem, const VectorXd& difference) {
   std::vector<double> blocks;
   for (const WhiteSegment& segment : problem.segments) {
-    const LogRows& log = context.logs[segment.log];
-    double sum = 0, begin = -1e300;
-    const auto& source = segment.whitener.source();
-    for (std::size_t k = 0; k < source.size(); ++k) {
-      const double t = log.t_s(source[k]);
-      if (t - begin > kBlock_s) {
-        if (begin > -1e299) blocks.push_back(sum);
-        sum = 0;
-        begin = t;
-      }
-      sum += difference(segment.offset + static_cast<Index>(k));
-    }
-    blocks.push_back(sum);
+    for (const auto& [first, count] : row_blocks(context, segment)) blocks.push_back(difference.segment(first, count).sum());
   }
   const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / static_cast<double>(blocks.size());
   double square = 0;

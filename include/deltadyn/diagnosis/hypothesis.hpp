@@ -34,6 +34,9 @@ struct Hypothesis {
   }
 };
 
+/// Does the search move this shape parameter between its start values? Choices (a log's number, a kind, most exponents) stay.
+[[nodiscard]] bool shape_is_free(EffectId id, std::size_t parameter, const Eigen::VectorXd& shape);
+
 /// All hypotheses for a robot, with shapes that suit the motion of the logs. Effects that the base model holds already (an offset that
 /// is a parameter, a rotor inertia of its own) and those in `known` are left out.
 [[nodiscard]] std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs,
