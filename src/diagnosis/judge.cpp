@@ -28,7 +28,8 @@ constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: trai
 constexpr double kFaster = 1.5;       // times the training logs' largest rate: a hold-out log that tries the course beyond ...
 constexpr double kMetBeyond = 0.9;    // ... and the share of its gap that the name must close there
 constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close
+constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close ...
+constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
 constexpr double kHoldoutGap = 1.4;   // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
@@ -312,7 +313,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       double gap = 0;
       for (const int j : touched) gap = std::max(gap, proof->rms_before(j) / std::max(proof->floor(j), 1e-300));
       const bool worse = out.gap_shrink < 0;  // then even a small gap speaks against the name
-      if (out.verdict != DiagnosisVerdict::unknown_structure && (worse || (gap > 1.05 && out.gap_shrink < kCarriesOver))) {
+      if (out.verdict != DiagnosisVerdict::unknown_structure && (worse || out.gap_shrink < (gap > 1.05 ? kCarriesOver : kLeastClosed))) {
         const std::string line = fmt::format(
             "{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.", out.named.front().name,
             out.named.front().joint,
