@@ -55,6 +55,8 @@ constexpr double kSettled = 0.1;            // change of an amplitude that least
 constexpr double kRestFloor = 0.015;        // share of a log's largest rate below which friction is that of rest
 constexpr double kRestOfAll = 0.02;         // share of the largest rate in all logs for which the same holds ...
 constexpr double kMostRest = 0.12;          // ... but no more than this share of a slow log's own, which must show something
+constexpr int kMostPasses = 3;              // of the search with parameters that are better each time ...
+constexpr double kSameSize = 0.003;         // ... until no amplitude changes by more than this share
 constexpr double kFewestRowsPerBase = 4.0;  // usable rows of a drive in units of base parameters a drive
 
 bool same_log(const Log& a, const Log& b) {
@@ -154,6 +156,17 @@ void leave_rest_out(const Robot& robot, std::vector<PreparedLog*> logs) {
       }
     }
   }
+}
+
+/// Have two searches found the same effects, in the same sizes?
+bool settled(const detail::SearchResult& last, const detail::SearchResult& found) {
+  if (last.fits.size() != found.fits.size()) return false;
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
+    const Effect &before = last.fits[k].effect, &now = found.fits[k].effect;
+    if (before.id != now.id || before.joint != now.joint) return false;
+    if ((before.amplitude - now.amplitude).norm() > kSameSize * now.amplitude.norm()) return false;
+  }
+  return true;
 }
 
 /// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
@@ -279,14 +292,15 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     return context;
   };
   detail::SearchResult found = detail::search_effects(context_of(), out);
-  if (!found.accepted.empty()) {
-    // Loads, torques and tilts were those of a model that had to make up for what is missing: once more with the better one.
+  // Loads, torques and tilts were those of a model that had to make up for what is missing: again with the better one.
+  for (int pass = 0; pass < kMostPasses && !found.accepted.empty(); ++pass) {
     p_fit = closest_parameters(base, found.after.problem->beta.head(base.count()), p);
     fill_signals();
     basis = make_generic_basis(rows, held);
     search = std::make_unique<EffectSearch>(model, rows, basis, known);
-    const detail::SearchResult first = std::move(found);
-    found = detail::search_effects(context_of(), out, &first);
+    const detail::SearchResult last = std::move(found);
+    found = detail::search_effects(context_of(), out, &last);
+    if (settled(last, found)) break;
   }
   const detail::SearchContext context = context_of();
   report(0.9);

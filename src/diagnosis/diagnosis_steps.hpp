@@ -52,7 +52,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, Di
 void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
 
 /// Standard deviations of a fit's amplitudes, its shape being fitted along: the larger of what the noise model and what the residual's
-/// own blocks say.
+/// own blocks say, and beside it a share of the amplitude for the form of the column.
 [[nodiscard]] Eigen::VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit);
 
 /// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first row and number.

@@ -107,6 +107,7 @@ const std::vector<Coordinate>& coordinates() {
                                               {"time", 4, time, rate},
                                               {"other joints", 4, other_position, unit, true},
                                               {"other joints", 4, other_rate, unit, true},
+                                              {"other joints", 3, other_rate, direction, true},
                                               {"telescope", 6, bar_rate, unit}};
   return all;
 }

@@ -23,6 +23,7 @@ constexpr double kFormError = 0.12;        // of a plain effect's gain: what the
 constexpr double kMaterialFurther = 0.05;  // kMaterial of every effect beside the first
 constexpr double kFormElsewhere = 0.03;    // the same for what that form leaves at another place ...
 constexpr double kFormOther = 0.01;        // ... and for effects of another class there
+constexpr double kLeftOver = 0.2;          // of the structure: an effect that leaves less is no error of form
 constexpr double kReached = 0.05;          // of an effect's squares: a drive with less is not reached
 constexpr double kSimplerGain =
     0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
@@ -167,9 +168,43 @@ VectorXd squares_by_drive(const Fit& fit, const WhiteProblem& problem, std::size
   return out;
 }
 
+/// Does an effect take nearly all of the structure that the generic basis still sees? An error of form would look like several.
+class StructureLeft {
+ public:
+  StructureLeft(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state)
+      : found_(found), problem_(*state.problem), basis_(context.basis) {}
+
+  [[nodiscard]] bool taken_by(const Fit& fit) {
+    const Index k = fit.effect.amplitude.size();
+    if (fit.white.cols < k) return false;
+    if (!omnibus_) {
+      omnibus_.emplace(problem_, basis_);
+      before_ = beyond_chance(problem_.r);
+    }
+    const VectorXd r = problem_.r - fit.white.projected(problem_.Q, problem_.segments, 0, k) * fit.effect.amplitude;
+    return beyond_chance(r) < kLeftOver * before_;
+  }
+
+ private:
+  [[nodiscard]] double beyond_chance(const VectorXd& r) const {
+    const VectorXd gains = omnibus_->gains(problem_, r);
+    double sum = 0;
+    for (Index j = 0; j < gains.size(); ++j)
+      sum += std::max(0.0, gains(j) - found_.null.omnibus[static_cast<std::size_t>(j)].quantile(0.5));
+    return sum;
+  }
+
+  const SearchResult& found_;
+  const WhiteProblem& problem_;
+  const GenericBasis& basis_;
+  std::optional<Omnibus> omnibus_;
+  double before_ = 0;
+};
+
 /// A further effect where an earlier one acts already must be more than the error of that one's form: the more so at the same place and
 /// in the same class. What the earlier one does on other drives than the further one does not count.
-bool form_error(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, const Fit& fit) {
+bool form_error(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, StructureLeft& left,
+                const Fit& fit) {
   const std::size_t drives = context.logs.front().usable.size();
   const Hypothesis& one = context.search.hypotheses()[fit.hypothesis];
   const VectorXd own = squares_by_drive(fit, *state.problem, drives);
@@ -183,10 +218,11 @@ bool form_error(const SearchContext& context, const SearchResult& found, const E
       if (own(j) > kReached * own.sum()) shared += theirs(j);
     }
     const double share = shared / std::max(theirs.sum(), 1e-300);
-    const bool here = one.joint == other.joint && one.joint >= 0;
     const bool alike = one.kind().effect_class == other.kind().effect_class;
+    const bool here = one.joint == other.joint && (one.joint >= 0 || alike);
     const double form = here ? kFormError : alike ? kFormElsewhere : kFormOther;
-    if (fit.gain < form * share * earlier.gain) return true;
+    if (fit.gain >= form * share * earlier.gain) continue;
+    if (here || alike || !left.taken_by(fit)) return true;
   }
   return false;
 }
@@ -337,9 +373,10 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
+    StructureLeft left(context, found, state);
     std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
       return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) &&
-             !form_error(context, found, state, one);
+             !form_error(context, found, state, left, one);
     });
     if (!fit) break;
     found.hygiene.push_back(hygienic(context, *fit));

@@ -3,7 +3,6 @@
 // Here the search ends by its starts, so that the figures do not depend on the load of the machine.
 
 #include <cmath>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -98,9 +97,11 @@ TEST(Excite, CtrlCGivesTheBestMotionSoFar) {
   const testing::TemporaryFolder folder;
   const Words words = excite("mujoco_delta4.urdf") + kMainCase +
                       Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--time-limit-s", "500"};
-  std::string line = "timeout --preserve-status -s INT 8 " + tool_path("delta-excite");
-  for (std::size_t k = 1; k < words.size(); ++k) line += " '" + words[k] + "'";
-  EXPECT_EQ(std::system((line + " > /dev/null").c_str()), 0);
+  const RunningTool tool = start(words, {600});
+  wait_for_work(tool, 6);
+  ::kill(tool.process, SIGINT);
+  const ToolResult result = finish(tool);
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
   const auto summary = read_summary(folder.path("s.csv"));
   EXPECT_EQ(summary.at("stopped"), "interrupted");
   EXPECT_GE(number(summary, "constraint_margin"), 0);

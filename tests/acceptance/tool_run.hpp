@@ -54,8 +54,14 @@ struct RunLimits {
   rlim_t file_bytes = RLIM_INFINITY;  ///< largest file the tool may write: the disk of the poor
 };
 
-/// words: tool and arguments. Standard output and error go to files of their own outside `folder`s under test.
-inline ToolResult run(const Words& words, const RunLimits& limits = {}) {
+/// A tool that runs. Its standard output and error go to files of their own outside `folder`s under test.
+struct RunningTool {
+  pid_t process = 0;
+  std::string out_file, err_file;
+};
+
+/// words: tool and arguments.
+inline RunningTool start(const Words& words, const RunLimits& limits = {}) {
   char out_name[] = "/tmp/deltadyn_out_XXXXXX";
   char err_name[] = "/tmp/deltadyn_err_XXXXXX";
   const int out = ::mkstemp(out_name);
@@ -85,17 +91,42 @@ inline ToolResult run(const Words& words, const RunLimits& limits = {}) {
     ::execv(arguments[0], arguments.data());
     ::_exit(127);
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
   ::close(out);
   ::close(err);
+  return {child, out_name, err_name};
+}
+
+/// Waits until the tool has used so much processor time, or has ended: however slow and busy the machine is.
+inline void wait_for_work(const RunningTool& tool, double cpu_s) {
+  for (;;) {
+    const std::string text = read_text("/proc/" + std::to_string(tool.process) + "/stat");
+    const auto name_end = text.rfind(')');
+    if (name_end == std::string::npos) return;
+    std::istringstream fields(text.substr(name_end + 1));
+    std::string state, skipped;
+    double user = 0, system = 0;
+    fields >> state;
+    for (int k = 0; k < 10; ++k) fields >> skipped;
+    fields >> user >> system;
+    if (state == "Z" || (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK)) >= cpu_s) return;
+    ::usleep(50000);
+  }
+}
+
+inline ToolResult finish(const RunningTool& tool) {
+  int status = 0;
+  ::waitpid(tool.process, &status, 0);
   ToolResult result;
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  result.out = read_text(out_name);
-  result.err = read_text(err_name);
-  ::unlink(out_name);
-  ::unlink(err_name);
+  result.out = read_text(tool.out_file);
+  result.err = read_text(tool.err_file);
+  ::unlink(tool.out_file.c_str());
+  ::unlink(tool.err_file.c_str());
   return result;
+}
+
+inline ToolResult run(const Words& words, const RunLimits& limits = {}) {
+  return finish(start(words, limits));
 }
 
 /// Runs a tool that must succeed.

@@ -96,7 +96,12 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
   out.share = result.explained_share;
   out.gap_shrink = result.gap_shrink;
   out.time_s = result.total_time_s;
-  if (std::getenv("BLIND_VERBOSE") != nullptr) fmt::print("# {} (cut-off {:.3g} Hz)\n", result.headline, result.cutoff_hz);
+  if (std::getenv("BLIND_VERBOSE") != nullptr) {
+    fmt::print("# {} (cut-off {:.3g} Hz)\n", result.headline, result.cutoff_hz);
+    for (const auto* texts : {&result.lines, &result.notes}) {
+      for (const std::string& text : *texts) fmt::print("#   {}\n", text);
+    }
+  }
   const bool names = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;
   for (const NamedEffect& one : result.named) {
     if (!names) break;

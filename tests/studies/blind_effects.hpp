@@ -115,7 +115,7 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
                             const double power = m.transmitted(limb) * v;
                             return loss * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, 0.008);
                           }),
-                 loss);
+                 loss / (1 - loss));  // of what the gear passes on
   }
   if (name == "presliding") {  // LuGre in place of part of the Coulomb friction, with bristle damping
     const double x = fast * (0.02 + 0.06 * u), share = 0.15 + 0.5 * size;
@@ -281,7 +281,7 @@ inline Hidden make_outside(int kind, int drives, double size, Random& random) {
     case 6: return unknown([=](const Moment& m, double, double) { return F * std::sin(3 * m.qd(other) + phase); });
     default:
       return unknown(
-          [=](const Moment& m, double, double q) { return q > 0.25 ? F * (1 - std::exp(-(q - 0.25) / 0.05)) : 0.0 * m.t; });
+          [=](const Moment& m, double, double q) { return q > -0.05 ? F * (1 - std::exp(-(q + 0.05) / 0.05)) : 0.0 * m.t; });
   }
 }
 
