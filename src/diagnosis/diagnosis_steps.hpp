@@ -74,6 +74,9 @@ struct Remainder {
 [[nodiscard]] Eigen::VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
                                            const PerLogAndDrive<double>& floor);
 
+/// Squares of an effect's white torque, one value a drive.
+[[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
+
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.
 inline constexpr double kMaterial = 0.02;

@@ -25,26 +25,19 @@ constexpr double kSlowOverOthers = 5;       // ... times so much more than the o
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
-constexpr double kFaster = 1.5;       // times the training logs' largest rate: a hold-out log that tries the course beyond ...
-constexpr double kMetBeyond = 0.9;    // ... and the share of its gap that the name must close there
-constexpr double kRepeated = 0.05;    // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;  // of the hold-out gap that an effect must close ...
+constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
+constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
+constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
 constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
-constexpr double kHoldoutGap = 1.4;   // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
-std::vector<int> drives_of(const Fit& fit, const WhiteProblem& problem, Index drives) {
-  std::vector<double> energy(static_cast<std::size_t>(drives), 0.0);
-  double whole = 0;
-  for (std::size_t s = 0; s < problem.segments.size(); ++s) {
-    if (fit.white.blocks.size() <= s || fit.white.blocks[s].size() == 0) continue;
-    const double e = (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
-    energy[problem.segments[s].drive] += e;
-    whole += e;
-  }
+std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
+  const VectorXd energy = squares_by_drive(context, problem, fit);
   std::vector<int> out;
-  for (std::size_t j = 0; j < energy.size(); ++j) {
-    if (energy[j] > 0.05 * whole) out.push_back(static_cast<int>(j));
+  for (Index j = 0; j < energy.size(); ++j) {
+    if (energy(j) > 0.05 * energy.sum()) out.push_back(static_cast<int>(j));
   }
   return out;
 }
@@ -262,7 +255,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     largest_share = std::max(largest_share, noise_shares(context, torque, found.floor).maxCoeff());
     one.explained_share = fit.gain / std::max({gain + left, fit.gain, 1e-300});
     one.confusable = found.sets[k];
-    one.drives = drives_of(fit, *found.before.problem, n);
+    one.drives = drives_of(context, *found.before.problem, fit);
     one.region = region_of(context, fit, *found.before.problem, one.drives);
     out.named.push_back(std::move(one));
   }
@@ -313,7 +306,8 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       double gap = 0;
       for (const int j : touched) gap = std::max(gap, proof->rms_before(j) / std::max(proof->floor(j), 1e-300));
       const bool worse = out.gap_shrink < 0;  // then even a small gap speaks against the name
-      if (out.verdict != DiagnosisVerdict::unknown_structure && (worse || out.gap_shrink < (gap > 1.05 ? kCarriesOver : kLeastClosed))) {
+      if (out.verdict != DiagnosisVerdict::unknown_structure &&
+          (worse || out.gap_shrink < (gap > 1.05 ? kCarriesOver : kLeastClosed))) {
         const std::string line = fmt::format(
             "{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.", out.named.front().name,
             out.named.front().joint,

@@ -32,6 +32,15 @@ Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem
   return out;
 }
 
+VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
+  VectorXd out = VectorXd::Zero(context.robot.drives());
+  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
+    if (fit.white.blocks[s].size() == 0) continue;
+    out(static_cast<Index>(problem.segments[s].drive)) += (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
+  }
+  return out;
+}
+
 VectorXd noise_shares(const SearchContext& context, const Remainder& remainder, const PerLogAndDrive<double>& floor) {
   const std::size_t drives = context.logs.front().usable.size();
   VectorXd out(static_cast<Index>(drives));

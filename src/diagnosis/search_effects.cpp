@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "diagnosis_steps.hpp"
+#include "form_error.hpp"
 
 namespace deltadyn::detail {
 
@@ -19,12 +19,7 @@ namespace {
 constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
 constexpr int kHygienic = 4;         // further ones that may be needed for what counts as hygiene only
 constexpr std::size_t kProvisionalCandidates = 6;
-constexpr double kFormError = 0.12;        // of a plain effect's gain: what the catalogue's form may leave of the true one
 constexpr double kMaterialFurther = 0.05;  // kMaterial of every effect beside the first
-constexpr double kFormElsewhere = 0.03;    // the same for what that form leaves at another place ...
-constexpr double kFormOther = 0.01;        // ... and for effects of another class there
-constexpr double kLeftOver = 0.2;          // of the structure: an effect that leaves less is no error of form
-constexpr double kReached = 0.05;          // of an effect's squares: a drive with less is not reached
 constexpr double kSimplerGain =
     0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
 constexpr double kSameLoss = 0.5;  // smaller over larger loss of a gear from which both count as one
@@ -156,75 +151,6 @@ bool hygienic(const SearchContext& context, const Fit& fit) {
   const double samples = fit.effect.shape.size() > 0 ? std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz : 0.0;
   if (fit.effect.id == EffectId::time_skew) return samples <= kSkewSamples;
   return fit.effect.id == EffectId::current_lag && samples <= kLagSamples;
-}
-
-/// Squares of a fit's white torque by drive.
-VectorXd squares_by_drive(const Fit& fit, const WhiteProblem& problem, std::size_t drives) {
-  VectorXd out = VectorXd::Zero(static_cast<Index>(drives));
-  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
-    if (fit.white.blocks[s].size() == 0) continue;
-    out(static_cast<Index>(problem.segments[s].drive)) += (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
-  }
-  return out;
-}
-
-/// Does an effect take nearly all of the structure that the generic basis still sees? An error of form would look like several.
-class StructureLeft {
- public:
-  StructureLeft(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state)
-      : found_(found), problem_(*state.problem), basis_(context.basis) {}
-
-  [[nodiscard]] bool taken_by(const Fit& fit) {
-    const Index k = fit.effect.amplitude.size();
-    if (fit.white.cols < k) return false;
-    if (!omnibus_) {
-      omnibus_.emplace(problem_, basis_);
-      before_ = beyond_chance(problem_.r);
-    }
-    const VectorXd r = problem_.r - fit.white.projected(problem_.Q, problem_.segments, 0, k) * fit.effect.amplitude;
-    return beyond_chance(r) < kLeftOver * before_;
-  }
-
- private:
-  [[nodiscard]] double beyond_chance(const VectorXd& r) const {
-    const VectorXd gains = omnibus_->gains(problem_, r);
-    double sum = 0;
-    for (Index j = 0; j < gains.size(); ++j)
-      sum += std::max(0.0, gains(j) - found_.null.omnibus[static_cast<std::size_t>(j)].quantile(0.5));
-    return sum;
-  }
-
-  const SearchResult& found_;
-  const WhiteProblem& problem_;
-  const GenericBasis& basis_;
-  std::optional<Omnibus> omnibus_;
-  double before_ = 0;
-};
-
-/// A further effect where an earlier one acts already must be more than the error of that one's form: the more so at the same place and
-/// in the same class. What the earlier one does on other drives than the further one does not count.
-bool form_error(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state, StructureLeft& left,
-                const Fit& fit) {
-  const std::size_t drives = context.logs.front().usable.size();
-  const Hypothesis& one = context.search.hypotheses()[fit.hypothesis];
-  const VectorXd own = squares_by_drive(fit, *state.problem, drives);
-  for (std::size_t k = 0; k < found.fits.size(); ++k) {
-    if (found.hygiene[k]) continue;
-    const Fit& earlier = found.fits[k];
-    const Hypothesis& other = context.search.hypotheses()[earlier.hypothesis];
-    const VectorXd theirs = squares_by_drive(earlier, *state.problem, drives);
-    double shared = 0;
-    for (Index j = 0; j < own.size(); ++j) {
-      if (own(j) > kReached * own.sum()) shared += theirs(j);
-    }
-    const double share = shared / std::max(theirs.sum(), 1e-300);
-    const bool alike = one.kind().effect_class == other.kind().effect_class;
-    const bool here = one.joint == other.joint && (one.joint >= 0 || alike);
-    const double form = here ? kFormError : alike ? kFormElsewhere : kFormOther;
-    if (fit.gain >= form * share * earlier.gain) continue;
-    if (here || alike || !left.taken_by(fit)) return true;
-  }
-  return false;
 }
 
 /// Sum of squared differences a block of a quarter of a second: how robust is a gain?
@@ -373,10 +299,9 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
-    StructureLeft left(context, found, state);
+    FormErrors form_errors(context, found, state);
     std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
-      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) &&
-             !form_error(context, found, state, left, one);
+      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_errors.explain(one);
     });
     if (!fit) break;
     found.hygiene.push_back(hygienic(context, *fit));

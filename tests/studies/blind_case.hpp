@@ -217,15 +217,23 @@ inline void print_summary(const Outcomes& all) {
     fmt::print("  strength (rms torque over noise, where it is a torque): {:.2g} to {:.2g}, median {:.2g}\n", strength.front(),
                strength.back(), strength[strength.size() / 2]);
   }
-  int both = 0;
+  int both = 0, in_sets = 0;
   for (const Outcome& o : parts["pairs"]) {
     const auto truth = split(o.truth), named = split(o.named);
+    auto reported = split(o.set);
+    reported.insert(reported.end(), named.begin(), named.end());
+    const auto is_reported = [&](const std::string& hidden) {
+      return std::any_of(reported.begin(), reported.end(),
+                         [&](const std::string& r) { return effect_of(r) == effect_of(hidden); });
+    };
+    in_sets += named.size() == 2 && is_reported(truth[0]) && is_reported(truth[1]) ? 1 : 0;
     both += named.size() == 2 && ((effect_of(named[0]) == effect_of(truth[0]) && effect_of(named[1]) == effect_of(truth[1])) ||
                                   (effect_of(named[1]) == effect_of(truth[0]) && effect_of(named[0]) == effect_of(truth[1])))
                 ? 1
                 : 0;
   }
   line("pairs: both and no other", both, static_cast<int>(parts["pairs"].size()));
+  line("pairs: both, each by name or in the reported sets, and no other", in_sets, static_cast<int>(parts["pairs"].size()));
   int unknown = 0;
   for (const Outcome& o : parts["outside"]) unknown += o.named.empty() ? 1 : 0;
   line("outside the catalogue: no wrong name", unknown, static_cast<int>(parts["outside"].size()));
