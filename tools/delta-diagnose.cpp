@@ -218,12 +218,14 @@ class Diagnose {
     }
     for (const std::string& line : result.next) fmt::print("next: {}\n", line);
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
-    fmt::print("drive   rms residual   with effects   noise floor   structure\n");
+    if (!params_out_.empty() && !result.improved) fmt::print("note: {} holds the parameters as they were given\n", params_out_);
+    if (!result.drives.empty())
+      fmt::print("training logs, rms [N m | N]\ndrive   as given   fitted   with effects   noise floor   structure\n");
     Summary& out = run.summary;
     for (std::size_t j = 0; j < result.drives.size(); ++j) {
       const DriveFit& drive = result.drives[j];
-      fmt::print("{:>5}   {:>12.4g}   {:>12.4g}   {:>11.4g}   {:>7.1f} %\n", j + 1, drive.rms, drive.rms_after, drive.floor,
-                 100 * drive.structure);
+      fmt::print("{:>5}   {:>8.4g}   {:>6.4g}   {:>12.4g}   {:>11.4g}   {:>7.1f} %\n", j + 1, drive.rms_given, drive.rms,
+                 drive.rms_after, drive.floor, 100 * drive.structure);
     }
     out.add("verdict", verdict_name(result.verdict));
     const bool name = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;

@@ -72,10 +72,12 @@ std::vector<std::pair<Index, Index>> row_blocks(const SearchContext& context, co
   return out;
 }
 
-VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit) {
+void set_uncertainty(const SearchContext& context, const EffectSearch::State& state, Fit& fit) {
   const WhiteProblem& problem = *state.problem;
   const Index k = fit.effect.amplitude.size();
-  if (fit.white.cols < k) return VectorXd::Zero(k);
+  fit.effect.amplitude_std = VectorXd::Zero(k);
+  fit.effect.shape_std = VectorXd::Constant(fit.effect.shape.size(), std::nan(""));
+  if (fit.white.cols < k) return;
   const std::vector<Index> shapes = free_shapes(fit.effect);
   MatrixXd J(problem.rows, k + static_cast<Index>(shapes.size()));
   J.leftCols(k) = fit.white.projected(problem.Q, problem.segments, 0, k);
@@ -103,9 +105,14 @@ VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& 
     }
   }
   if (blocks >= kLeastBlocks) variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));
-  const VectorXd std = scale.head(k).cwiseProduct(variance.head(k).cwiseMax(0.0).cwiseSqrt());
-  const VectorXd form = form_share(fit.effect.id) * fit.effect.amplitude;
-  return (std.cwiseAbs2() + form.cwiseAbs2()).cwiseSqrt();
+  const VectorXd std = scale.cwiseProduct(variance.cwiseMax(0.0).cwiseSqrt());
+  const double form = form_share(fit.effect.id);
+  fit.effect.amplitude_std = (std.head(k).cwiseAbs2() + (form * fit.effect.amplitude).cwiseAbs2()).cwiseSqrt();
+  if (effect_kind(fit.effect.id).tied) fit.effect.shape_std(0) = fit.effect.amplitude_std(0);
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    // The columns are derivatives by the logarithm of the shape.
+    fit.effect.shape_std(shapes[s]) = std::hypot(std(k + static_cast<Index>(s)), form) * std::abs(fit.effect.shape(shapes[s]));
+  }
 }
 
 }  // namespace deltadyn::detail

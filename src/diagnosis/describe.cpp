@@ -78,7 +78,12 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
   if (one.kept < kHidden) return "these motions cannot show it: a re-fit of the parameters absorbs it";
   const double alpha = context.options.false_naming_rate;
   if (one.p_left <= alpha) return "a trace too small to matter, or what the named effect's form leaves";
-  if (one.p_alone <= alpha && !found.accepted.empty()) return "ruled out: nothing is left of it beside what was found";
+  if (one.p_alone <= alpha && !found.fits.empty()) {
+    const Fit& first =
+        *std::max_element(found.fits.begin(), found.fits.end(), [](const Fit& a, const Fit& b) { return a.gain < b.gain; });
+    return fmt::format("ruled out: alone {:.3g} % of what {} explains, beside it nothing", 100 * one.gain_alone / first.gain,
+                       effect_kind(first.effect.id).name);
+  }
   if (one.p_alone <= alpha) return "a trace, too small to matter";
   if (found.before.scores[h].gain <= 0 && effect_kind(context.search.hypotheses()[h].id).amplitudes.front().positive)
     return "ruled out: it would need the wrong sign";
@@ -96,14 +101,17 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out) {
       fmt::format("Record about {:.0f} s or more in all, fast and slow, over the workspace.", std::ceil(needed_s)));
 }
 
-void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out) {
+void describe_drives(const SearchContext& context, const SearchResult& found, const VectorXd& p, const std::vector<Effect>& model,
+                     Diagnosis& out) {
   const auto& logs = context.logs;
   const Index n = context.robot.drives();
   const Index b = context.base.count();
   const std::vector<LogRows> corrected = context.search.corrected(found.accepted);
   const PerLogAndDrive<MatrixXd> known = context.search.extra({}), all = context.search.extra(found.accepted);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
-  std::vector<double> before(static_cast<std::size_t>(n), 0), after = before, floor = before, count = before, white_rows = before;
+  const VectorXd beta_given = context.base.B * p, amplitudes_given = amplitudes_of(model);
+  std::vector<double> before(static_cast<std::size_t>(n), 0), given = before, after = before, floor = before, count = before,
+                                                              white_rows = before;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     DiagnosisTrace trace;
     trace.file = logs[l].log.file;
@@ -124,6 +132,8 @@ void describe_drives(const SearchContext& context, const SearchResult& found, Di
       const auto rows = static_cast<double>(logs[l].usable[drive].count());
       before[drive] += logs[l].usable[drive].select(trace.before.col(j).array(), 0.0).square().sum();
       after[drive] += logs[l].usable[drive].select(trace.after.col(j).array(), 0.0).square().sum();
+      const VectorXd e = logs[l].tau.col(j) - logs[l].Y[drive] * beta_given - known[l][drive] * amplitudes_given;
+      given[drive] += logs[l].usable[drive].select(e.array(), 0.0).square().sum();
       floor[drive] += rows * found.floor[l][drive] * found.floor[l][drive];
       count[drive] += rows;
     }
@@ -136,6 +146,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, Di
     DriveFit drive;
     drive.rms = std::sqrt(before[j] / std::max(1.0, count[j]));
     drive.rms_after = std::sqrt(after[j] / std::max(1.0, count[j]));
+    drive.rms_given = std::sqrt(given[j] / std::max(1.0, count[j]));
     drive.floor = std::sqrt(floor[j] / std::max(1.0, count[j]));
     const double chance = found.null.omnibus[j].quantile(0.5);
     const double excess = std::max(0.0, found.structure_before(at) - chance);

@@ -39,7 +39,10 @@ void DiagnosisOptions::validate() const {
   if (!(false_naming_rate > 0 && false_naming_rate < 0.5)) refuse("--false-naming-rate", "it must be above 0 and below 0.5");
   if (max_effects < 1 || max_effects > 6) refuse("--max-effects", "it must be 1 to 6");
   if (null_runs < 20 || null_runs > 100000) refuse("--null-runs", "it must be 20 to 100000");
-  if (!processing.filter) refuse("--no-filter", "the diagnosis filters every log alike");
+  if (!processing.filter) {
+    throw Error("the diagnosis filters every log alike, whatever columns it has", "--no-filter", "leave the flag out",
+                ExitCode::usage);
+  }
 }
 
 namespace {
@@ -179,6 +182,7 @@ void settle_amplitudes(const Robot& robot, const std::vector<Log>& logs, const V
     const VectorXd change = settled[k].amplitude - effect.amplitude;
     if (change.norm() > kSettled * effect.amplitude.norm()) continue;
     effect.amplitude = settled[k].amplitude;
+    if (effect_kind(effect.id).tied) effect.shape(0) = effect.amplitude(0);
     if (effect.amplitude_std.size() == change.size()) effect.amplitude_std = effect.amplitude_std.cwiseMax(change.cwiseAbs());
     for (NamedEffect& one : out.named) {
       if (one.effect.id == effect.id && one.effect.joint == effect.joint) one.effect = effect;
@@ -231,6 +235,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   ProcessingOptions processing;
   std::vector<LogRows> rows, held;
   const ProcessingOptions wanted = without_rest(options.processing);
+  if (options.processing.periods == Periods::given)
+    out.notes.push_back("periods are not averaged here: every log is used as it is");
   try {
     const double widest_hz =
         options.choose_cutoff ? widest_good_cutoff_hz(scan_cutoffs(robot, logs, wanted, options.threads)) : wanted.cutoff_hz;
@@ -305,7 +311,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   const detail::SearchContext context = context_of();
   report(0.9);
 
-  detail::describe_drives(context, found, out);
+  detail::describe_drives(context, found, p, known, out);
   detail::judge(context, found, known, out);
   if (options.identify && !out.named.empty()) {
     try {
@@ -321,6 +327,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
       out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
     }
   }
+  detail::say(context, out);
   return finish();
 }
 

@@ -46,14 +46,19 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out);
 [[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier = nullptr);
 
 /// Fits and structure of every drive, and the list of all effects considered.
-void describe_drives(const SearchContext& context, const SearchResult& found, Diagnosis& out);
+/// \param p,known  the model that the user gave
+void describe_drives(const SearchContext& context, const SearchResult& found, const Eigen::VectorXd& p,
+                     const std::vector<Effect>& known, Diagnosis& out);
 
-/// Steps 9 and 10: names, unknown structure, proof on the hold-out log, what to do next.
+/// Steps 9 and 10: names, unknown structure, proof on the hold-out log.
 void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
 
-/// Standard deviations of a fit's amplitudes, its shape being fitted along: the larger of what the noise model and what the residual's
+/// The verdict in words, and what to do next.
+void say(const SearchContext& context, Diagnosis& out);
+
+/// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise model and what the residual's
 /// own blocks say, and beside it a share of the amplitude for the form of the column.
-[[nodiscard]] Eigen::VectorXd amplitude_std(const SearchContext& context, const EffectSearch::State& state, const Fit& fit);
+void set_uncertainty(const SearchContext& context, const EffectSearch::State& state, Fit& fit);
 
 /// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first row and number.
 [[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> row_blocks(const SearchContext& context,

@@ -25,12 +25,13 @@ constexpr double kSlowOverOthers = 5;       // ... times so much more than the o
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
-constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
-constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
-constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
-constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
-constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kFaster = 1.5;         // times the training logs' largest rate: a hold-out log that tries the course beyond ...
+constexpr double kMetBeyond = 0.9;      // ... and the share of its gap that the name must close there
+constexpr double kRepeated = 0.05;      // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;    // of the hold-out gap that an effect must close ...
+constexpr double kLeastClosed = 0.25;   // ... and of one that is hardly larger than the floor
+constexpr double kParametersOff = 1.2;  // rms of the given parameters over that of the fitted ones
+constexpr double kHoldoutGap = 1.4;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
@@ -93,12 +94,29 @@ std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot
   return text;
 }
 
+/// A user's own parameters can be off although nothing is missing: the search fits them anew.
+void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
+  for (std::size_t j = 0; j < out.drives.size(); ++j) {
+    const DriveFit& drive = out.drives[j];
+    if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
+    const char* unit = context.robot.description().kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N m" : "N";
+    out.lines.push_back(
+        fmt::format("But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
+                    drive.rms_given, unit, drive.rms, unit));
+    out.next.insert(out.next.begin(), "Fit the parameters to these logs with delta-identify before you use the model.");
+    return;
+  }
+}
+
+}  // namespace
+
 void say(const SearchContext& context, Diagnosis& out) {
   const RobotDescription& robot = context.robot.description();
   switch (out.verdict) {
     case DiagnosisVerdict::nothing_missing:
       out.headline = "Nothing is missing: what the model leaves is noise as far as these logs can show.";
       out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
+      say_parameters_are_off(context, out);
       return;
     case DiagnosisVerdict::not_testable:
       out.next.push_back(
@@ -135,6 +153,8 @@ void say(const SearchContext& context, Diagnosis& out) {
                          ? "Go on with the improved parameters and the effect file."
                          : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
 }
+
+namespace {
 
 /// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
 /// the drive that a log should reach. \param gap_shrink  on the hold-out log; NaN without one
@@ -287,6 +307,10 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     trace.usable.resize(holdout->rows(), n);
     for (Index j = 0; j < n; ++j) trace.usable.col(j) = holdout->usable[static_cast<std::size_t>(j)];
     out.traces.push_back(std::move(trace));
+    for (Index j = 0; j < n; ++j) {
+      out.drives[static_cast<std::size_t>(j)].rms_holdout = proof->rms_before(j);
+      out.drives[static_cast<std::size_t>(j)].floor_holdout = proof->floor(j);
+    }
     std::vector<int> touched;
     for (NamedEffect& one : out.named) {
       double before = 0, after = 0, floor = 0;
@@ -397,7 +421,6 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     // A candidate that does not suffice is shown, not added.
     for (NamedEffect& one : out.named) one.why = "does not explain enough";
   }
-  say(context, out);
 }
 
 }  // namespace deltadyn::detail

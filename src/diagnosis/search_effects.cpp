@@ -349,7 +349,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
         search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
       fit = *best;
     }
-    fit.effect.amplitude_std = amplitude_std(context, beside, fit);
+    set_uncertainty(context, beside, fit);
     found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, beside, fit));
     found.accepted[k] = search.accept(fit);
     found.fits[k] = std::move(fit);

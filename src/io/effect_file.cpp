@@ -63,8 +63,8 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
 std::vector<Effect> read_effects(const std::string& path, const RobotDescription& robot) {
   const int version = version_of(path);
   if (version != -1 && version != kEffectFileVersion) {
-    throw Error(fmt::format("the effect file is of version {}, this program reads version {}", version, kEffectFileVersion), path,
-                "run delta-diagnose again with --effects-out to write it anew");
+    throw Error(fmt::format("the effect file is of version {}, this program reads version {}", version, kEffectFileVersion),
+                place(path, 1), "run delta-diagnose again with --effects-out to write it anew");
   }
   std::vector<Effect> effects;
   std::map<std::pair<EffectId, int>, std::size_t> known;

@@ -80,7 +80,7 @@ PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::st
   plot.x_label = x_label;
   plot.y_label = "mean residual [" + torque_unit(robot, drive) + "]";
   plot.height = 230;
-  Series before{"model as it is, with standard error", bins.x, bins.before, SeriesStyle::errorbars};
+  Series before{"model fitted to these logs, with standard error", bins.x, bins.before, SeriesStyle::errorbars};
   before.y_error = bins.error;
   before.color = PlotColor::vermillion;
   plot.series.push_back(before);
@@ -93,17 +93,17 @@ PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::st
   return plot;
 }
 
-/// The drives worth a picture: those with structure, or else all of them in one.
+/// The drives worth a picture: those that a named effect reaches or that have structure, or else all.
 std::vector<int> drives_to_show(const Diagnosis& d) {
-  std::vector<int> out;
+  std::vector<int> out, all;
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
     const bool reached = std::any_of(d.named.begin(), d.named.end(), [j](const NamedEffect& one) {
       return std::count(one.drives.begin(), one.drives.end(), static_cast<int>(j)) > 0;
     });
+    all.push_back(static_cast<int>(j));
     if (reached || (d.named.empty() && d.drives[j].structure > 0.1)) out.push_back(static_cast<int>(j));
   }
-  if (out.empty() && !d.drives.empty()) out.push_back(0);
-  return out;
+  return out.empty() ? all : out;
 }
 
 VectorXd thinned(const VectorXd& x, Index step) {
@@ -115,14 +115,18 @@ VectorXd thinned(const VectorXd& x, Index step) {
 void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
-      "For each drive: what the model leaves of the torque on the training logs, beside the noise floor: what would be left if "
-      "anything that depends on the motion were known. Rows near velocity reversals are left out.");
+      "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model fitted to "
+      "these "
+      "logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were known. "
+      "Rows near "
+      "velocity reversals are left out. All that follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
-               {"residual", Align::right},
+               {"parameters as given", Align::right},
+               {"fitted", Align::right},
                {"noise floor", Align::right},
                {"share of the residual that follows the motion", Align::right},
                {"chance of that by noise", Align::right},
-               {"follows", Align::left}});
+               {"residual follows", Align::left}});
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
     const DriveFit& drive = d.drives[j];
     const std::string unit = torque_unit(robot, static_cast<int>(j));
@@ -130,8 +134,8 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     std::string follows;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, drive.follows.size()) && !fits; ++k)
       follows += (k > 0 ? ", " : "") + drive.follows[k].first;
-    table.row({std::to_string(j + 1), format_number(drive.rms, unit, 3), format_number(drive.floor, unit, 3),
-               format_percent(drive.structure), p_text(drive.p_value), follows},
+    table.row({std::to_string(j + 1), format_number(drive.rms_given, unit, 3), format_number(drive.rms, unit, 3),
+               format_number(drive.floor, unit, 3), format_percent(drive.structure), p_text(drive.p_value), follows},
               fits ? Tone::plain : Tone::caution);
   }
   report.table(table);
@@ -140,8 +144,9 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
-      "Mean residual of the training logs over speed, position and time of the drives concerned. Noise alone stays within "
-      "the bars around zero; a curve is physics that the model lacks.");
+      "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is right, two "
+      "of "
+      "three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
     const std::string name = "drive " + std::to_string(j + 1), unit = position_unit(robot, j);
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
@@ -214,7 +219,7 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     const EffectKind& kind = effect_kind(one.effect.id);
     report.subheading(one.name + " at " + one.joint);
     report.paragraph("In words: " + kind.meaning + ". It acts at " + one.region + ".");
-    Table table({{"parameter", Align::left}, {"value", Align::right}, {"95 % interval", Align::right}});
+    Table table({{"parameter", Align::left}, {"value ± standard deviation", Align::right}, {"95 % interval", Align::right}});
     for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
       const auto at = static_cast<Index>(k);
       const std::string unit = pretty_unit(effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
@@ -225,9 +230,20 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     }
     for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
       const std::string unit = pretty_unit(effect_unit(kind.shapes[k].unit, one.effect.joint, robot.description()));
-      table.row({kind.shapes[k].name, format_number(one.effect.shape(static_cast<Index>(k)), unit), "shape, fitted along"});
+      const auto at = static_cast<Index>(k);
+      const double value = one.effect.shape(at), std = one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan("");
+      if (std::isfinite(std)) {
+        table.row({kind.shapes[k].name, format_with_uncertainty(value, std, unit),
+                   format_interval(value - 1.96 * std, value + 1.96 * std, unit)});
+      } else {
+        table.row({kind.shapes[k].name, format_number(value, unit), "the best of a few choices"});
+      }
     }
     report.table(table);
+    report.note(
+        "The intervals hold what the noise leaves open, and 1 % of the size, or 3 % for laws of friction and springs, as no "
+        "machine "
+        "follows the catalogue's law exactly.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.", p_text(one.p_value),
                             format_percent(one.explained_share)));
     if (one.confusable.empty()) {
@@ -256,8 +272,16 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
                  format_number(one.rms_floor, unit, 3)});
     }
     report.table(table, "Root mean square residual of the drives that the effect reaches, on " + held->file + ".");
-    report.paragraph(fmt::format("Of the gap between model and floor, {} is closed (95 % interval {} to {}).",
-                                 format_percent(d.gap_shrink), format_percent(d.gap_low), format_percent(d.gap_high)));
+    report.paragraph(fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
+                                 100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
+  } else {
+    Table table({{"drive", Align::left}, {"residual", Align::right}, {"floor", Align::right}});
+    for (std::size_t j = 0; j < d.drives.size(); ++j) {
+      const std::string unit = torque_unit(robot, static_cast<int>(j));
+      table.row({std::to_string(j + 1), format_number(d.drives[j].rms_holdout, unit, 3),
+                 format_number(d.drives[j].floor_holdout, unit, 3)});
+    }
+    report.table(table, "Root mean square residual of the model fitted to the training logs, on " + held->file + ".");
   }
   for (const int j : drives_to_show(d)) {
     const Index step = std::max<Index>(1, held->t_s.size() / kMostPoints);
@@ -268,12 +292,15 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     torque.y_label = "torque [" + torque_unit(robot, j) + "]";
     torque.height = 240;
     torque.series.push_back({"measured", t, thinned(held->torque.col(j), step)});
-    torque.series.push_back({"model before", t, thinned(held->torque.col(j) - held->before.col(j), step)});
-    torque.series.push_back({"model after", t, thinned(held->torque.col(j) - held->after.col(j), step)});
+    const bool changed = !d.named.empty();
+    torque.series.push_back({changed ? "model before" : "model", t, thinned(held->torque.col(j) - held->before.col(j), step)});
     torque.series[0].color = PlotColor::grey;
     torque.series[1].color = PlotColor::vermillion;
-    torque.series[2].color = PlotColor::blue;
-    torque.series[2].dashed = true;
+    if (changed) {
+      torque.series.push_back({"model after", t, thinned(held->torque.col(j) - held->after.col(j), step)});
+      torque.series[2].color = PlotColor::blue;
+      torque.series[2].dashed = true;
+    }
     PlotSpec residual;
     residual.title = fmt::format("Drive {}: residual", j + 1);
     residual.x_label = "time [s]";
@@ -283,10 +310,12 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     for (Index k = 0; k < before.size(); ++k) {
       if (!held->usable(k, j)) before(k) = after(k) = std::nan("");  // near reversals nothing is claimed
     }
-    residual.series.push_back({"before", t, thinned(before, step)});
-    residual.series.push_back({"after", t, thinned(after, step)});
+    residual.series.push_back({changed ? "before" : "model", t, thinned(before, step)});
     residual.series[0].color = PlotColor::vermillion;
-    residual.series[1].color = PlotColor::blue;
+    if (changed) {
+      residual.series.push_back({"after", t, thinned(after, step)});
+      residual.series[1].color = PlotColor::blue;
+    }
     report.plot({torque, residual});
   }
 }
@@ -301,10 +330,10 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   std::vector<KeyFigure> figures = {{"verdict", verdict_name(d.verdict)}};
   if (!d.named.empty()) {
     figures.push_back({"effect", d.named.front().name, "at " + d.named.front().joint});
-    figures.push_back({"chance of a false name", p_text(d.named.front().p_value)});
+    figures.push_back({"chance of so strong a sign on clean logs", p_text(d.named.front().p_value)});
     if (std::isfinite(d.gap_shrink)) {
-      figures.push_back({"gap closed on the hold-out log", format_percent(d.gap_shrink),
-                         format_percent(d.gap_low, 2) + " to " + format_percent(d.gap_high, 2)});
+      figures.push_back({"gap closed on the hold-out log", fmt::format("{:.1f} %", 100 * d.gap_shrink),
+                         fmt::format("{:.1f} to {:.1f} %", 100 * d.gap_low, 100 * d.gap_high)});
     }
   }
   report.key_figures(figures);
@@ -320,10 +349,15 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   if (!d.notes.empty()) report.list(d.notes);
   report.heading("How this was done");
   std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
-  for (const DiagnosisTrace& trace : d.traces) facts.emplace_back(trace.holdout ? "hold-out log" : "training log", trace.file);
-  facts.emplace_back("cut-off of the motion", format_number(d.cutoff_hz, "Hz"));
-  facts.emplace_back("simulated clean logs", std::to_string(d.null_runs));
-  facts.emplace_back("share of the residual that encoder noise makes", format_percent(d.encoder_share));
+  for (const std::string& file : context.log_files) facts.emplace_back("training log", file);
+  for (const DiagnosisTrace& trace : d.traces) {
+    if (trace.holdout) facts.emplace_back("hold-out log", trace.file);
+  }
+  if (!d.drives.empty()) {
+    facts.emplace_back("cut-off of the motion", format_number(d.cutoff_hz, "Hz"));
+    facts.emplace_back("simulated clean logs", std::to_string(d.null_runs));
+    facts.emplace_back("share of the residual that encoder noise makes", format_percent(d.encoder_share));
+  }
   facts.emplace_back("time", format_duration(d.total_time_s));
   report.facts(facts);
   report.footer(context.command_line);

@@ -462,7 +462,7 @@ std::string effect_unit(const std::string& unit, int joint, const RobotDescripti
 std::string effect_shape_text(const Effect& effect, const RobotDescription& robot) {
   const EffectKind& kind = effect_kind(effect.id);
   std::string text;
-  for (std::size_t k = 0; k < kind.shapes.size() && static_cast<Eigen::Index>(k) < effect.shape.size(); ++k) {
+  for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size() && static_cast<Eigen::Index>(k) < effect.shape.size(); ++k) {
     const std::string unit = effect_unit(kind.shapes[k].unit, effect.joint, robot);
     text += fmt::format("{}{}={:.4g}{}", text.empty() ? "" : "; ", kind.shapes[k].name,
                         effect.shape(static_cast<Eigen::Index>(k)), unit.empty() ? "" : " " + unit);

@@ -47,9 +47,18 @@ class Diagnosing : public VirtualRobot {
 
 TEST_F(Diagnosing, NothingIsMissingWhereNothingIsHidden) {
   record_all({});
-  succeed(diagnose("truth.csv"));
+  const std::string off = "the parameters are off";
+  EXPECT_EQ(succeed(diagnose("truth.csv")).out.find(off), std::string::npos);
   EXPECT_EQ(summary().at("verdict"), "nothing-missing");
   EXPECT_EQ(summary().at("effect"), "");
+
+  ParameterTable table = read_parameters(path("truth.csv"));
+  for (ParameterEntry& entry : table.entries) {
+    if (entry.name == "drive2.coulomb") entry.value *= 2;
+  }
+  write_parameters(path("off.csv"), table);
+  EXPECT_NE(succeed(diagnose("off.csv")).out.find(off + ": at drive 2"), std::string::npos);
+  EXPECT_EQ(summary().at("verdict"), "nothing-missing");
 }
 
 TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
