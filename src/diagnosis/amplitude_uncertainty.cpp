@@ -17,6 +17,7 @@ constexpr double kBlock_s = 0.25;    // longer than any memory that counts as no
 constexpr double kLeastBlocks = 12;  // from which blocks say anything about the noise
 constexpr double kExactForm = 0.01;  // of an amplitude, standard deviation that the parameters behind its column leave ...
 constexpr double kLawForm = 0.03;    // ... and the same where the machine's law is another than the catalogue's
+constexpr double kLoadForm = 0.06;   // ... and where the load is the model's, not what the gear passes on
 
 /// What no residual tells: how far an amplitude is off because the column is not quite what the machine does. The shares are those of
 /// hidden effects that were made in other forms than the catalogue's.
@@ -28,8 +29,9 @@ double form_share(EffectId id) {
     case EffectId::limb_inertia_mismatch:
     case EffectId::payload:
     case EffectId::base_tilt:
-    case EffectId::torque_constant_error:
-    case EffectId::time_skew: return kExactForm;
+    case EffectId::torque_constant_error: return kExactForm;
+    case EffectId::load_dependent_friction:
+    case EffectId::directional_efficiency: return kLoadForm;
     default: return kLawForm;
   }
 }

@@ -241,9 +241,9 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     }
     report.table(table);
     report.note(
-        "The intervals hold what the noise leaves open, and 1 % of the size, or 3 % for laws of friction and springs, as no "
-        "machine "
-        "follows the catalogue's law exactly.");
+        "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a standard "
+        "deviation of 1 % of "
+        "the size, 3 % for laws of friction and springs, 6 % for losses that grow with the load.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.", p_text(one.p_value),
                             format_percent(one.explained_share)));
     if (one.confusable.empty()) {
