@@ -64,9 +64,9 @@ struct ConsideredEffect {
 
 /// How one drive fits.
 struct DriveFit {
-  double rms = 0, rms_after = 0,
-         floor = 0;      ///< on the training logs: base model fitted to them, with the named effects, no model can do better
-  double rms_given = 0;  ///< of the model as the user gave it, not fitted to these logs
+  /// On the training logs: base model fitted to them, with the named effects, no model can do better.
+  double rms = 0, rms_after = 0, floor = 0;
+  double rms_given = 0;                                 ///< of the model as the user gave it, not fitted to these logs
   double rms_holdout = 0, floor_holdout = 0;            ///< of the fitted base model on the hold-out log; 0 without one
   double structure = 0;                                 ///< share of the base model's residual variance that follows the motion
   double p_value = 1, p_left = 1;                       ///< of the structure: before, and beside the named effects
