@@ -140,7 +140,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     out.traces.push_back(std::move(trace));
   }
   for (const WhiteSegment& segment : found.before.problem->segments)
-    white_rows[segment.drive] += static_cast<double>(segment.rows());
+    white_rows[segment.drive] += static_cast<double>(segment.whitener.freedom());
   for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
     const auto at = static_cast<Index>(j);
     DriveFit drive;

@@ -151,7 +151,7 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
 }
 
 double EffectSearch::worth(std::size_t hypothesis, double gain, const State& state) const {
-  return gain - hypotheses_[hypothesis].freedom() * std::log(static_cast<double>(state.problem->rows));
+  return gain - hypotheses_[hypothesis].freedom() * std::log(static_cast<double>(state.problem->freedom));
 }
 
 Fit EffectSearch::refine(const State& state, std::size_t h) const {

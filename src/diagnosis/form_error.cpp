@@ -9,13 +9,15 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kHere = 0.12;       // of a plain effect's gain: what the catalogue's form may leave of the true one
-constexpr double kElsewhere = 0.03;  // the same for what that form leaves at another place ...
-constexpr double kOther = 0.01;      // ... for effects of another class there ...
-constexpr double kAnywhere = 1e-4;   // ... and for any effect, as the parameters carry such errors to all drives
-constexpr double kLeftOver = 0.2;    // of the structure: an effect that leaves less is no error of form ...
-constexpr double kFarMore = 3.0;     // ... nor one that gains so many times what the best of any other class does
-constexpr double kReached = 0.05;    // of an effect's squares: a drive with less is not reached
+constexpr double kHere = 0.12;        // of a plain effect's gain: what the catalogue's form may leave of the true one
+constexpr double kAsGoodHere = 0.06;  // the same if another effect at that place would do as well as the one in question
+constexpr double kElsewhere = 0.03;   // the same for what that form leaves at another place ...
+constexpr double kOther = 0.01;       // ... for effects of another class there ...
+constexpr double kAnywhere = 1e-4;    // ... and for any effect, as the parameters carry such errors to all drives
+constexpr double kLeftOver = 0.2;     // of the structure: an effect that leaves less is no error of form ...
+constexpr double kFarMore = 3.0;      // ... nor one that gains so many times what the best of any other class does
+constexpr double kAsGood = 0.9;       // share of a gain from which an effect at the earlier one's place would do as well
+constexpr double kReached = 0.05;     // of an effect's squares: a drive with less is not reached
 
 }  // namespace
 
@@ -49,6 +51,14 @@ bool FormErrors::stands_out(const Fit& fit) {
   return structure_of(left) < kLeftOver * structure_;
 }
 
+double FormErrors::best_at(int joint) const {
+  double best = 0;
+  for (std::size_t h = 0; h < context_.search.hypotheses().size(); ++h) {
+    if (context_.search.hypotheses()[h].joint == joint) best = std::max(best, state_.scores[h].gain);
+  }
+  return best;
+}
+
 bool FormErrors::explain(const Fit& fit) {
   const VectorXd own = squares_by_drive(context_, *state_.problem, fit);
   // A second effect of a class may be the first one at the wrong place.
@@ -65,8 +75,10 @@ bool FormErrors::explain(const Fit& fit) {
     }
     const double share = shared / std::max(theirs.sum(), 1e-300);
     const bool alike = class_of(fit) == class_of(earlier);
-    const bool here = fit.effect.joint == earlier.effect.joint && (fit.effect.joint >= 0 || alike);
-    const double form = here ? kHere : alike ? kElsewhere : kOther;
+    const bool same_place = fit.effect.joint == earlier.effect.joint && (fit.effect.joint >= 0 || alike);
+    const bool as_good = !same_place && earlier.effect.joint >= 0 && best_at(earlier.effect.joint) > kAsGood * fit.gain;
+    const bool here = same_place || as_good;
+    const double form = same_place ? kHere : as_good ? kAsGoodHere : alike ? kElsewhere : kOther;
     if (fit.gain < kAnywhere * earlier.gain) return true;
     if (fit.gain >= form * share * earlier.gain) continue;
     if (here || class_is_there || !stands_out(fit)) return true;

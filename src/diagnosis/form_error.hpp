@@ -21,6 +21,8 @@ class FormErrors {
   [[nodiscard]] bool explain(const Fit& fit);
 
  private:
+  /// Largest gain of an effect at a joint.
+  [[nodiscard]] double best_at(int joint) const;
   /// An error of form looks like several effects and like none of them well: an effect takes nearly all structure that the generic
   /// basis still sees, or gains far more than any other class.
   [[nodiscard]] bool stands_out(const Fit& fit);

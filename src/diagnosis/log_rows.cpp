@@ -44,6 +44,8 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
   out.t_s.resize(from.rows);
   for (MatrixXd* m : {&out.q, &out.qd, &out.qdd}) m->resize(from.rows, n);
   out.usable.assign(static_cast<std::size_t>(n), RowMask::Constant(from.rows, true));
+  out.present = out.usable;
+  for (Index j = 0; j < n; ++j) out.unknown.push_back(unknown_torque(from, j, out.present[static_cast<std::size_t>(j)]));
   const Index reach = from.low_pass ? from.low_pass->half_width() : 0;
   for (Index row = 0; row < from.rows; ++row) {
     const Index centre = sample_of_row(from, row);
@@ -55,6 +57,7 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
     const bool filled = !from.filled.empty() && std::any_of(from.filled.begin() + first, from.filled.begin() + first + count,
                                                             [](char c) { return c != 0; });
     for (Index j = 0; j < n; ++j) {
+      if (filled) out.present[static_cast<std::size_t>(j)](row) = false;
       if (filled || from.reversal.col(j).segment(first, count).any()) out.usable[static_cast<std::size_t>(j)](row) = false;
     }
   }

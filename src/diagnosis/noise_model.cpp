@@ -1,13 +1,11 @@
 #include "deltadyn/diagnosis/noise_model.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 namespace deltadyn {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -141,81 +139,6 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
   }
   if (innovations > 0) best.std = std::max(std::sqrt(sum / innovations), 1e-300);
   return best;
-}
-
-Whitener::Whitener(const NoiseModel& noise, const RowMask& usable) : noise_(noise), usable_(usable) {
-  const Index N = usable.size();
-  const Index p = noise.order();
-  Index last_gap = -p - 1;  // latest unusable row so far
-  Index t = p;
-  for (Index k = 0; k < std::min(p, N); ++k) {
-    if (!usable(k)) last_gap = k;
-  }
-  while (t < N) {
-    if (!usable(t)) last_gap = t;
-    if (t - last_gap > p) {
-      plain_.push_back(t);
-      plain_out_.push_back(static_cast<Index>(source_.size()));
-      source_.push_back(t);
-      ++t;
-      continue;
-    }
-    // All innovations that see an unknown row, until the memory is clean again.
-    const Index first = t;
-    while (t < N) {
-      if (!usable(t)) last_gap = t;
-      if (t - last_gap > p) break;
-      ++t;
-    }
-    const Index length = t - first;
-    std::vector<Index> unknown;
-    for (Index k = first - p; k < t; ++k) {
-      if (!usable(k)) unknown.push_back(k);
-    }
-    if (static_cast<Index>(unknown.size()) >= length) continue;
-    MatrixXd U = MatrixXd::Zero(length, static_cast<Index>(unknown.size()));
-    for (std::size_t c = 0; c < unknown.size(); ++c) {
-      for (Index k = 0; k <= p; ++k) {
-        const Index row = unknown[c] + k - first;
-        if (row >= 0 && row < length) U(row, static_cast<Index>(c)) = k == 0 ? 1.0 : -noise.ar(k - 1);
-      }
-    }
-    const Eigen::HouseholderQR<MatrixXd> qr(U);
-    const Index kept = length - U.cols();
-    const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(length, length).rightCols(kept);
-    clusters_.push_back({first, static_cast<Index>(source_.size()), Q});
-    // For maps: the usable rows of the cluster, as many as there are white rows.
-    std::vector<Index> near;
-    for (Index k = first; k < t; ++k) {
-      if (usable(k)) near.push_back(k);
-    }
-    for (Index k = 0; k < kept; ++k) {
-      source_.push_back(near.empty() ? first
-                                     : near[static_cast<std::size_t>(std::min<Index>(k, static_cast<Index>(near.size()) - 1))]);
-    }
-  }
-}
-
-MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
-  const Index p = noise_.order();
-  const double scale = 1.0 / noise_.std;
-  MatrixXd out(rows(), x.cols());
-  VectorXd known(x.rows()), innovation(x.rows());
-  for (Index c = 0; c < x.cols(); ++c) {
-    known = usable_.select(x.col(c).array(), 0.0);
-    innovation.setZero();
-    if (x.rows() > p) {
-      innovation.tail(x.rows() - p) = known.tail(x.rows() - p);
-      for (Index k = 0; k < p; ++k) innovation.tail(x.rows() - p) -= noise_.ar(k) * known.segment(p - 1 - k, x.rows() - p);
-      innovation *= scale;
-    }
-    for (std::size_t k = 0; k < plain_.size(); ++k) out(plain_out_[k], c) = innovation(plain_[k]);
-    for (const Cluster& cluster : clusters_) {
-      out.col(c).segment(cluster.out, cluster.Z.cols()).noalias() =
-          cluster.Z.transpose() * innovation.segment(cluster.first, cluster.Z.rows());
-    }
-  }
-  return out;
 }
 
 }  // namespace deltadyn

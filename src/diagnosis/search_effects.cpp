@@ -239,7 +239,7 @@ bool counts(const SearchContext& context, const SearchResult& found, const Effec
 }  // namespace
 
 double rows_per_drive(const SearchContext& context, const WhiteProblem& problem) {
-  return static_cast<double>(problem.rows) / static_cast<double>(context.logs.front().usable.size());
+  return static_cast<double>(problem.freedom) / static_cast<double>(context.logs.front().usable.size());
 }
 
 SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier) {

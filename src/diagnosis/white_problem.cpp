@@ -71,8 +71,9 @@ WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDriv
                            const PerLogAndDrive<MatrixXd>& extra) {
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (std::size_t j = 0; j < logs[l].usable.size(); ++j) {
-      WhiteSegment segment{l, j, rows, Whitener(noise[l][j], logs[l].usable[j])};
+      WhiteSegment segment{l, j, rows, Whitener(noise[l][j], logs[l].present[j], logs[l].unknown[j])};
       rows += segment.rows();
+      freedom += segment.whitener.freedom();
       segments.push_back(std::move(segment));
     }
   }

@@ -25,7 +25,8 @@ std::vector<LogRows> one_log(const VectorXd& more) {
   log.qdd = (-2.205 * (2.1 * log.t_s.array()).sin()).matrix();
   log.Y = {log.qdd};
   log.tau = 2 * log.qdd + more;
-  log.usable = {RowMask::Constant(kRows, true)};
+  log.usable = log.present = {RowMask::Constant(kRows, true)};
+  log.unknown.resize(1);
   return {log};
 }
 

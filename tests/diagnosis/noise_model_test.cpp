@@ -36,32 +36,5 @@ TEST(NoiseModel, TakesWhiteNoiseAsWhite) {
   EXPECT_LE(fit_noise_model(e, RowMask::Constant(e.size(), true)).order(), 1);
 }
 
-TEST(Whitener, MakesWhiteRowsAroundGapsAndLosesNoUsableRow) {
-  const VectorXd ar = VectorXd::Constant(1, 0.95);
-  RowMask usable = RowMask::Constant(4000, true);
-  for (Eigen::Index t = 50; t + 30 < usable.size(); t += 100) usable.segment(t, 20).setConstant(false);
-  NoiseModel model;
-  model.ar = ar;
-  const Whitener whitener(model, usable);
-  EXPECT_GE(whitener.rows(), usable.count() - 1);
-  const VectorXd white = whitener.apply(autoregression(ar, 4000, 3));
-  EXPECT_NEAR(white.squaredNorm() / static_cast<double>(white.size()), 1.0, 0.08);
-  const Eigen::Index n = white.size();
-  EXPECT_NEAR(white.head(n - 1).dot(white.tail(n - 1)) / white.squaredNorm(), 0.0, 0.06);
-}
-
-TEST(Whitener, DoesNotCareWhatStandsInAGap) {
-  RowMask usable = RowMask::Constant(300, true);
-  usable.segment(100, 25).setConstant(false);
-  NoiseModel model;
-  model.ar = Eigen::Vector2d(1.2, -0.4);
-  model.std = 0.5;
-  const Whitener whitener(model, usable);
-  const VectorXd e = autoregression(model.ar, 300, 4);
-  VectorXd other = e;
-  other.segment(100, 25).setConstant(1e6);
-  EXPECT_LT((whitener.apply(e) - whitener.apply(other)).norm(), 1e-6);
-}
-
 }  // namespace
 }  // namespace deltadyn

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltadyn/diagnosis/noise_model.hpp"
+#include "deltadyn/diagnosis/unknown_torque.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 
@@ -18,9 +19,11 @@ struct LogRows {
   int number = 1;                  ///< among the training logs, from 1
   std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x base parameters (and further columns, see append)
   Eigen::MatrixXd tau;             ///< rows x drives
-  std::vector<RowMask> usable;     ///< for each drive: rows that count (no reversal, no repaired sample in reach)
-  Eigen::VectorXd t_s;             ///< of the rows' samples
-  Eigen::MatrixXd q, qd, qdd;      ///< rows x drives
+  std::vector<RowMask> usable;     ///< for each drive: rows with no reversal and no repaired sample in reach
+  std::vector<RowMask> present;    ///< for each drive: rows of which something is known, in all directions but the unknown ones
+  std::vector<std::vector<UnknownTorque>> unknown;  ///< for each drive: what reversals add to the rows that are present
+  Eigen::VectorXd t_s;                              ///< of the rows' samples
+  Eigen::MatrixXd q, qd, qdd;                       ///< rows x drives
   EffectSignals signals;
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }

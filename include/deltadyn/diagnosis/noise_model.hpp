@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Correlated noise of a torque residual as an autoregression, and the filter that turns it white over rows with gaps.
+/// Correlated noise of a torque residual as an autoregression.
 /// Without it, on noise with a correlation of 0.9, a test "finds" an effect in every clean log (diagnosis page, step 3).
 
 #include <Eigen/Core>
@@ -31,33 +31,5 @@ struct NoiseModel {
 /// The same noise with white noise beside it, `share` of its variance: no band then counts as free of noise, where the smallest error
 /// of the model would look certain.
 [[nodiscard]] NoiseModel with_white_share(const NoiseModel& noise, double share);
-
-/// Linear map from a series with gaps to white, unit-variance rows. Rows that are not usable count as unknown: the map leaves
-/// them out exactly (generalised least squares with missing rows), so no usable row is lost beside a gap.
-class Whitener {
- public:
-  Whitener() = default;
-  Whitener(const NoiseModel& noise, const RowMask& usable);
-
-  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(source_.size()); }
-  /// \param x  one row a row of the log, any number of columns; what stands in unusable rows does not matter
-  [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
-  /// Row of the log that each white row stands for (for maps of the residual).
-  [[nodiscard]] const std::vector<Eigen::Index>& source() const { return source_; }
-
- private:
-  /// Rows [first, first + Z.rows()) of the innovation whose unknowns Z^T takes out.
-  struct Cluster {
-    Eigen::Index first, out;
-    Eigen::MatrixXd Z;
-  };
-
-  NoiseModel noise_;
-  RowMask usable_;
-  std::vector<Eigen::Index> plain_;      ///< rows whose whole memory is usable
-  std::vector<Eigen::Index> plain_out_;  ///< where they go
-  std::vector<Cluster> clusters_;
-  std::vector<Eigen::Index> source_;
-};
 
 }  // namespace deltadyn

@@ -10,6 +10,7 @@
 #include "deltadyn/diagnosis/hypothesis.hpp"
 #include "deltadyn/diagnosis/log_rows.hpp"
 #include "deltadyn/diagnosis/noise_model.hpp"
+#include "deltadyn/diagnosis/whitener.hpp"
 
 namespace deltadyn {
 
@@ -59,10 +60,11 @@ class WhiteProblem {
 
   std::vector<WhiteSegment> segments;
   Eigen::Index rows = 0;
-  Eigen::MatrixXd X;     ///< white regressor
-  Eigen::MatrixXd Q;     ///< orthonormal basis of its columns: rows x rank
-  Eigen::VectorXd y, r;  ///< white torque, and its part orthogonal to Q
-  Eigen::VectorXd beta;  ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  Eigen::Index freedom = 0;  ///< rows less the directions that nothing is known of
+  Eigen::MatrixXd X;         ///< white regressor
+  Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
+  Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
+  Eigen::VectorXd beta;      ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
 };
 
 /// Best amplitudes of k columns under sign constraints.

@@ -1,0 +1,44 @@
+#pragma once
+
+/// \file
+/// The filter that turns a torque residual white, over rows that are missing or partly unknown.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deltadyn/diagnosis/noise_model.hpp"
+#include "deltadyn/diagnosis/unknown_torque.hpp"
+
+namespace deltadyn {
+
+/// Linear map from a series to white, unit-variance rows that does not see what is unknown: rows that are not present, and the
+/// directions of unknown torque. They are projected out of the innovations, which is generalised least squares with them as free
+/// parameters (Frisch and Waugh 1933): inner products of two mapped series are those of the parts that can be known.
+class Whitener {
+ public:
+  Whitener() = default;
+  Whitener(const NoiseModel& noise, const RowMask& present, const std::vector<UnknownTorque>& unknown = {});
+
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(source_.size()); }
+  /// Rows less the unknown directions: what a sum of squares of noise comes to.
+  [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
+  /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not matter
+  [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  /// Row of the log that each white row stands for (for maps of the residual).
+  [[nodiscard]] const std::vector<Eigen::Index>& source() const { return source_; }
+
+ private:
+  /// Orthonormal directions of the innovations of rows [first, first + basis.rows()) that are taken out.
+  struct Cluster {
+    Eigen::Index first;
+    Eigen::MatrixXd basis;
+  };
+
+  NoiseModel noise_;
+  RowMask present_;
+  std::vector<Cluster> clusters_;
+  std::vector<Eigen::Index> source_;
+  Eigen::Index freedom_ = 0;
+};
+
+}  // namespace deltadyn
