@@ -12,12 +12,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kShapeStep = 0.02;  // of a shape parameter, either way
-constexpr double kBlock_s = 0.25;    // longer than any memory that counts as noise
-constexpr double kLeastBlocks = 12;  // from which blocks say anything about the noise
-constexpr double kExactForm = 0.01;  // of an amplitude, standard deviation that the parameters behind its column leave ...
-constexpr double kLawForm = 0.03;    // ... and the same where the machine's law is another than the catalogue's
-constexpr double kLoadForm = 0.06;   // ... and where the load is the model's, not what the gear passes on
+constexpr double kShapeStep = 0.02;   // of a shape parameter, either way
+constexpr double kBlock_s = 0.25;     // longer than any memory that counts as noise
+constexpr double kLeastBlocks = 12;   // from which blocks say anything about the noise
+constexpr double kExactForm = 0.01;   // of an amplitude, standard deviation that the parameters behind its column leave ...
+constexpr double kLawForm = 0.03;     // ... and the same where the machine's law is another than the catalogue's
+constexpr double kLoadForm = 0.06;    // ... and where the load is the model's, not what the gear passes on
+constexpr double kFirstOrder = 0.15;  // ... and where the column is the first term of a series
 
 /// What no residual tells: how far an amplitude is off because the column is not quite what the machine does. The shares are those of
 /// hidden effects that were made in other forms than the catalogue's.
@@ -32,6 +33,7 @@ double form_share(EffectId id) {
     case EffectId::torque_constant_error: return kExactForm;
     case EffectId::load_dependent_friction:
     case EffectId::directional_efficiency: return kLoadForm;
+    case EffectId::joint_elasticity: return kFirstOrder;
     default: return kLawForm;
   }
 }

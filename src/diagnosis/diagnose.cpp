@@ -52,15 +52,14 @@ constexpr double kPassOverMotion = 0.6;  // low pass of regressor and torque, no
 constexpr double kGoodScore = 1.03;
 constexpr double kLeastCutoff_hz = 20;      // below, nothing of a reversal would be left out but everything
 constexpr double kMostCutoff_hz = 25;       // above, encoder noise in the accelerations outweighs what is gained beside reversals
-constexpr double kWideCutoff_hz = 40;       // the same where reversals are so many that little else is left
-constexpr double kLeastUsable = 0.1;        // share of a drive's rows that every log must keep, else the band is made wider
 constexpr double kSettled = 0.1;            // change of an amplitude that least squares without noise model may make
 constexpr double kRestFloor = 0.03;         // share of a log's largest rate below which friction is that of rest
 constexpr double kRestOfAll = 0.03;         // share of the largest rate in all logs for which the same holds ...
 constexpr double kMostRest = 0.12;          // ... but no more than this share of a slow log's own, which must show something
 constexpr int kMostPasses = 3;              // of the search with parameters that are better each time ...
 constexpr double kSameSize = 0.003;         // ... until no amplitude changes by more than this share
-constexpr double kFewestRowsPerBase = 4.0;  // usable rows of a drive in units of base parameters a drive
+constexpr double kUsualNoise = 0.01;        // of a drive's torque
+constexpr double kFewestRowsPerBase = 4.0;  // rows of a drive in units of base parameters a drive
 
 bool same_log(const Log& a, const Log& b) {
   if (a.samples() != b.samples() || a.q.cols() != b.q.cols()) return false;
@@ -106,23 +105,20 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
   return out;
 }
 
-/// Usable rows of the drive that has fewest in all logs, and the smallest share that a log keeps of one drive's rows: a fast log that
-/// is nearly gone leaves a fit of the slow one.
-struct UsableRows {
-  double rows = 1e12, share = 1;
-};
-UsableRows fewest_usable(const std::vector<LogRows>& logs) {
-  UsableRows out;
+/// Rows of the drive of which least is known in all logs, less the directions that reversals take.
+double fewest_rows(const std::vector<LogRows>& logs) {
+  double fewest = 1e12;
   for (std::size_t j = 0; j < logs.front().usable.size(); ++j) {
     double rows = 0;
     for (const LogRows& log : logs) {
-      const auto usable = static_cast<double>(log.usable[j].count());
-      rows += usable;
-      out.share = std::min(out.share, usable / static_cast<double>(std::max<Index>(1, log.rows())));
+      const auto tau = log.tau.col(static_cast<Index>(j));
+      NoiseModel noise;
+      noise.std = std::max(kUsualNoise * std::sqrt(tau.squaredNorm() / static_cast<double>(tau.size())), 1e-12);
+      rows += static_cast<double>(Whitener(noise, log.present[j], log.unknown[j]).freedom());
     }
-    out.rows = std::min(out.rows, rows);
+    fewest = std::min(fewest, rows);
   }
-  return out;
+  return fewest;
 }
 
 /// Rates of the joints that have friction, samples x joints.
@@ -241,23 +237,17 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     const double widest_hz =
         options.choose_cutoff ? widest_good_cutoff_hz(scan_cutoffs(robot, logs, wanted, options.threads)) : wanted.cutoff_hz;
     report(0.05);
-    // A narrow band has less encoder noise, but every reversal takes more rows.
-    for (const double most_hz : {kMostCutoff_hz, kWideCutoff_hz}) {
-      out.cutoff_hz = options.choose_cutoff ? std::min(widest_hz, most_hz) : widest_hz;
-      processing = diagnosis_processing(logs, wanted, out.cutoff_hz);
-      std::vector<PreparedLog> ready;
-      for (const Log& log : logs) ready.push_back(prepared(robot, log, processing));
-      if (held_log) ready.push_back(prepared(robot, *held_log, processing));
-      std::vector<PreparedLog*> each;
-      for (PreparedLog& log : ready) each.push_back(&log);
-      leave_rest_out(robot, each);
-      rows.clear();
-      held.clear();
-      for (std::size_t l = 0; l < logs.size(); ++l)
-        rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
-      if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
-      if (!(widest_hz > out.cutoff_hz) || fewest_usable(rows).share > kLeastUsable) break;
-    }
+    out.cutoff_hz = options.choose_cutoff ? std::min(widest_hz, kMostCutoff_hz) : widest_hz;
+    processing = diagnosis_processing(logs, wanted, out.cutoff_hz);
+    std::vector<PreparedLog> ready;
+    for (const Log& log : logs) ready.push_back(prepared(robot, log, processing));
+    if (held_log) ready.push_back(prepared(robot, *held_log, processing));
+    std::vector<PreparedLog*> each;
+    for (PreparedLog& log : ready) each.push_back(&log);
+    leave_rest_out(robot, each);
+    for (std::size_t l = 0; l < logs.size(); ++l)
+      rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
+    if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
   } catch (const Error& error) {
     double length = 0;
     for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
@@ -268,7 +258,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   // Rows enough to fit the base model and still see something beside it?
   double length = 0;
   for (const LogRows& log : rows) length += log.t_s(log.rows() - 1) - log.t_s(0);
-  const double fewest = fewest_usable(rows).rows;
+  const double fewest = fewest_rows(rows);
   const double needed = std::max(120.0, kFewestRowsPerBase * base.count());
   if (fewest < needed) {
     detail::say_too_short(length, 1.2 * length * needed / std::max(fewest, 1.0), out);

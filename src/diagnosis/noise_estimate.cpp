@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace deltadyn {
 
@@ -17,7 +18,49 @@ constexpr double kRidge = 1e-6;  // of the generic basis, whose hats overlap
 constexpr Index kLargestOrder = 20;
 constexpr double kLongestMemory_s = 0.15;  // of what counts as noise; what is slower is drift or structure
 constexpr double kLeastWhite = 0.05;       // of the variance, white in every noise model
+constexpr double kFewUsable = 0.35;        // share of rows far from reversals, below which the others serve, too
 constexpr int kMostBlocks = 6;             // of the basis that the noise of one drive is freed of
+
+/// The rows of a drive that show its noise: those far from reversals, or, where they are few, all of them without the directions
+/// that reversals take.
+class NoiseRows {
+ public:
+  NoiseRows(const LogRows& log, std::size_t drive, double std) : rows_(log.usable[drive]) {
+    count_ = static_cast<double>(rows_.count());
+    if (count_ >= kFewUsable * static_cast<double>(rows_.size())) return;
+    NoiseModel white;
+    white.std = std;
+    all_.emplace(white, log.present[drive], log.unknown[drive]);
+    rows_ = log.present[drive];
+    count_ = static_cast<double>(all_->freedom());
+    std_ = std;
+  }
+
+  [[nodiscard]] NoiseModel noise(const VectorXd& residual, double row_s) const {
+    const double damping = std::exp(-row_s / kLongestMemory_s);
+    if (!all_) return fit_noise_model(residual, rows_, kLargestOrder, damping);
+    NoiseModel out = fit_noise_model(without_unknown(residual), rows_, kLargestOrder, damping);
+    out.std *= std::sqrt(static_cast<double>(all_->rows()) / std::max(count_, 1.0));
+    return out;
+  }
+  [[nodiscard]] double squares(const VectorXd& residual) const {
+    return rows_.select((all_ ? without_unknown(residual) : residual).array(), 0.0).square().sum();
+  }
+  /// Of independent values.
+  [[nodiscard]] double count() const { return count_; }
+
+ private:
+  [[nodiscard]] VectorXd without_unknown(const VectorXd& residual) const {
+    const VectorXd white = all_->apply(residual);
+    VectorXd out = VectorXd::Zero(residual.size());
+    for (std::size_t k = 0; k < all_->source().size(); ++k) out(all_->source()[k]) = std_ * white(static_cast<Index>(k));
+    return out;
+  }
+
+  RowMask rows_;
+  std::optional<Whitener> all_;
+  double std_ = 1, count_ = 0;
+};
 
 /// One drive in all logs: what is left of it, in rows and white, and the basis beside it.
 class DriveResidual {
@@ -33,10 +76,11 @@ class DriveResidual {
       VectorXd e = logs[l].tau.col(static_cast<Index>(drive)) - logs[l].Y[drive] * problem.beta.head(b);
       if (!extra.empty()) e -= extra[l][drive] * problem.beta.tail(problem.beta.size() - b);
       residual_.push_back(std::move(e));
-      rows_ += static_cast<double>(logs[l].usable[drive].count());
     }
     for (const WhiteSegment& segment : problem.segments) {
       if (segment.drive != drive) continue;
+      noise_rows_.emplace_back(logs[segment.log], drive, segment.whitener.noise().total_std());
+      rows_ += noise_rows_.back().count();
       const MatrixXd white = segment.whitener.apply(basis.columns[segment.log][drive]);
       gram_ += white.transpose() * white;
       inner_ += white.transpose() * problem.r.segment(segment.offset, segment.rows());
@@ -48,6 +92,7 @@ class DriveResidual {
     Index columns = 0;
     std::vector<VectorXd> residual;
     std::vector<NoiseModel> noise;
+    std::vector<double> squares;  ///< of the residual in the rows that show the noise
     double log_likelihood = 0;
   };
 
@@ -71,6 +116,7 @@ class DriveResidual {
   }
 
   [[nodiscard]] double rows() const { return rows_; }
+  [[nodiscard]] double rows(std::size_t log) const { return noise_rows_[log].count(); }
 
  private:
   [[nodiscard]] Fit fit(std::vector<std::size_t> blocks) const {
@@ -94,10 +140,9 @@ class DriveResidual {
         out.residual[l] -= basis_.columns[l][drive_](Eigen::all, chosen) * coefficients;
     }
     for (std::size_t l = 0; l < logs_.size(); ++l) {
-      const auto count = static_cast<double>(logs_[l].usable[drive_].count());
-      const double row_s = logs_[l].t_s(1) - logs_[l].t_s(0);
-      out.noise.push_back(
-          fit_noise_model(out.residual[l], logs_[l].usable[drive_], kLargestOrder, std::exp(-row_s / kLongestMemory_s)));
+      const double count = noise_rows_[l].count();
+      out.noise.push_back(noise_rows_[l].noise(out.residual[l], logs_[l].t_s(1) - logs_[l].t_s(0)));
+      out.squares.push_back(noise_rows_[l].squares(out.residual[l]));
       out.log_likelihood -= count * std::log(std::max(out.noise.back().std, 1e-300)) +
                             0.5 * static_cast<double>(out.noise.back().order()) * std::log(std::max(count, 1.0));
     }
@@ -109,6 +154,7 @@ class DriveResidual {
   const GenericBasis& basis_;
   std::size_t drive_;
   std::vector<VectorXd> residual_;
+  std::vector<NoiseRows> noise_rows_;  ///< of each log
   MatrixXd gram_;
   VectorXd inner_;
   double rows_ = 0;
@@ -149,9 +195,7 @@ NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasi
         model = fit.noise[l];
         model.std *= correction;
         model = with_white_share(model, kLeastWhite);
-        const auto count = static_cast<double>(std::max<Index>(1, logs[l].usable[j].count()));
-        out.floor_rms[l][j] =
-            correction * std::sqrt(logs[l].usable[j].select(fit.residual[l].array(), 0.0).square().sum() / count);
+        out.floor_rms[l][j] = correction * std::sqrt(fit.squares[l] / std::max(1.0, drive.rows(l)));
         const double floor = 1e-9 * std::max(logs[l].tau.col(static_cast<Index>(j)).cwiseAbs().maxCoeff(), 1e-9);
         model.std = std::max(model.std, floor);
       }

@@ -195,7 +195,7 @@ EncoderPilots::Run EncoderPilots::rows_of(const std::vector<PreparedLog>& motion
   for (std::size_t l = 0; l < logs_.size(); ++l) {
     run.Y.push_back(base_rows(model_.robot(), base_, motion[l]));
     if (which.empty()) continue;
-    const EffectSignals signals = model_.signals(motion[l], p_, false);
+    const EffectSignals signals = model_.signals(motion[l], p_, false, &logs_[l].signals);
     for (std::size_t k = 0; k < which.size(); ++k) {
       run.rows[k].push_back(hypothesis_rows(model_, logs_[l], signals, hypotheses_[which[k]]));
     }
@@ -229,6 +229,7 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
     start_.push_back(start);
     samples_.push_back(log.log.t_s.size());
     rate_hz_.push_back(log.log.rate_hz);
+    logs_.back().signals = model.signals(logs_.back().log, p, false);
     own.push_back(logs_.back().log);
   }
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {

@@ -41,6 +41,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kLag = 1e-4;   // [rad | m], as small
 constexpr double kTilt = 1e-3;  // [rad], small beside any gravity direction, large beside rounding
 
 [[noreturn]] void refuse(const PreparedLog& log, Index sample, Status status) {
@@ -99,6 +100,37 @@ std::vector<EffectColumn> changed_torque(const EffectSignals& s, int joint, doub
   return {std::move(column)};
 }
 
+/// Inertia of each drive with the others held, in the middle of the workspace.
+VectorXd drive_inertia(const Robot& robot, const VectorXd& p) {
+  const Index n = robot.drives();
+  VectorXd q = VectorXd::Zero(n);
+  for (Index j = 0; j < n; ++j) {
+    const DriveLimits& limits = robot.description().limits[static_cast<std::size_t>(j)];
+    if (std::isfinite(limits.lower + limits.upper)) q(j) = 0.5 * (limits.lower + limits.upper);
+  }
+  MatrixXd M(n, n);
+  if (robot.mass_matrix(q, p, M) != Status::ok && robot.mass_matrix(VectorXd::Zero(n), p, M) != Status::ok)
+    return VectorXd::Ones(n);
+  return M.diagonal().cwiseMax(1e-12);
+}
+
+EffectColumn elastic(const EffectSignals& s, int joint, const VectorXd& shape) {
+  const Index n = s.q.cols(), N = s.q.rows();
+  const double motor = shape(1) * s.inertia(joint);
+  const VectorXd torque_dd = s.load_dd.col(joint) - motor * s.snap.col(joint);
+  if (static_cast<ElasticEncoder>(std::lround(shape(0))) == ElasticEncoder::arm)
+    return {joint, torque_dd.unaryExpr([](double x) { return joint_elasticity(x); })};
+  const auto drive = static_cast<std::size_t>(joint);
+  EffectColumn column{-1, MatrixXd(N, n)};
+  for (Index k = 0; k < N; ++k) {
+    for (Index i = 0; i < n; ++i) {
+      const double along_lag = s.load_lag[drive](k, i) - shape(1) * s.inertia_lag[drive](k, i);
+      column.values(k, i) = joint_elasticity(along_lag, i == joint ? motor * torque_dd(k) : 0.0, s.inertia(joint) - motor);
+    }
+  }
+  return column;
+}
+
 VectorXd delayed(const VectorXd& x, double samples) {
   VectorXd out(x.size());
   for (Index k = 0; k < x.size(); ++k) {
@@ -142,6 +174,8 @@ EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effec
   for (std::size_t k = 0; k < robot.parameter_names().size(); ++k) {
     const std::string& name = robot.parameter_names()[k];
     if (name.rfind("drive", 0) == 0) own_friction_.push_back(static_cast<int>(k));
+    if (name.find(".viscous") != std::string::npos || name.find(".coulomb") != std::string::npos)
+      friction_.push_back(static_cast<int>(k));
   }
   const RobotDescription& description = robot.description();
   if (description.parts.empty()) return;
@@ -171,7 +205,7 @@ EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effec
 
 EffectModel::~EffectModel() = default;
 
-EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bool with_errors) const {
+EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bool with_errors, const EffectSignals* near) const {
   const Index N = log.t_s.size();
   const Index n = robot_.drives();
   EffectSignals out;
@@ -204,9 +238,66 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     out.J_bar.row(k) = state.J_bar;
     out.passive.row(k) = state.passive.transpose();
   }
-  out.load_dd = differentiate(out.load, out.sample_time_s, 2, 3);
+  add_lags(p, near, out);
   if (with_errors && !robot_.description().parts.empty()) add_errors(log, p, out);
   return out;
+}
+
+void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectSignals& out) const {
+  const Index N = out.q.rows(), n = out.q.cols();
+  const double dt = out.sample_time_s;
+  out.load_dd = differentiate(out.load, dt, 2, 3);
+  out.snap = differentiate(out.qdd, dt, 2, 3);
+  if (near != nullptr) {
+    // Noise matters in the fourth derivative of the positions, which the mass matrix carries into the torques.
+    out.inertia = near->inertia;
+    out.load_lag = near->load_lag;
+    out.inertia_lag = near->inertia_lag;
+    for (Index j = 0; j < n; ++j) {
+      const auto drive = static_cast<std::size_t>(j);
+      const auto M_j = near->coupling.middleCols(n * j, n).array();
+      out.load_lag[drive].array() += M_j.colwise() * (out.load_dd - near->load_dd).col(j).array();
+      out.inertia_lag[drive].array() += M_j.colwise() * (out.inertia(j) * (out.snap - near->snap).col(j).array());
+    }
+    return;
+  }
+  out.inertia = drive_inertia(robot_, p);
+  out.coupling.setZero(N, n * n);
+  const MatrixXd load_d = differentiate(out.load, dt, 1, 3), jerk = differentiate(out.qdd, dt, 1, 3);
+  // Steps that turn no joint by more than a tenth of a milliradian.
+  const auto step_of = [](const VectorXd& lag) { return kLag / std::max(lag.cwiseAbs().maxCoeff(), 1e-300); };
+  VectorXd load_step(n), inertia_step(n);
+  for (Index j = 0; j < n; ++j) {
+    load_step(j) = step_of(out.load.col(j));
+    inertia_step(j) = step_of(out.inertia(j) * out.qdd.col(j));
+  }
+  VectorXd smooth = p;
+  for (const int k : friction_) smooth(k) = 0;
+  out.load_lag.assign(static_cast<std::size_t>(n), MatrixXd::Zero(N, n));
+  out.inertia_lag = out.load_lag;
+#pragma omp parallel for schedule(static)
+  for (Index k = 0; k < N; ++k) {
+    VectorXd q = out.q.row(k), qd = out.qd.row(k), qdd = out.qdd.row(k), at(n), lagged(n);
+    MatrixXd M(n, n);
+    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) continue;
+    for (Index j = 0; j < n; ++j) out.coupling.row(k).segment(n * j, n) = M.col(j).transpose();
+    const auto along = [&](Index j, double step, double lag, double lag_d, double lag_dd, MatrixXd& to) {
+      const double q_j = q(j), qd_j = qd(j), qdd_j = qdd(j);
+      q(j) += step * lag;
+      qd(j) += step * lag_d;
+      qdd(j) += step * lag_dd;
+      if (robot_.inverse_dynamics(q, qd, qdd, smooth, lagged) == Status::ok) to.row(k) = (lagged - at).transpose() / step;
+      q(j) = q_j;
+      qd(j) = qd_j;
+      qdd(j) = qdd_j;
+    };
+    for (Index j = 0; j < n; ++j) {
+      const auto drive = static_cast<std::size_t>(j);
+      const double J = out.inertia(j);
+      along(j, load_step(j), out.load(k, j), load_d(k, j), out.load_dd(k, j), out.load_lag[drive]);
+      along(j, inertia_step(j), J * out.qdd(k, j), J * jerk(k, j), J * out.snap(k, j), out.inertia_lag[drive]);
+    }
+  }
 }
 
 void EffectModel::add_errors(const PreparedLog& log, const VectorXd& p, EffectSignals& out) const {
@@ -284,7 +375,7 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
     case EffectId::torque_ripple: return pair_of(joint, N, [&](Index k) { return torque_ripple(s.q(k, j), shape(0)); });
     case EffectId::position_dependent_friction:
       return pair_of(joint, N, [&](Index k) { return position_dependent_friction(s.q(k, j), v(k), shape(0)); });
-    case EffectId::joint_elasticity: return one(joint, N, [&](Index k) { return joint_elasticity(s.load_dd(k, j)); });
+    case EffectId::joint_elasticity: return {elastic(s, joint, shape)};
     case EffectId::rotor_inertia: return one(joint, N, [&](Index k) { return rotor_inertia(s.qdd(k, j)); });
     case EffectId::limb_inertia_mismatch: {
       std::vector<EffectColumn> columns =

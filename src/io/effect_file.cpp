@@ -124,6 +124,9 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
   for (Effect& effect : effects) {
     const EffectKind& kind = effect_kind(effect.id);
     if (kind.tied) effect.shape(0) = effect.amplitude(0);
+    for (Index k = 0; k < effect.shape.size(); ++k) {
+      if (std::isnan(effect.shape(k))) effect.shape(k) = kind.shapes[static_cast<std::size_t>(k)].otherwise;
+    }
     for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
       if (std::isnan((slot.amplitude ? effect.amplitude : effect.shape)(slot.index))) {
         throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, effect_joint_name(effect.id, effect.joint)), path,

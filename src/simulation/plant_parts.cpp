@@ -160,15 +160,20 @@ class Builder {
     return parts_.soft.back();
   }
 
-  /// Amplitude c [s^2]: J_motor/k with the encoder on the arm, -J_arm/k with the encoder on the motor.
+  /// Amplitude [s^2]: J_motor/k with the encoder on the arm, J_arm/k with the encoder on the motor.
   void add_spring(const Effect& effect) {
     const double c = effect.amplitude(0);
     if (c == 0) return;
     const double inertia = drive_inertia(effect.joint);
     SoftDrive& soft = new_soft_drive(effect);
-    soft.motor_inertia = kMotorShare * inertia;
-    soft.encoder_on_motor = c < 0;
-    soft.stiffness = (c > 0 ? soft.motor_inertia : inertia - soft.motor_inertia) / std::abs(c);
+    const double share = effect.shape.size() > 1 ? effect.shape(1) : kMotorShare;
+    if (!(c > 0 && share > 0 && share < 1)) {
+      refuse(effect, "the inertia over the stiffness must be above 0, and the motor's share of the inertia between 0 and 1",
+             "say by encoder=0 or 1 whether the encoder sits on the arm or on the motor");
+    }
+    soft.motor_inertia = share * inertia;
+    soft.encoder_on_motor = effect.shape.size() > 0 && effect.shape(0) > 0;
+    soft.stiffness = (soft.encoder_on_motor ? inertia - soft.motor_inertia : soft.motor_inertia) / c;
     set_damping(soft, inertia);
   }
 

@@ -58,6 +58,7 @@ inline Case make_case(const std::string& part, int index) {
     const auto& names = hidden_names();
     blind.hidden.push_back(make_hidden(names[static_cast<std::size_t>(index) % names.size()], drives, size, random));
     blind.noise.encoder_rad = 3e-6;
+    if (blind.hidden.back().spring) blind.harmonics = 10;
   } else if (part == "pairs") {
     const auto& names = hidden_names();
     const auto a = static_cast<std::size_t>(between(random, 0, static_cast<double>(names.size()) - 0.01));
@@ -65,6 +66,7 @@ inline Case make_case(const std::string& part, int index) {
         (a + 1 + static_cast<std::size_t>(between(random, 0, static_cast<double>(names.size()) - 2.01))) % names.size();
     blind.hidden.push_back(make_hidden(names[a], drives, 0.3 + 0.7 * size, random));
     blind.hidden.push_back(make_hidden(names[b], drives, 0.3 + 0.7 * between(random, 0, 1), random));
+    if (blind.hidden.front().spring || blind.hidden.back().spring) blind.harmonics = 10;
   } else if (part == "outside") {
     blind.hidden.push_back(make_outside(index, drives, size, random));
   } else {

@@ -153,20 +153,12 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
       return F * std::tanh(1.2 * std::cos(n * q + phase)) * sign_of(v, width);
     });
   }
-  if (name ==
-      "joint_elasticity") {  // a real spring would need the motor as a body of its own; here its first resonance in the load path
-    const double w = 2 * 3.14159265 * (14 + 16 * (1 - size));
+  if (name == "joint_elasticity") {
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
-    out.record = [=](int, Eigen::MatrixXd& tau, Eigen::MatrixXd&, double dt) {
-      // The recorded torque is that of the motor's side: the load's, filtered by the inverse of the spring's resonance.
-      Eigen::VectorXd y = tau.col(limb);
-      const Eigen::VectorXd x = y;
-      for (Eigen::Index k = 1; k + 1 < x.size(); ++k) {
-        y(k) = x(k) - (x(k + 1) - 2 * x(k) + x(k - 1)) / (dt * dt) / (w * w) * 0.5;
-      }
-      tau.col(limb) = y;
-    };
-    return sized(out, 0.5 / (w * w));
+    const bool on_motor = u < 0.5;
+    const double hz = 26 + 16 * (1 - size);
+    out.spring = Spring{limb, hz, on_motor};
+    return sized(out, std::pow(2 * 3.14159265 * hz, -2));
   }
   if (name == "rotor_inertia") {
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};

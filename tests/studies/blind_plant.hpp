@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -28,6 +29,14 @@ struct Moment {
   Eigen::MatrixXd J;  ///< dz/dq
 };
 
+/// A spring between rotor and arm. The rotor, a body of its own, carries the drive's friction; its inertia is a share of what the drive
+/// sees in all, so that the inertia of both together is what the model says.
+struct Spring {
+  int drive = 0;
+  double resonance_hz = 20;  ///< of the side that the encoder does not see, with the encoder's side held
+  bool encoder_on_motor = true;
+};
+
 /// One hidden effect. Every hook may be empty.
 struct Hidden {
   std::string truth, joint;  ///< name and joint that a diagnosis should give; "unknown" if the catalogue has none
@@ -39,6 +48,7 @@ struct Hidden {
   std::function<void(int log, Eigen::MatrixXd& tau, Eigen::MatrixXd& q, double dt)> record;  ///< changes what is recorded
   double motor_lag_s = 0;                                       ///< first-order lag between the recorded command and the shaft
   double amplitude = std::numeric_limits<double>::quiet_NaN();  ///< size as the catalogue states it, if the form has one
+  std::optional<Spring> spring = std::nullopt;
 };
 
 struct Noise {
@@ -54,6 +64,7 @@ struct Case {
   Noise noise;
   std::uint64_t seed = 1;
   double duration_s = 10;
+  int harmonics = 5;  ///< of 0.1 to 0.3 Hz: more shake a spring
 };
 
 /// Three logs: fast, slow, hold-out. \param strength  if given, rms torque of the hidden effects over the noise, largest over the drives
@@ -95,6 +106,11 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
     p_own(k) = value;
   }
 
+  std::optional<Spring> spring = std::nullopt;
+  for (const Hidden& hidden : blind.hidden) {
+    if (hidden.spring) spring = hidden.spring;
+  }
+
   std::vector<Log> logs;
   double worst = 0;
   for (int l = 0; l < 3; ++l) {
@@ -105,14 +121,14 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
     // A random Fourier path in the workspace, from rest on.
     const double base_hz = l == 0 ? 0.3 : (l == 1 ? 0.1 : 0.2);
     const double speed = l == 1 ? 0.35 : 1.0;
-    Eigen::MatrixXd a(n, 10);
+    Eigen::MatrixXd a(n, 2 * blind.harmonics);
     for (int i = 0; i < a.size(); ++i) a(i) = uniform(random);
     const auto reference = [&](double t) {
       TaskState s;
       s.z = s.zd = s.zdd = Eigen::VectorXd::Zero(n);
       for (int i = 0; i < n; ++i) {
         const double size = i < 2 ? 0.16 : (i == 2 ? 0.09 : 7.0);
-        for (int h = 1; h <= 5; ++h) {
+        for (int h = 1; h <= blind.harmonics; ++h) {
           const double w = 2 * 3.14159265358979 * base_hz * h, c = size * std::pow(speed, 0.3) / std::sqrt(h);
           const double A = c * a(i, 2 * h - 2) * 0.6, B = c * a(i, 2 * h - 1) * 0.6;
           s.z(i) += A * std::sin(w * t) + B * (std::cos(w * t) - 1);
@@ -131,6 +147,20 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
     Eigen::MatrixXd M(n, n);
     if (model->mass_matrix(q, blind.parameters, M) != Status::ok) return {};
     const Eigen::VectorXd inertia = M.diagonal();
+    constexpr double kRotorShare = 0.3, kDampingRatio = 0.05;
+    double rotor = 0, stiffness = 0, damping = 0;
+    if (spring) {
+      const double whole = inertia(spring->drive);
+      rotor = kRotorShare * whole;
+      const double w = 2 * 3.14159265358979 * spring->resonance_hz;
+      stiffness = w * w * (spring->encoder_on_motor ? whole - rotor : rotor);
+      damping = 2 * kDampingRatio * std::sqrt(stiffness * rotor * (whole - rotor) / whole);
+      for (int k = 0; k < plant->parameters(); ++k) {
+        if (plant->parameter_names()[static_cast<std::size_t>(k)] ==
+            "drive" + std::to_string(spring->drive + 1) + ".rotor_inertia")
+          p(k) -= rotor;
+      }
+    }
     int memory_total = 0;
     for (const Hidden& hidden : blind.hidden) memory_total += hidden.memory_size;
     Eigen::VectorXd memory = Eigen::VectorXd::Zero(memory_total), command(n), shaft = Eigen::VectorXd::Zero(n);
@@ -148,14 +178,17 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
     const auto derivative = [&](double t, const Eigen::VectorXd& x, Eigen::VectorXd& xd) {
       const Eigen::VectorXd position = x.head(n), rate = x.segment(n, n), state = x.segment(2 * n, memory_total),
                             motor = lag > 0 ? Eigen::VectorXd(x.tail(n)) : command;
+      Eigen::VectorXd turning = rate;  // of what carries the drives' friction
+      const Eigen::Index at_rotor = 2 * n + memory_total;
+      if (spring) turning(spring->drive) = x(at_rotor + 1);
       now.t = t;
       now.q = position;
       now.qd = rate;
       now.motor = motor;
       Eigen::VectorXd load = Eigen::VectorXd::Zero(n), state_d = Eigen::VectorXd::Zero(memory_total);
       for (int j = 0; j < n; ++j) {
-        load(j) = viscous[static_cast<std::size_t>(j)] * rate(j) +
-                  coulomb[static_cast<std::size_t>(j)] * std::tanh(rate(j) / (j == 3 ? 0.12 : 0.008));
+        load(j) = viscous[static_cast<std::size_t>(j)] * turning(j) +
+                  coulomb[static_cast<std::size_t>(j)] * std::tanh(turning(j) / (j == 3 ? 0.12 : 0.008));
       }
       if (model->description().telescope) {
         // The bar's rate and its Jacobian, from the plate's own.
@@ -189,18 +222,41 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
         at += hidden.memory_size;
       }
       last_effect = load - plain;
-      Eigen::VectorXd acceleration(n);
-      if (plant->forward_dynamics(position, rate, motor - load, p, acceleration) != Status::ok) return false;
+      Eigen::VectorXd acceleration(n), torque = motor - load;
+      double rotor_acceleration = 0;
+      if (spring) {
+        const int j = spring->drive;
+        const double passed = stiffness * (x(at_rotor) - position(j)) + damping * (x(at_rotor + 1) - rate(j));
+        rotor_acceleration = (torque(j) - passed) / rotor;
+        torque(j) = passed;
+      }
+      if (plant->forward_dynamics(position, rate, torque, p, acceleration) != Status::ok) return false;
+      if (spring) {
+        const int j = spring->drive;
+        xd(at_rotor) = x(at_rotor + 1);
+        xd(at_rotor + 1) = rotor_acceleration;
+        // What a rigid drive that moves like the encoder would not have needed.
+        last_effect(j) += spring->encoder_on_motor ? (inertia(j) - rotor) * (acceleration(j) - rotor_acceleration)
+                                                   : rotor * (rotor_acceleration - acceleration(j));
+      }
       xd.head(n) = rate;
       xd.segment(n, n) = acceleration;
       xd.segment(2 * n, memory_total) = state_d;
       if (lag > 0) xd.tail(n) = (command - motor) / lag;
       return true;
     };
-    const Eigen::Index size = 2 * n + memory_total + (lag > 0 ? n : 0);
+    const Eigen::Index springs = spring ? 2 : 0;
+    const Eigen::Index size = 2 * n + memory_total + springs + (lag > 0 ? n : 0);
     Eigen::VectorXd x(size), k1(size), k2(size), k3(size), k4(size);
-    x << q, qd, memory, (lag > 0 ? Eigen::VectorXd(shaft) : Eigen::VectorXd(0));
-    Eigen::VectorXd previous = q;
+    x << q, qd, memory, Eigen::VectorXd::Zero(springs), (lag > 0 ? Eigen::VectorXd(shaft) : Eigen::VectorXd(0));
+    const auto measured = [&] {
+      Eigen::VectorXd both = x.head(2 * n);
+      if (spring && spring->encoder_on_motor) {
+        both(spring->drive) = x(2 * n + memory_total);
+        both(n + spring->drive) = x(2 * n + memory_total + 1);
+      }
+      return both;
+    };
     const int lead = 500;  // half a second to settle before the record begins
     for (int k = -lead; k < samples; ++k) {
       const double t = k * 1e-3;
@@ -210,13 +266,19 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
       if (k == -lead) {
         x.head(n) = q_r;
         x.segment(n, n) = qd_r;
-        previous = q_r;
+        if (spring) {
+          x(2 * n + memory_total) = q_r(spring->drive) + feed(spring->drive) / stiffness;
+          x(2 * n + memory_total + 1) = qd_r(spring->drive);
+        }
       }
-      const double w = 2 * 3.14159265358979 * 9.0;
-      command = feed + inertia.cwiseProduct(w * w * (q_r - x.head(n)) + 1.4 * w * (qd_r - x.segment(n, n)));
+      // Against a spring that it does not see, a controller must be soft.
+      const double w =
+          2 * 3.14159265358979 * (spring && !spring->encoder_on_motor ? std::min(9.0, spring->resonance_hz / 20) : 9.0);
+      const Eigen::VectorXd seen = measured();
+      command = feed + inertia.cwiseProduct(w * w * (q_r - seen.head(n)) + 1.4 * w * (qd_r - seen.tail(n)));
       if (lag > 0 && k == -lead) x.tail(n) = command;
       if (k >= 0) {
-        log.q.row(k) = x.head(n).transpose();
+        log.q.row(k) = seen.head(n).transpose();
         log.tau.row(k) = command.transpose();
       }
       for (int s = 0; s < kPerSample; ++s) {

@@ -52,6 +52,7 @@ inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
       key.above = true;
     }
     if (shape.scale == ShapeScale::absolute && shape.grid.size() <= 4) key.usual = shape.grid;
+    key.otherwise = shape.otherwise;
     if (shape.scale == ShapeScale::logs) key.otherwise = 1;  // a simulation makes one log
     keys.push_back(key);
   }

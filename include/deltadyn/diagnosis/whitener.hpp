@@ -19,6 +19,7 @@ class Whitener {
   Whitener() = default;
   Whitener(const NoiseModel& noise, const RowMask& present, const std::vector<UnknownTorque>& unknown = {});
 
+  [[nodiscard]] const NoiseModel& noise() const { return noise_; }
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(source_.size()); }
   /// Rows less the unknown directions: what a sum of squares of noise comes to.
   [[nodiscard]] Eigen::Index freedom() const { return freedom_; }

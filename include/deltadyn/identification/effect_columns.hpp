@@ -17,10 +17,15 @@ namespace deltadyn {
 /// What effects are computed from, at each of the N samples of a prepared log; n drives.
 struct EffectSignals {
   Eigen::VectorXd t_s;
-  Eigen::MatrixXd q, qd, qdd;                        ///< N x n
-  Eigen::MatrixXd torque;                            ///< N x n, of the model with all its friction [N m | N]
-  Eigen::MatrixXd load;                              ///< N x n, of the model without the drives' own friction
-  Eigen::MatrixXd load_dd;                           ///< second time derivative of load
+  Eigen::MatrixXd q, qd, qdd;     ///< N x n
+  Eigen::MatrixXd torque;         ///< N x n, of the model with all its friction [N m | N]
+  Eigen::MatrixXd load;           ///< N x n, of the model without the drives' own friction
+  Eigen::MatrixXd load_dd, snap;  ///< second time derivatives of load and qdd
+  std::vector<Eigen::MatrixXd> load_lag,
+      inertia_lag;           ///< N x n for each drive: change of all torques, without friction, for a lag of
+                             ///< this drive by its load, and by its inertia times qdd
+  Eigen::MatrixXd coupling;  ///< N x n^2: the mass matrix, column by column
+  Eigen::VectorXd inertia;   ///< n, of each drive with the others held, in the middle of the workspace
   Eigen::MatrixXd position, velocity, acceleration;  ///< N x 3, of the plate
   Eigen::MatrixXd J;                                 ///< N x 3n: d position / d q1, d position / d q2, ...
   Eigen::VectorXd bar_rate;                          ///< N, of the telescope
@@ -48,8 +53,10 @@ class EffectModel {
 
   /// \param p            parameters in the robot's layout, for the effects that need the model's torque
   /// \param with_errors  tilt and kinematic columns, too (these need the model some twenty times a sample)
+  /// \param near         of nearly the same motion (encoder noise apart): spares the derivatives along the lags of elastic joints
   /// Throws deltadyn::Error for poses that the robot cannot have.
-  [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_errors = true) const;
+  [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_errors = true,
+                                      const EffectSignals* near = nullptr) const;
 
   /// One column an amplitude of the effect.
   /// \param shape       one value a shape parameter
@@ -61,10 +68,12 @@ class EffectModel {
 
  private:
   void add_errors(const PreparedLog& log, const Eigen::VectorXd& p, EffectSignals& out) const;
+  void add_lags(const Eigen::VectorXd& p, const EffectSignals* near, EffectSignals& out) const;
 
   const Robot& robot_;
   std::unique_ptr<EffectStates> states_;
   std::vector<int> own_friction_;               ///< columns of p that load leaves out
+  std::vector<int> friction_;                   ///< columns of p of all friction
   std::unique_ptr<Robot> tilted_[2];            ///< gravity turned about x, y
   std::vector<std::unique_ptr<Robot>> longer_;  ///< (arm, strut) x limb x (plus, minus)
 };

@@ -5,6 +5,7 @@
 /// effects/, one file each; the names are a contract with effect files and command lines.
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,6 +73,7 @@ struct EffectShape {
   std::string unit;  ///< "{x}": rad or m, "{F}": N*m or N as the joint is
   ShapeScale scale;
   std::vector<double> grid;  ///< start values; empty for scales `waves` and `logs`, which depend on the log
+  double otherwise = std::numeric_limits<double>::quiet_NaN();  ///< what holds where files and flags do not say; NaN: they must
 };
 
 /// A parameter in which the effect is linear.
