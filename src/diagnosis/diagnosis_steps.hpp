@@ -3,6 +3,7 @@
 /// \file
 /// The steps of diagnose(), between them the search's result.
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ struct SearchResult {
   PerLogAndDrive<NoiseModel> noise;   ///< beside everything found
   PerLogAndDrive<double> floor;       ///< rms that no model can beat
   EffectSearch::State before, after;  ///< beside the base model, and beside the accepted effects
+  std::shared_ptr<const EncoderPilots> pilots;
   NullStudy null;
   Omnibus omnibus_before, omnibus_after;
   Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
@@ -42,7 +44,7 @@ struct SearchResult {
 void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Steps 3 to 8 of the procedure.
-/// \param earlier  a search in the same logs with nearly the same parameters, whose noise and null are taken as they are
+/// \param earlier  a search in the same logs with nearly the same parameters, whose noise, encoder pilots and null are taken as they are
 [[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier = nullptr);
 
 /// Fits and structure of every drive, and the list of all effects considered.

@@ -63,10 +63,9 @@ bool FormErrors::explain(const Fit& fit) {
   const VectorXd own = squares_by_drive(context_, *state_.problem, fit);
   // A second effect of a class may be the first one at the wrong place.
   bool class_is_there = false;
-  for (std::size_t k = 0; k < found_.fits.size(); ++k)
-    class_is_there |= !found_.hygiene[k] && class_of(found_.fits[k]) == class_of(fit);
+  for (std::size_t k = 0; k < found_.fits.size(); ++k) class_is_there |= counts(k) && class_of(found_.fits[k]) == class_of(fit);
   for (std::size_t k = 0; k < found_.fits.size(); ++k) {
-    if (found_.hygiene[k]) continue;
+    if (!counts(k)) continue;
     const Fit& earlier = found_.fits[k];
     const VectorXd theirs = squares_by_drive(context_, *state_.problem, earlier);
     double shared = 0;

@@ -13,14 +13,17 @@ namespace deltadyn::detail {
 class FormErrors {
  public:
   /// \param state  beside what was found
-  FormErrors(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state)
-      : context_(context), found_(found), state_(state) {}
+  /// \param but    the effect of `found` that is in question
+  FormErrors(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state,
+             std::optional<std::size_t> but = std::nullopt)
+      : context_(context), found_(found), state_(state), but_(but) {}
 
   /// Can the form of an earlier effect have left what `fit` gains? More is left at the same place and in the same class; what the earlier
   /// one does on other drives than `fit` does not count.
   [[nodiscard]] bool explain(const Fit& fit);
 
  private:
+  [[nodiscard]] bool counts(std::size_t k) const { return !found_.hygiene[k] && k != but_; }
   /// Largest gain of an effect at a joint.
   [[nodiscard]] double best_at(int joint) const;
   /// An error of form looks like several effects and like none of them well: an effect takes nearly all structure that the generic
@@ -32,6 +35,7 @@ class FormErrors {
   const SearchContext& context_;
   const SearchResult& found_;
   const EffectSearch::State& state_;
+  std::optional<std::size_t> but_;
   std::optional<Omnibus> omnibus_;
   double structure_ = 0;  ///< of the state's own residual
 };

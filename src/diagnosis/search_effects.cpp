@@ -30,7 +30,7 @@ constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
 constexpr double kSkewSamples = 1.0;    // a skew up to one sample is a matter of who samples when, not of the robot
 constexpr double kRestShare = 0.03;     // of the largest rate: friction that bends below it is friction at rest
-constexpr double kLagSamples = 0.5;     // and so is so short a lag
+constexpr double kLagSamples = 1.0;     // and so is so short a lag
 
 std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
   std::vector<std::size_t> order(state.scores.size());
@@ -258,12 +258,17 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   } else {
     estimate = search.noise_beside({});
   }
-  EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
-  const double pass_hz =
-      std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
-  const EncoderPilots pilots(context.model, context.base, context.logs, context.p, *state.problem, search.hypotheses(),
-                             state.signatures, context.position_noise, context.processing.cutoff_hz, pass_hz, options.seed,
-                             options.threads);
+  if (earlier != nullptr) {
+    found.pilots = earlier->pilots;
+  } else {
+    const EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
+    const double pass_hz =
+        std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
+    found.pilots = std::make_shared<EncoderPilots>(context.model, context.base, context.logs, context.p, *state.problem,
+                                                   search.hypotheses(), state.signatures, context.position_noise,
+                                                   context.processing.cutoff_hz, pass_hz, options.seed, options.threads);
+  }
+  const EncoderPilots& pilots = *found.pilots;
   report(0.3);
 
   // Provisional effects, so that the noise model is not made of what is missing.
@@ -296,7 +301,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   out.encoder_share = found.null.encoder_share;
 
   // Forward.
-  state = search.state(found.noise, {}, &pilots);
+  EffectSearch::State state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
     FormErrors form_errors(context, found, state);
@@ -344,9 +349,10 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
       continue;
     }
     // Another hypothesis may fit better now that the others are known.
-    if (const std::optional<Fit> best = found.hygiene[k] ? std::optional<Fit>() : best_fit(search, beside);
-        best && !hygienic(context, *best) &&
-        search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
+    FormErrors form_errors(context, found, beside, k);
+    const auto may_follow = [&](const Fit& one) { return !hygienic(context, one) && !form_errors.explain(one); };
+    if (const std::optional<Fit> best = found.hygiene[k] ? std::optional<Fit>() : best_fit(search, beside, may_follow);
+        best && search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
       fit = *best;
     }
     set_uncertainty(context, beside, fit);

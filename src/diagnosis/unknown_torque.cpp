@@ -12,8 +12,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFinest = 1e-7;  // squared size of a direction that can be told from rounding, in units of the largest
-constexpr Index kPerRow = 4;      // unknowns a row of the log: the low pass leaves no more than about one
+constexpr double kFinest = 1e-7;          // squared size of a direction that can be told from rounding, in units of the largest
+constexpr double kEarlyOrLate_s = 0.008;  // by which a recorded torque may stand before or behind the motion
+constexpr Index kPerRow = 4;              // unknowns a row of the log: the low pass leaves no more than about one
 
 /// \param first, end  samples of the stretch
 UnknownTorque through_low_pass(const PreparedLog& log, Index first, Index end, double size) {
@@ -51,6 +52,7 @@ std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Index drive, R
   const Index samples = marked.size();
   const Index reach = log.low_pass ? log.low_pass->half_width() : 0;
   const double size = std::sqrt(log.tau.col(drive).squaredNorm() / static_cast<double>(std::max<Index>(1, log.tau.rows())));
+  const auto early_or_late = static_cast<Index>(std::lround(kEarlyOrLate_s * log.rate_hz));
   const auto add = [&](Index first, Index end) {
     UnknownTorque one = through_low_pass(log, first, end, size);
     if (one.directions.cols() > 0) out.push_back(std::move(one));
@@ -59,6 +61,9 @@ std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Index drive, R
     if (!marked(first)) continue;
     Index end = first;
     while (end < samples && marked(end)) ++end;
+    const Index next = end;
+    first = std::max<Index>(0, first - early_or_late);
+    end = std::min(samples, end + early_or_late);
     if (end - first <= 6 * reach + 1) {
       add(first, end);
     } else {
@@ -70,7 +75,7 @@ std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Index drive, R
         if (centre >= first + reach && centre < end - reach) present(row) = false;
       }
     }
-    first = end;
+    first = next;
   }
   return out;
 }

@@ -1,7 +1,6 @@
 #include "deltadyn/diagnosis/whitener.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -14,15 +13,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kNegligible = 0.2;  // size of an unknown direction in white rows, in standard deviations of the noise
-constexpr double kRank = 1e-6;
-
-/// Directions of the innovations of rows [first, first + basis.rows()).
-struct Directions {
-  Index first;
-  MatrixXd basis;
-
-  [[nodiscard]] Index end() const { return first + basis.rows(); }
-};
+constexpr double kRidge = 1e-10;     // on the Gram matrix of unit vectors, as neighbours may share a direction
+constexpr double kShared = 1e-6;     // pivot of a direction that its neighbours hold already
 
 /// Innovations of rows of which all before are zero, as many more as the noise remembers.
 MatrixXd innovations(const NoiseModel& noise, const MatrixXd& x) {
@@ -31,13 +23,6 @@ MatrixXd innovations(const NoiseModel& noise, const MatrixXd& x) {
   out.topRows(x.rows()) = x;
   for (Index k = 0; k < p; ++k) out.middleRows(k + 1, x.rows()) -= noise.ar(k) * x;
   return out;
-}
-
-/// Innovations of rows [earliest, end) only.
-Directions inside(Index first, const MatrixXd& basis, Index earliest, Index end) {
-  const Index skip = std::max<Index>(0, earliest - first);
-  const Index rows = std::max<Index>(0, std::min(end - first, basis.rows()) - skip);
-  return {first + skip, basis.middleRows(std::min(skip, basis.rows()), rows)};
 }
 
 /// The orthonormal directions along which white noise would not hide them.
@@ -55,10 +40,12 @@ Whitener::Whitener(const NoiseModel& noise, const RowMask& present, const std::v
     : noise_(noise), present_(present) {
   const Index N = present.size();
   const Index p = noise.order();
-  std::vector<Directions> all;
   const auto add = [&](Index first, const MatrixXd& basis) {
-    Directions one = inside(first, basis, p, N);
-    if (one.basis.size() > 0) all.push_back(std::move(one));
+    // Innovations are known from row p on.
+    const Index skip = std::max<Index>(0, p - first), rows = std::min(N - first, basis.rows()) - skip;
+    if (rows <= 0) return;
+    MatrixXd orthonormal = that_matter(basis.middleRows(skip, rows));
+    if (orthonormal.cols() > 0) taken_.push_back({first + skip, std::move(orthonormal)});
   };
   // Rows that are not there. Of a run longer than the memory, and of the memory after it, nothing is left.
   RowMask lost = RowMask::Constant(N, false);
@@ -78,35 +65,49 @@ Whitener::Whitener(const NoiseModel& noise, const RowMask& present, const std::v
     for (Index k = 0; k < directions.rows(); ++k) {
       if (!present(stretch.first + k)) directions.row(k).setZero();
     }
-    const Directions one = inside(stretch.first, innovations(noise, directions) / noise.std, p, N);
-    if (one.basis.size() > 0) add(one.first, that_matter(one.basis));
+    add(stretch.first, innovations(noise, directions) / noise.std);
   }
-  std::sort(all.begin(), all.end(), [](const Directions& a, const Directions& b) { return a.first < b.first; });
-  for (std::size_t k = 0; k < all.size();) {
-    Index end = all[k].end(), columns = 0;
-    std::size_t last = k;
-    for (; last < all.size() && all[last].first < end; ++last) {
-      end = std::max(end, all[last].end());
-      columns += all[last].basis.cols();
+  for (Directions& one : taken_) {
+    for (Index k = 0; k < one.basis.rows(); ++k) {
+      if (lost(one.first + k)) one.basis.row(k).setZero();
     }
-    const Index first = all[k].first;
-    MatrixXd together = MatrixXd::Zero(end - first, columns);
-    for (Index at = 0; k < last; ++k) {
-      together.block(all[k].first - first, at, all[k].basis.rows(), all[k].basis.cols()) = all[k].basis;
-      at += all[k].basis.cols();
-    }
-    for (Index row = 0; row < together.rows(); ++row) {
-      if (lost(first + row)) together.row(row).setZero();
-    }
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(together);
-    qr.setThreshold(kRank);
-    clusters_.push_back({first, qr.householderQ() * MatrixXd::Identity(together.rows(), qr.rank())});
-    freedom_ -= qr.rank();
   }
+  std::sort(taken_.begin(), taken_.end(), [](const Directions& a, const Directions& b) { return a.first < b.first; });
   for (Index t = p; t < N; ++t) {
     if (!lost(t)) source_.push_back(t);
   }
-  freedom_ += rows();
+  freedom_ = rows();
+  factorise();
+}
+
+void Whitener::factorise() {
+  if (taken_.empty()) return;
+  std::vector<Eigen::Triplet<double>> entries;
+  Index column = 0;
+  std::vector<Index> start;
+  for (const Directions& one : taken_) {
+    start.push_back(column);
+    column += one.basis.cols();
+  }
+  for (std::size_t a = 0; a < taken_.size(); ++a) {
+    for (std::size_t b = a; b < taken_.size(); ++b) {
+      const Index first = std::max(taken_[a].first, taken_[b].first), end = std::min(taken_[a].end(), taken_[b].end());
+      if (first >= end) continue;
+      const MatrixXd block = taken_[b].basis.middleRows(first - taken_[b].first, end - first).transpose() *
+                             taken_[a].basis.middleRows(first - taken_[a].first, end - first);
+      for (Index r = 0; r < block.rows(); ++r) {
+        for (Index c = 0; c < block.cols(); ++c) {
+          if (a != b || r >= c) entries.emplace_back(start[b] + r, start[a] + c, block(r, c) + (a == b && r == c ? kRidge : 0.0));
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(column, column);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const auto gram = std::make_shared<Gram>(matrix);
+  const VectorXd pivots = VectorXd(Eigen::SparseMatrix<double>(gram->matrixL()).diagonal()).cwiseAbs2();
+  freedom_ -= (pivots.array() > kShared).count();
+  gram_ = gram;
 }
 
 MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
@@ -120,11 +121,20 @@ MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
   MatrixXd innovation = known.bottomRows(N - p);  // of rows p, p + 1, ...
   for (Index k = 0; k < p; ++k) innovation -= noise_.ar(k) * known.middleRows(p - 1 - k, N - p);
   innovation /= noise_.std;
-  MatrixXd part;
-  for (const Cluster& cluster : clusters_) {
-    auto seen = innovation.middleRows(cluster.first - p, cluster.basis.rows());
-    part.noalias() = cluster.basis.transpose() * seen;
-    seen.noalias() -= cluster.basis * part;
+  if (gram_ != nullptr) {
+    MatrixXd parts(gram_->rows(), x.cols());
+    Index at = 0;
+    for (const Directions& one : taken_) {
+      parts.middleRows(at, one.basis.cols()).noalias() =
+          one.basis.transpose() * innovation.middleRows(one.first - p, one.basis.rows());
+      at += one.basis.cols();
+    }
+    parts = gram_->solve(parts).eval();
+    at = 0;
+    for (const Directions& one : taken_) {
+      innovation.middleRows(one.first - p, one.basis.rows()).noalias() -= one.basis * parts.middleRows(at, one.basis.cols());
+      at += one.basis.cols();
+    }
   }
   for (Index k = 0; k < rows(); ++k) out.row(k) = innovation.row(source_[static_cast<std::size_t>(k)] - p);
   return out;

@@ -24,7 +24,7 @@ struct Moment {
   double t = 0;
   int log = 0;                   ///< 0 fast, 1 slow, 2 hold-out
   Eigen::VectorXd q, qd, motor;  ///< motor: torque on the shafts before losses
-  Eigen::VectorXd transmitted;   ///< what Coulomb and viscous friction leave of it
+  Eigen::VectorXd transmitted;   ///< what the drives' own Coulomb and viscous friction leave of it
   Eigen::Vector3d r = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
   Eigen::MatrixXd J;  ///< dz/dq
 };
@@ -190,6 +190,7 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
         load(j) = viscous[static_cast<std::size_t>(j)] * turning(j) +
                   coulomb[static_cast<std::size_t>(j)] * std::tanh(turning(j) / (j == 3 ? 0.12 : 0.008));
       }
+      now.transmitted = motor - load;  // a gear passes on all but its own friction
       if (model->description().telescope) {
         // The bar's rate and its Jacobian, from the plate's own.
         Eigen::MatrixXd J(n, n);
@@ -211,7 +212,6 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
         now.v = (J * rate).head<3>();
       }
       const Eigen::VectorXd plain = load;
-      now.transmitted = motor - plain;
       int at = 0;
       for (const Hidden& hidden : blind.hidden) {
         if (hidden.resist) {

@@ -95,7 +95,7 @@ class EncoderPilots {
   std::vector<double> rate_hz_;                       ///< of the logs as recorded
   Run still_;                                         ///< without noise
   const Eigen::VectorXd p_;
-  const std::vector<Hypothesis>& hypotheses_;
+  const std::vector<Hypothesis> hypotheses_;
   PerLogAndDrive<double> position_noise_;
   double cutoff_hz_;
   std::vector<std::size_t> sensitive_;

@@ -4,6 +4,8 @@
 /// The filter that turns a torque residual white, over rows that are missing or partly unknown.
 
 #include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <memory>
 #include <vector>
 
 #include "deltadyn/diagnosis/noise_model.hpp"
@@ -29,15 +31,21 @@ class Whitener {
   [[nodiscard]] const std::vector<Eigen::Index>& source() const { return source_; }
 
  private:
-  /// Orthonormal directions of the innovations of rows [first, first + basis.rows()) that are taken out.
-  struct Cluster {
+  /// Orthonormal directions of the innovations of rows [first, first + basis.rows()).
+  struct Directions {
     Eigen::Index first;
     Eigen::MatrixXd basis;
+
+    [[nodiscard]] Eigen::Index end() const { return first + basis.rows(); }
   };
+  using Gram = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
+
+  void factorise();
 
   NoiseModel noise_;
   RowMask present_;
-  std::vector<Cluster> clusters_;
+  std::vector<Directions> taken_;     ///< out of the innovations; each meets only its neighbours
+  std::shared_ptr<const Gram> gram_;  ///< of all directions with each other
   std::vector<Eigen::Index> source_;
   Eigen::Index freedom_ = 0;
 };
