@@ -295,7 +295,8 @@ std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const
     for (const WhiteSegment& segment : problem.segments) {
       const MatrixXd& raw = rows[segment.log][segment.drive];
       if (raw.size() == 0) continue;
-      const VectorXd part = segment.whitener.apply(raw).transpose() * r.segment(segment.offset, segment.rows());
+      // r holds nothing of what is unknown.
+      const VectorXd part = segment.whitener.innovations(raw).transpose() * r.segment(segment.offset, segment.rows());
       inner = inner.size() == 0 ? part : VectorXd(inner + part);
     }
     out.push_back(inner);
@@ -419,8 +420,9 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
         const Index rows = problem.segments[s].rows();
         VectorXd white(rows + taps[s].size() - 1);
         for (double& w : white) w = normal(random);
-        for (Index row = 0; row < rows; ++row)
-          y(problem.segments[s].offset + row) += taps[s].dot(white.segment(row, taps[s].size()));
+        VectorXd noise(rows);
+        for (Index row = 0; row < rows; ++row) noise(row) = taps[s].dot(white.segment(row, taps[s].size()));
+        y.segment(problem.segments[s].offset, rows) += problem.segments[s].whitener.known_part(noise);
       }
       VectorXd r;
       const std::vector<VectorXd> sensitive = pilots.products(problem, pilots.draw(seed + 1), y, r);

@@ -17,7 +17,7 @@ constexpr double kRidge = 1e-10;     // on the Gram matrix of unit vectors, as n
 constexpr double kShared = 1e-6;     // pivot of a direction that its neighbours hold already
 
 /// Innovations of rows of which all before are zero, as many more as the noise remembers.
-MatrixXd innovations(const NoiseModel& noise, const MatrixXd& x) {
+MatrixXd innovations_after(const NoiseModel& noise, const MatrixXd& x) {
   const Index p = noise.order();
   MatrixXd out = MatrixXd::Zero(x.rows() + p, x.cols());
   out.topRows(x.rows()) = x;
@@ -56,7 +56,7 @@ Whitener::Whitener(const NoiseModel& noise, const RowMask& present, const std::v
     if (end - t >= p) {
       lost.segment(t, std::min(end + p, N) - t).setConstant(true);
     } else {
-      for (Index k = t; k < end; ++k) add(k, innovations(noise, MatrixXd::Ones(1, 1)));
+      for (Index k = t; k < end; ++k) add(k, innovations_after(noise, MatrixXd::Ones(1, 1)));
     }
     t = end;
   }
@@ -65,7 +65,7 @@ Whitener::Whitener(const NoiseModel& noise, const RowMask& present, const std::v
     for (Index k = 0; k < directions.rows(); ++k) {
       if (!present(stretch.first + k)) directions.row(k).setZero();
     }
-    add(stretch.first, innovations(noise, directions) / noise.std);
+    add(stretch.first, innovations_after(noise, directions) / noise.std);
   }
   for (Directions& one : taken_) {
     for (Index k = 0; k < one.basis.rows(); ++k) {
@@ -110,34 +110,61 @@ void Whitener::factorise() {
   gram_ = gram;
 }
 
-MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
+MatrixXd Whitener::innovations_of_all_rows(const Eigen::Ref<const MatrixXd>& x) const {
   const Index p = noise_.order(), N = x.rows();
-  MatrixXd out = MatrixXd::Zero(rows(), x.cols());
-  if (rows() == 0) return out;
-  MatrixXd known = x;
+  MatrixXd known = x / noise_.std;
   for (Index t = 0; t < N; ++t) {
     if (!present_(t)) known.row(t).setZero();
   }
-  MatrixXd innovation = known.bottomRows(N - p);  // of rows p, p + 1, ...
-  for (Index k = 0; k < p; ++k) innovation -= noise_.ar(k) * known.middleRows(p - 1 - k, N - p);
-  innovation /= noise_.std;
-  if (gram_ != nullptr) {
-    MatrixXd parts(gram_->rows(), x.cols());
-    Index at = 0;
-    for (const Directions& one : taken_) {
-      parts.middleRows(at, one.basis.cols()).noalias() =
-          one.basis.transpose() * innovation.middleRows(one.first - p, one.basis.rows());
-      at += one.basis.cols();
-    }
-    parts = gram_->solve(parts).eval();
-    at = 0;
-    for (const Directions& one : taken_) {
-      innovation.middleRows(one.first - p, one.basis.rows()).noalias() -= one.basis * parts.middleRows(at, one.basis.cols());
-      at += one.basis.cols();
-    }
-  }
-  for (Index k = 0; k < rows(); ++k) out.row(k) = innovation.row(source_[static_cast<std::size_t>(k)] - p);
+  MatrixXd out = known.bottomRows(N - p);  // of rows p, p + 1, ...
+  for (Index k = 0; k < p; ++k) out -= noise_.ar(k) * known.middleRows(p - 1 - k, N - p);
   return out;
+}
+
+void Whitener::take_out(MatrixXd& innovations) const {
+  if (gram_ == nullptr) return;
+  const Index p = noise_.order();
+  MatrixXd parts(gram_->rows(), innovations.cols());
+  Index at = 0;
+  for (const Directions& one : taken_) {
+    parts.middleRows(at, one.basis.cols()).noalias() =
+        one.basis.transpose() * innovations.middleRows(one.first - p, one.basis.rows());
+    at += one.basis.cols();
+  }
+  parts = gram_->solve(parts).eval();
+  at = 0;
+  for (const Directions& one : taken_) {
+    innovations.middleRows(one.first - p, one.basis.rows()).noalias() -= one.basis * parts.middleRows(at, one.basis.cols());
+    at += one.basis.cols();
+  }
+}
+
+MatrixXd Whitener::rows_of(const MatrixXd& innovations) const {
+  if (rows() == innovations.rows()) return innovations;
+  MatrixXd out(rows(), innovations.cols());
+  for (Index c = 0; c < out.cols(); ++c) {
+    for (Index k = 0; k < rows(); ++k) out(k, c) = innovations(source_[static_cast<std::size_t>(k)] - noise_.order(), c);
+  }
+  return out;
+}
+
+MatrixXd Whitener::apply(const Eigen::Ref<const MatrixXd>& x) const {
+  if (rows() == 0) return MatrixXd(0, x.cols());
+  MatrixXd all = innovations_of_all_rows(x);
+  take_out(all);
+  return rows_of(all);
+}
+
+MatrixXd Whitener::innovations(const Eigen::Ref<const MatrixXd>& x) const {
+  return rows() == 0 ? MatrixXd(0, x.cols()) : rows_of(innovations_of_all_rows(x));
+}
+
+VectorXd Whitener::known_part(const Eigen::Ref<const VectorXd>& white) const {
+  if (rows() == 0) return white;
+  MatrixXd all = MatrixXd::Zero(present_.size() - noise_.order(), 1);
+  for (Index k = 0; k < rows(); ++k) all(source_[static_cast<std::size_t>(k)] - noise_.order(), 0) = white(k);
+  take_out(all);
+  return rows_of(all);
 }
 
 }  // namespace deltadyn

@@ -69,8 +69,8 @@ TEST(UnknownTorque, TakesFewDirectionsOfTheRowsInReach) {
   const std::vector<UnknownTorque> unknown = unknown_torque(log, 0, present);
   ASSERT_EQ(unknown.size(), 1u);
   const VectorXd size = unknown[0].directions.colwise().norm().transpose();
-  EXPECT_GT(unknown[0].directions.rows(), 6);
-  EXPECT_LE((size.array() > 0.01 * size.maxCoeff()).count(), 3);
+  EXPECT_GT(unknown[0].directions.rows(), 6);  // far more than directions
+  EXPECT_LE((size.array() > 0.01 * size.maxCoeff()).count(), 5);
 }
 
 TEST(UnknownTorque, ShowsWhatHappensBesideTheStretch) {
@@ -79,7 +79,7 @@ TEST(UnknownTorque, ShowsWhatHappensBesideTheStretch) {
   RowMask present = RowMask::Constant(log.rows, true);
   const std::vector<UnknownTorque> unknown = unknown_torque(log, 0, present);
   MatrixXd tau = MatrixXd::Zero(kSamples, 1);
-  tau.block(912, 0, 30, 1).setConstant(1.0);
+  tau.block(920, 0, 30, 1).setConstant(1.0);
   EXPECT_GT(left(unknown, low_passed_rows(log, tau)), 0.01);
 }
 
@@ -92,7 +92,7 @@ TEST(UnknownTorque, KnowsNothingWhereAJointStands) {
   const Index reach = log.low_pass->half_width();
   for (Index row = 0; row < log.rows; ++row) {
     const Index centre = sample_of_row(log, row);
-    EXPECT_EQ(present(row), centre < 400 + reach || centre >= 1400 - reach);
+    EXPECT_EQ(present(row), centre < 392 + reach || centre >= 1408 - reach);  // 8 ms early or late
   }
 }
 

@@ -94,6 +94,19 @@ TEST(Whitener, DoesNotSeeUnknownDirectionsAndLosesNothingElse) {
   EXPECT_NEAR(mapped.dot(mapped_other), expected, 1e-8);
 }
 
+TEST(Whitener, NeedsToTakeTheUnknownOutOfOneSideOfAnInnerProductOnly) {
+  NoiseModel model;
+  model.ar = Eigen::Vector2d(0.9, -0.3);
+  RowMask present = RowMask::Constant(400, true);
+  present.segment(300, 30).setConstant(false);
+  const Whitener whitener(model, present, {bumps(60), bumps(66), bumps(200)});
+  const VectorXd e = autoregression(model.ar, 400, 7), other = autoregression(model.ar, 400, 8);
+  const VectorXd a = whitener.apply(e), b = whitener.apply(other), plain = whitener.innovations(other);
+  EXPECT_NEAR(a.dot(plain), a.dot(b), 1e-9);
+  EXPECT_LT((whitener.known_part(plain) - b).norm(), 1e-9);
+  EXPECT_GT((plain - b).norm(), 1);
+}
+
 TEST(Whitener, KeepsDirectionsThatTheNoiseHides) {
   const RowMask present = RowMask::Constant(100, true);
   NoiseModel loud;

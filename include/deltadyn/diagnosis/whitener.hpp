@@ -27,6 +27,10 @@ class Whitener {
   [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
   /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not matter
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  /// The same without taking out what is unknown: enough for inner products with what it has been taken out of.
+  [[nodiscard]] Eigen::MatrixXd innovations(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  /// Takes what is unknown out of white rows.
+  [[nodiscard]] Eigen::VectorXd known_part(const Eigen::Ref<const Eigen::VectorXd>& white) const;
   /// Row of the log that each white row stands for (for maps of the residual).
   [[nodiscard]] const std::vector<Eigen::Index>& source() const { return source_; }
 
@@ -41,6 +45,9 @@ class Whitener {
   using Gram = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
 
   void factorise();
+  [[nodiscard]] Eigen::MatrixXd innovations_of_all_rows(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  void take_out(Eigen::MatrixXd& innovations) const;
+  [[nodiscard]] Eigen::MatrixXd rows_of(const Eigen::MatrixXd& innovations) const;
 
   NoiseModel noise_;
   RowMask present_;
