@@ -25,13 +25,13 @@ constexpr double kSlowOverOthers = 5;       // ... times so much more than the o
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
-constexpr double kFaster = 1.5;         // times the training logs' largest rate: a hold-out log that tries the course beyond ...
-constexpr double kMetBeyond = 0.9;      // ... and the share of its gap that the name must close there
-constexpr double kRepeated = 0.05;      // of the hold-out residual's square that structure must explain to count
-constexpr double kCarriesOver = 0.5;    // of the hold-out gap that an effect must close ...
-constexpr double kLeastClosed = 0.25;   // ... and of one that is hardly larger than the floor
-constexpr double kParametersOff = 1.2;  // rms of the given parameters over that of the fitted ones
-constexpr double kHoldoutGap = 1.4;  // rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
+constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
+constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
+constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
+constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
+constexpr double kAboveFloor = 1.1;    // rms over floor of a drive below which nothing is left to explain in the training logs
+constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
@@ -82,80 +82,6 @@ std::string place_of(const Diagnosis& out, std::size_t drive) {
   return text;
 }
 
-std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot) {
-  const EffectKind& kind = effect_kind(one.effect.id);
-  std::string text;
-  for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
-    const auto at = static_cast<Index>(k);
-    const double std = one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0.0;
-    text += fmt::format("{}{} {:.4g} +- {:.2g} {} (95 %)", text.empty() ? "" : ", ", kind.amplitudes[k].name,
-                        one.effect.amplitude(at), 1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
-  }
-  return text;
-}
-
-/// A user's own parameters can be off although nothing is missing: the search fits them anew.
-void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
-  for (std::size_t j = 0; j < out.drives.size(); ++j) {
-    const DriveFit& drive = out.drives[j];
-    if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
-    const char* unit = context.robot.description().kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N m" : "N";
-    out.lines.push_back(
-        fmt::format("But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
-                    drive.rms_given, unit, drive.rms, unit));
-    out.next.insert(out.next.begin(), "Fit the parameters to these logs with delta-identify before you use the model.");
-    return;
-  }
-}
-
-}  // namespace
-
-void say(const SearchContext& context, Diagnosis& out) {
-  const RobotDescription& robot = context.robot.description();
-  switch (out.verdict) {
-    case DiagnosisVerdict::nothing_missing:
-      out.headline = "Nothing is missing: what the model leaves is noise as far as these logs can show.";
-      out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
-      say_parameters_are_off(context, out);
-      return;
-    case DiagnosisVerdict::not_testable:
-      out.next.push_back(
-          "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow.");
-      return;
-    case DiagnosisVerdict::unknown_structure:
-      out.headline = "Something is missing that no effect of the catalogue explains: " + out.region + ".";
-      out.next.push_back("Look at the maps of the residual: which coordinate does it follow? Check the machine at that place.");
-      out.next.push_back("Repeat the motion once: a residual that does not repeat is no property of the robot.");
-      return;
-    default: break;
-  }
-  std::string names;
-  for (const NamedEffect& one : out.named) names += (names.empty() ? "" : " and ") + one.name + " at " + one.joint;
-  for (const NamedEffect& one : out.named) {
-    const EffectKind& kind = effect_kind(one.effect.id);
-    const std::string shape = effect_shape_text(one.effect, robot);
-    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning, amplitude_text(one, robot),
-                                    shape.empty() ? "" : "; " + shape));
-    if (!one.confusable.empty()) {
-      std::string others;
-      for (const EffectCandidate& other : one.confusable)
-        others += (others.empty() ? "" : ", ") + other.name + " at " + other.joint;
-      out.lines.push_back("These logs cannot tell it from " + others + ": " + one.confusable.front().why + ".");
-      out.next.push_back("To tell " + one.name + " from " + others +
-                         ", record a motion that separates them: --plan-next FILE writes one.");
-    }
-    out.next.push_back(one.name + ": " + kind.remedy + ".");
-  }
-  out.headline = out.verdict == DiagnosisVerdict::named
-                     ? "Missing: " + names + "."
-                     : "Missing: " + names + ", or an effect that these logs cannot tell from it.";
-  out.next.push_back(context.options.identify
-                         ? "Go on with the improved parameters and the effect file."
-                         : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
-}
-
-namespace {
-
 /// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
 /// the drive that a log should reach. \param gap_shrink  on the hold-out log; NaN without one
 double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
@@ -166,8 +92,8 @@ double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, do
   for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
   const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
   const bool unsure = one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0));
-  const bool fails_there = there > kFaster * training && gap_shrink < kMetBeyond;
-  if (!unsure && !fails_there) return 0;
+  const bool untried = there < kFaster * training, fails_there = !untried && gap_shrink < kMetBeyond;
+  if (!unsure && !untried && !fails_there) return 0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
   if (!std::isfinite(wanted)) wanted = there;
   return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
@@ -336,7 +262,9 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
             "{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.", out.named.front().name,
             out.named.front().joint,
             worse ? std::string("makes the model worse") : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
-        if (largest_share > kMaterialStructure) {
+        double above = 0;
+        for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
+        if (largest_share > kMaterialStructure && above > kAboveFloor) {
           out.verdict = DiagnosisVerdict::unknown_structure;
           out.region = place_of(out, static_cast<std::size_t>(touched.front()));
           out.lines.push_back(line);

@@ -340,6 +340,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     const EffectSearch::State beside = search.state(found.noise, others, &pilots);
     Fit fit = search.refine(beside, found.accepted[k].hypothesis);
+    if (found.hygiene[k] && !hygienic(context, fit)) fit = found.fits[k];  // no more than was allowed for without a name
     if (!others.empty() && !counts(context, found, beside, fit)) {
       found.accepted = std::move(others);
       found.fits.erase(found.fits.begin() + static_cast<std::ptrdiff_t>(k));

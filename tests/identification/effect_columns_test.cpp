@@ -19,6 +19,10 @@ class SpringColumn : public testing::TestWithParam<const char*> {
   void SetUp() override {
     robot_ = make_robot(testing_support::delta_description(GetParam()));
     p_ = testing_support::delta_truth(*robot_);
+    // The bar's dry friction passes the spring, too, and its steps have no second derivative to compare.
+    for (int k = 0; k < robot_->parameters(); ++k) {
+      if (robot_->parameter_names()[static_cast<std::size_t>(k)] == "telescope.coulomb") p_(k) = 0;
+    }
     testing_support::SyntheticOptions options;
     options.duration_s = 2;
     ProcessingOptions processing;

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr double kParametersOff = 1.2;  // rms of the given parameters over that of the fitted ones
+
+std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot) {
+  const EffectKind& kind = effect_kind(one.effect.id);
+  std::string text;
+  for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    const double std = one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0.0;
+    text += fmt::format("{}{} {:.4g} +- {:.2g} {} (95 %)", text.empty() ? "" : ", ", kind.amplitudes[k].name,
+                        one.effect.amplitude(at), 1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
+  }
+  return text;
+}
+
+/// A user's own parameters can be off although nothing is missing: the search fits them anew.
+void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
+  for (std::size_t j = 0; j < out.drives.size(); ++j) {
+    const DriveFit& drive = out.drives[j];
+    if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
+    const char* unit = context.robot.description().kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N m" : "N";
+    out.lines.push_back(
+        fmt::format("But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
+                    drive.rms_given, unit, drive.rms, unit));
+    out.next.insert(out.next.begin(), "Fit the parameters to these logs with delta-identify before you use the model.");
+    return;
+  }
+}
+
+}  // namespace
+
+void say(const SearchContext& context, Diagnosis& out) {
+  const RobotDescription& robot = context.robot.description();
+  switch (out.verdict) {
+    case DiagnosisVerdict::nothing_missing:
+      out.headline = "Nothing is missing: what the model leaves is noise as far as these logs can show.";
+      out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
+      say_parameters_are_off(context, out);
+      return;
+    case DiagnosisVerdict::not_testable:
+      out.next.push_back(
+          "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow.");
+      return;
+    case DiagnosisVerdict::unknown_structure:
+      out.headline = "Something is missing that no effect of the catalogue explains: " + out.region + ".";
+      out.next.push_back("Look at the maps of the residual: which coordinate does it follow? Check the machine at that place.");
+      out.next.push_back("Repeat the motion once: a residual that does not repeat is no property of the robot.");
+      return;
+    default: break;
+  }
+  std::string names;
+  for (const NamedEffect& one : out.named) names += (names.empty() ? "" : " and ") + one.name + " at " + one.joint;
+  for (const NamedEffect& one : out.named) {
+    const EffectKind& kind = effect_kind(one.effect.id);
+    const std::string shape = effect_shape_text(one.effect, robot);
+    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning, amplitude_text(one, robot),
+                                    shape.empty() ? "" : "; " + shape));
+    if (!one.confusable.empty()) {
+      std::string others;
+      for (const EffectCandidate& other : one.confusable)
+        others += (others.empty() ? "" : ", ") + other.name + " at " + other.joint;
+      out.lines.push_back("These logs cannot tell it from " + others + ": " + one.confusable.front().why + ".");
+      out.next.push_back("To tell " + one.name + " from " + others +
+                         ", record a motion that separates them: --plan-next FILE writes one.");
+    }
+    out.next.push_back(one.name + ": " + kind.remedy + ".");
+  }
+  out.headline = out.verdict == DiagnosisVerdict::named
+                     ? "Missing: " + names + "."
+                     : "Missing: " + names + ", or an effect that these logs cannot tell from it.";
+  out.next.push_back(context.options.identify
+                         ? "Go on with the improved parameters and the effect file."
+                         : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
+}
+
+}  // namespace deltadyn::detail
