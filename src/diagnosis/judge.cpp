@@ -92,8 +92,8 @@ double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, do
   for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
   const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
   const bool unsure = one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0));
-  const bool untried = there < kFaster * training, fails_there = !untried && gap_shrink < kMetBeyond;
-  if (!unsure && !untried && !fails_there) return 0;
+  const bool fails_there = there > kFaster * training && gap_shrink < kMetBeyond;
+  if (!unsure && !fails_there) return 0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
   if (!std::isfinite(wanted)) wanted = there;
   return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
