@@ -307,18 +307,26 @@ std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const
 std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std::vector<Signature>& signatures) const {
   std::vector<VectorXd> out(hypotheses_.size());
   const VectorXd y = clean(problem);
-  for (const Run& run : runs_) {
+  std::vector<std::vector<VectorXd>> whole(runs_.size());
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
     VectorXd r;
-    const std::vector<VectorXd> inner = products(problem, run, y, r);
+    const std::vector<VectorXd> inner = products(problem, runs_[run], y, r);
     const VectorXd Q_r = problem.Q.transpose() * r;
+    whole[run].resize(sensitive_.size());
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
       const WhiteColumns& white = signatures[sensitive_[k]].white;
-      VectorXd& sum = out[sensitive_[k]];
       if (white.cols == 0) continue;
-      if (sum.size() == 0) sum = VectorXd::Zero(white.cols);
-      VectorXd whole = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
-      if (inner[k].size() > 0) whole += inner[k];
-      sum += whole / static_cast<double>(runs_.size());
+      whole[run][k] = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
+      if (inner[k].size() > 0) whole[run][k] += inner[k];
+    }
+  }
+  for (const auto& run : whole) {
+    for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+      VectorXd& sum = out[sensitive_[k]];
+      if (run[k].size() == 0) continue;
+      if (sum.size() == 0) sum = VectorXd::Zero(run[k].size());
+      sum += run[k] / static_cast<double>(runs_.size());
     }
   }
   return out;
