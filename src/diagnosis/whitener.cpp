@@ -90,11 +90,11 @@ void Whitener::factorise() {
     column += one.basis.cols();
   }
   for (std::size_t a = 0; a < taken_.size(); ++a) {
-    for (std::size_t b = a; b < taken_.size(); ++b) {
-      const Index first = std::max(taken_[a].first, taken_[b].first), end = std::min(taken_[a].end(), taken_[b].end());
-      if (first >= end) continue;
-      const MatrixXd block = taken_[b].basis.middleRows(first - taken_[b].first, end - first).transpose() *
-                             taken_[a].basis.middleRows(first - taken_[a].first, end - first);
+    // Sorted by their first rows: only the next few meet this one.
+    for (std::size_t b = a; b < taken_.size() && taken_[b].first < taken_[a].end(); ++b) {
+      const Index first = taken_[b].first, end = std::min(taken_[a].end(), taken_[b].end());
+      const MatrixXd block =
+          taken_[b].basis.topRows(end - first).transpose() * taken_[a].basis.middleRows(first - taken_[a].first, end - first);
       for (Index r = 0; r < block.rows(); ++r) {
         for (Index c = 0; c < block.cols(); ++c) {
           if (a != b || r >= c) entries.emplace_back(start[b] + r, start[a] + c, block(r, c) + (a == b && r == c ? kRidge : 0.0));

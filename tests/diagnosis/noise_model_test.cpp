@@ -1,23 +1,14 @@
 #include "deltadyn/diagnosis/noise_model.hpp"
 
 #include <gtest/gtest.h>
-#include <random>
+
+#include "diagnosis/autoregression.hpp"
 
 namespace deltadyn {
 namespace {
 
 using Eigen::VectorXd;
-
-VectorXd autoregression(const VectorXd& ar, Eigen::Index rows, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  VectorXd e = VectorXd::Zero(rows);
-  for (Eigen::Index t = 0; t < rows; ++t) {
-    e(t) = normal(random);
-    for (Eigen::Index k = 0; k < std::min(t, ar.size()); ++k) e(t) += ar(k) * e(t - 1 - k);
-  }
-  return e;
-}
+using testing_support::autoregression;
 
 TEST(NoiseModel, FindsAnAutoregressionAndItsOrder) {
   const VectorXd ar = Eigen::Vector2d(1.4, -0.5);

@@ -29,6 +29,13 @@ PreparedLog low_passed_log() {
   return log;
 }
 
+/// Of a reversal of 12 ms from sample 900 on.
+std::vector<UnknownTorque> of_a_quick_reversal(PreparedLog log) {
+  log.reversal.block(900, 0, 12, 1).setConstant(true);
+  RowMask present = RowMask::Constant(log.rows, true);
+  return unknown_torque(log, 0, present);
+}
+
 /// Share of the rows' square that no combination of the directions gives.
 double left(const std::vector<UnknownTorque>& unknown, const VectorXd& rows) {
   Index columns = 0;
@@ -63,10 +70,7 @@ TEST(UnknownTorque, SpansWhateverHappensInTheStretch) {
 }
 
 TEST(UnknownTorque, TakesFewDirectionsOfTheRowsInReach) {
-  PreparedLog log = low_passed_log();
-  log.reversal.block(900, 0, 12, 1).setConstant(true);
-  RowMask present = RowMask::Constant(log.rows, true);
-  const std::vector<UnknownTorque> unknown = unknown_torque(log, 0, present);
+  const std::vector<UnknownTorque> unknown = of_a_quick_reversal(low_passed_log());
   ASSERT_EQ(unknown.size(), 1u);
   const VectorXd size = unknown[0].directions.colwise().norm().transpose();
   EXPECT_GT(unknown[0].directions.rows(), 6);  // far more than directions
@@ -74,10 +78,8 @@ TEST(UnknownTorque, TakesFewDirectionsOfTheRowsInReach) {
 }
 
 TEST(UnknownTorque, ShowsWhatHappensBesideTheStretch) {
-  PreparedLog log = low_passed_log();
-  log.reversal.block(900, 0, 12, 1).setConstant(true);
-  RowMask present = RowMask::Constant(log.rows, true);
-  const std::vector<UnknownTorque> unknown = unknown_torque(log, 0, present);
+  const PreparedLog log = low_passed_log();
+  const std::vector<UnknownTorque> unknown = of_a_quick_reversal(log);
   MatrixXd tau = MatrixXd::Zero(kSamples, 1);
   tau.block(920, 0, 30, 1).setConstant(1.0);
   EXPECT_GT(left(unknown, low_passed_rows(log, tau)), 0.01);

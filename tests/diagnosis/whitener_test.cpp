@@ -2,7 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
-#include <random>
+
+#include "diagnosis/autoregression.hpp"
 
 namespace deltadyn {
 namespace {
@@ -10,17 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-VectorXd autoregression(const VectorXd& ar, Index rows, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  VectorXd e = VectorXd::Zero(rows);
-  for (Index t = 0; t < rows; ++t) {
-    e(t) = normal(random);
-    for (Index k = 0; k < std::min(t, ar.size()); ++k) e(t) += ar(k) * e(t - 1 - k);
-  }
-  return e;
-}
+using testing_support::autoregression;
 
 /// Two smooth bumps that overlap, one hundred times as large as the noise.
 UnknownTorque bumps(Index first) {
