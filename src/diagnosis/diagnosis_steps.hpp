@@ -69,9 +69,10 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
 
-/// What a re-fit of the base parameters leaves of a torque, in the rows of the logs [N m | N]: C a - Y b for the b that takes most.
+/// What a re-fit of the problem's model leaves of a torque, in the rows of the logs [N m | N]: C a - [Y E] b for the b that takes most,
+/// E the columns of the effects that the model holds.
 struct Remainder {
-  Eigen::VectorXd beta;                    ///< b (and amplitudes of the known effects)
+  Eigen::VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
   PerLogAndDrive<Eigen::VectorXd> torque;  ///< [log][drive]; empty where there is none
 };
 /// \param columns  [log][drive] rows x k, empty where a drive is not reached
@@ -83,6 +84,9 @@ struct Remainder {
 
 /// Squares of an effect's white torque, one value a drive.
 [[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
+/// The same for what a re-fit of the problem's model leaves of it: that also stands on drives that the effect itself does not reach.
+[[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
+                                                         const Fit& fit);
 
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.

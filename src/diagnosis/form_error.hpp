@@ -18,26 +18,23 @@ class FormErrors {
              std::optional<std::size_t> but = std::nullopt)
       : context_(context), found_(found), state_(state), but_(but) {}
 
-  /// Can the form of an earlier effect have left what `fit` gains? More is left at the same place and in the same class; what the earlier
-  /// one does on other drives than `fit` does not count.
-  [[nodiscard]] bool explain(const Fit& fit);
+  /// Can the form of another effect have left what `fit` gains? Most is left at the same place and in what that effect depends on itself;
+  /// what it does on other drives than `fit` does not count.
+  [[nodiscard]] bool explain(const Fit& fit) const;
 
  private:
   [[nodiscard]] bool counts(std::size_t k) const { return !found_.hygiene[k] && k != but_; }
+  /// What an effect of `found` gains: then, or alone, as one that came later may have gained little beside a mixture.
+  [[nodiscard]] double gain_of(std::size_t k) const;
   /// Largest gain of an effect at a joint.
   [[nodiscard]] double best_at(int joint) const;
-  /// An error of form looks like several effects and like none of them well: an effect takes nearly all structure that the generic
-  /// basis still sees, or gains far more than any other class.
-  [[nodiscard]] bool stands_out(const Fit& fit);
-  [[nodiscard]] double structure_of(const Eigen::VectorXd& r) const;
-  [[nodiscard]] const std::string& class_of(const Fit& fit) const;
+  /// An error of form looks like several effects and like none of them well: this one gains far more than any other class.
+  [[nodiscard]] bool stands_out(const Fit& fit) const;
 
   const SearchContext& context_;
   const SearchResult& found_;
   const EffectSearch::State& state_;
   std::optional<std::size_t> but_;
-  std::optional<Omnibus> omnibus_;
-  double structure_ = 0;  ///< of the state's own residual
 };
 
 }  // namespace deltadyn::detail

@@ -78,6 +78,7 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
     // The same log fitted by everything: a model from other logs cannot be expected to do better.
     out.floor(j) = std::min({floor[0][drive], out.rms_before(j), out.rms_after(j)});
   }
+  out.effects = std::move(extra[0]);
   return out;
 }
 
@@ -140,10 +141,12 @@ bool carries_over(const SearchContext& context, const SearchResult& found, const
   const Hypothesis one{fit.effect.id, fit.effect.joint, {fit.effect.shape}, fit.effect.amplitude.size()};
   const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, one);
   const VectorXd beta = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude).beta;
+  const Index b = context.base.count();
   double inner = 0, square = 0, count = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     if (rows[j].size() == 0) continue;
-    const VectorXd torque = rows[j] * fit.effect.amplitude - held.Y[j] * beta.head(context.base.count());
+    const VectorXd torque = rows[j] * fit.effect.amplitude - held.Y[j] * beta.head(b) -
+                            proof.effects[j].leftCols(beta.size() - b) * beta.tail(beta.size() - b);
     const VectorXd without = proof.after.col(static_cast<Index>(j)) + torque;
     const double weight = 1 / std::max(proof.floor(static_cast<Index>(j)) * proof.floor(static_cast<Index>(j)), 1e-300);
     inner += weight * held.usable[j].select(torque.array() * without.array(), 0.0).sum();

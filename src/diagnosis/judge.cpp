@@ -25,6 +25,7 @@ constexpr double kSlowOverOthers = 5;       // ... times so much more than the o
 constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
+constexpr double kCourse = 3.5;        // times the rate over which friction bends: training logs that show where the bend ends
 constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
 constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
 constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
@@ -82,6 +83,12 @@ std::string place_of(const Diagnosis& out, std::size_t drive) {
   return text;
 }
 
+/// Do the logs end before the bend does? Then other bends fit them as well, and what follows is luck. A power never ends.
+bool bend_is_open(const NamedEffect& one, double largest_rate) {
+  if (one.effect.id != EffectId::shear_thinning) return false;
+  return one.effect.shape(1) > 0 || largest_rate < kCourse * one.effect.shape(0);
+}
+
 /// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
 /// the drive that a log should reach. \param gap_shrink  on the hold-out log; NaN without one
 double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
@@ -93,7 +100,7 @@ double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, do
   const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
   const bool unsure = one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0));
   const bool fails_there = there > kFaster * training && gap_shrink < kMetBeyond;
-  if (!unsure && !fails_there) return 0;
+  if (!unsure && !fails_there && !bend_is_open(one, training)) return 0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
   if (!std::isfinite(wanted)) wanted = there;
   return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
@@ -149,8 +156,9 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     const double share = noise_shares(context, structure, found.floor)(j);
     double repeated = 1;  // share of the hold-out log's residual that the same function explains there
     if (holdout != nullptr) {
-      const VectorXd there =
-          context.basis.columns.back()[drive] * clear - holdout->Y[drive] * structure.beta.head(context.base.count());
+      const VectorXd there = context.basis.columns.back()[drive] * clear -
+                             holdout->Y[drive] * structure.beta.head(context.base.count()) -
+                             proof->effects[drive] * structure.beta.tail(structure.beta.size() - context.base.count());
       const VectorXd e = proof->after.col(j);
       const double before = rms_of(e, holdout->usable[drive]), after = rms_of(e - there, holdout->usable[drive]);
       repeated = 1 - after * after / std::max(before * before, 1e-300);
@@ -318,10 +326,13 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
           "course at higher speeds.",
           one.joint);
       const double unsure = one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0));
-      const std::string reason =
-          unsure > kUnsureCourse
-              ? fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure)
-              : fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * out.gap_shrink);
+      std::string reason = fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * out.gap_shrink);
+      if (unsure > kUnsureCourse) {
+        reason = fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure);
+      } else if (!(out.gap_shrink < kMetBeyond)) {
+        reason =
+            fmt::format("but the logs end before the friction has bent over, within {:.2g} times the rate of the bend", kCourse);
+      }
       out.lines.push_back(fmt::format("{} fits, {}: as a term of the model it would be a guess.", one.name, reason));
       out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
                                      needed, turns ? "rad/s" : "m/s"));

@@ -65,6 +65,12 @@ NoiseModel with_white_share(const NoiseModel& noise, double share) {
   return out;
 }
 
+namespace {
+
+constexpr Index kLeastPairs = 2;  // one in so many rows must have a usable row at the lag of the order
+
+}  // namespace
+
 NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, Index largest_order,
                            double damping) {
   // Forward and backward errors of each run of usable rows (Burg 1968).
@@ -93,6 +99,7 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
   VectorXd ar(0);
   for (Index order = 1; order <= std::min(largest_order, count / 20); ++order) {
     double cross = 0, square = 0;
+    Index pairs = 0;
     for (Run& run : runs) {
       const Index length = run.forward.size() - 1;
       if (length < 1) {
@@ -102,8 +109,10 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
       // forward error at t beside the backward error at t - 1
       cross += run.forward.tail(length).dot(run.backward.head(length));
       square += run.forward.tail(length).squaredNorm() + run.backward.head(length).squaredNorm();
+      pairs += length;
     }
-    if (!(square > 0)) break;
+    // Short runs have no more to say: the few long ones would be followed, not modelled.
+    if (!(square > 0) || kLeastPairs * pairs < count) break;
     const double reflection = 2 * cross / square;
     for (Run& run : runs) {
       const Index length = run.forward.size() - 1;

@@ -26,6 +26,7 @@ Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem
     for (std::size_t j = 0; j < context.logs[l].usable.size(); ++j) {
       VectorXd torque = -context.logs[l].Y[j] * out.beta.head(b);
       if (columns[l][j].size() > 0) torque += columns[l][j] * amplitude;
+      if (out.beta.size() > b) torque -= problem.extra[l][j] * out.beta.tail(out.beta.size() - b);
       out.torque.back().push_back(std::move(torque));
     }
   }
@@ -38,6 +39,16 @@ VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& prob
     if (fit.white.blocks[s].size() == 0) continue;
     out(static_cast<Index>(problem.segments[s].drive)) += (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
   }
+  return out;
+}
+
+VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
+  VectorXd out = VectorXd::Zero(context.robot.drives());
+  const WhiteColumns white = problem.whiten(fit.rows);
+  if (white.cols < fit.effect.amplitude.size()) return out;
+  const VectorXd left = white.projected(problem.Q, problem.segments, 0, white.cols) * fit.effect.amplitude;
+  for (const WhiteSegment& segment : problem.segments)
+    out(static_cast<Index>(segment.drive)) += left.segment(segment.offset, segment.rows()).squaredNorm();
   return out;
 }
 

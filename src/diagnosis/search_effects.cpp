@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -19,18 +20,20 @@ namespace {
 constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
 constexpr int kHygienic = 4;         // further ones that may be needed for what counts as hygiene only
 constexpr std::size_t kProvisionalCandidates = 6;
-constexpr double kMaterialFurther = 0.05;  // kMaterial of every effect beside the first
+constexpr double kMaterialFurther = 0.15;  // kMaterial of every effect beside the first
 constexpr double kSimplerGain =
     0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
 constexpr double kSameLoss = 0.5;  // smaller over larger loss of a gear from which both count as one
 constexpr std::size_t kBestForPairs = 10;
 constexpr std::size_t kRefined = 8;     // hypotheses whose shapes are refined before they are compared
+constexpr double kBetter = 2.0;         // worth that another hypothesis must have more than one that was taken before
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
 constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
-constexpr double kSkewSamples = 1.0;    // a skew up to one sample is a matter of who samples when, not of the robot
-constexpr double kRestShare = 0.03;     // of the largest rate: friction that bends below it is friction at rest
-constexpr double kLagSamples = 1.0;     // and so is so short a lag
+constexpr double kClearShare = 0.2;  // of a gain, on drives that no other effect reaches, from which these alone tell names apart
+constexpr double kSkewSamples = 1.0;  // a skew up to one sample is a matter of who samples when, not of the robot
+constexpr double kRestShare = 0.03;   // of the largest rate: friction that bends below it is friction at rest
+constexpr double kLagSamples = 1.0;   // and so is so short a lag
 
 std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
   std::vector<std::size_t> order(state.scores.size());
@@ -177,10 +180,37 @@ EffectCandidate candidate_of(const SearchContext& context, const SearchResult& f
   return out;
 }
 
-/// Everything that the data cannot tell from `best` beside the other effects (step 7).
+/// Drives that bear a tenth or more of one of the other effects: there, what its form leaves may decide between two names.
+std::vector<bool> reached_by_others(const SearchContext& context, const SearchResult& found, std::size_t but) {
+  std::vector<bool> out(static_cast<std::size_t>(context.robot.drives()), false);
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
+    if (k == but) continue;
+    const VectorXd theirs = remaining_squares_by_drive(context, *found.before.problem, found.fits[k]);
+    for (Index j = 0; j < theirs.size(); ++j) {
+      if (theirs(j) > 0.1 * theirs.sum()) out[static_cast<std::size_t>(j)] = true;
+    }
+  }
+  return out;
+}
+
+/// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if these gain too little.
+/// \param worse,better  squares by which the other name, and no name, is worse in each row
+double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached, const VectorXd& worse, const VectorXd& better,
+                  double least_gain) {
+  double lead = 0, gain = 0;
+  for (const WhiteSegment& segment : problem.segments) {
+    if (reached[segment.drive]) continue;
+    lead += worse.segment(segment.offset, segment.rows()).sum();
+    gain += better.segment(segment.offset, segment.rows()).sum();
+  }
+  return gain > least_gain ? lead / gain : std::numeric_limits<double>::infinity();
+}
+
+/// Everything that the data cannot tell from `best` beside the other effects (step 7). \param place  of `best` in `found`
 std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
-                                            const EffectSearch::State& state, const Fit& best) {
+                                            const EffectSearch::State& state, const Fit& best, std::size_t place) {
   std::vector<EffectCandidate> set;
+  const std::vector<bool> reached = reached_by_others(context, found, place);
   const WhiteProblem& problem = *state.problem;
   const Index k = best.effect.amplitude.size();
   if (best.white.cols < k) return set;
@@ -211,7 +241,9 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     // An effect with more parameters would have followed a form that the catalogue lacks better, not worse.
     const Hypothesis& one = context.search.hypotheses()[best.hypothesis];
     const Hypothesis& alternative = context.search.hypotheses()[h];
-    const bool by_form = lead < kSetForm * best.gain && alternative.freedom() <= one.freedom();
+    const double clear = clear_lead(problem, reached, r_other.cwiseAbs2() - r_best.cwiseAbs2(),
+                                    problem.r.cwiseAbs2() - r_best.cwiseAbs2(), kClearShare * best.gain);
+    const bool by_form = clear < 0 || (std::min(lead / best.gain, clear) < kSetForm && alternative.freedom() <= one.freedom());
     if (!alike && !by_blocks && !by_form) continue;
     // Beside its own special case an effect is no alternative: the case would have to be met by chance.
     if (alternative.joint == one.joint && holds(alternative.id, one.id)) continue;
@@ -234,6 +266,54 @@ bool counts(const SearchContext& context, const SearchResult& found, const Effec
   const Remainder torque = remainder_of(context, *state.problem, fit.rows, fit.effect.amplitude);
   if (noise_shares(context, torque, found.floor).sum() < material) return false;
   return found.null.family_p(fit.hypothesis, grid) <= context.options.false_naming_rate;
+}
+
+EffectSearch::State beside_others(const SearchContext& context, const SearchResult& found, std::size_t k) {
+  std::vector<AcceptedEffect> others = found.accepted;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+  return context.search.state(found.noise, others, found.pilots.get());
+}
+
+Fit fit_beside(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others, std::size_t k) {
+  const Fit fit = context.search.refine(others, found.accepted[k].hypothesis);
+  return found.hygiene[k] && !hygienic(context, fit) ? found.fits[k] : fit;  // no more than was allowed for without a name
+}
+
+/// The hypothesis that fits better than `fit` in its place, now that the others are known; `fit` if there is none.
+Fit best_in_place(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others, std::size_t k,
+                  Fit fit) {
+  if (found.hygiene[k]) return fit;
+  const FormErrors form_errors(context, found, others, k);
+  const double material = found.accepted.size() > 1 ? kMaterialFurther : kMaterial;
+  const auto may_follow = [&](const Fit& one) {
+    return !hygienic(context, one) && counts(context, found, others, one, material) && !form_errors.explain(one);
+  };
+  const std::optional<Fit> best = best_fit(context.search, others, may_follow);
+  const bool better = best && context.search.worth(best->hypothesis, best->gain, others) >
+                                  context.search.worth(fit.hypothesis, fit.gain, others) + kBetter;
+  return better ? *best : fit;
+}
+
+/// Takes out the weakest of the effects that no longer count beside the others, or that the others' forms can have left: the first of
+/// several may have been a mixture of them. False if there is none.
+bool drop_weakest(const SearchContext& context, SearchResult& found) {
+  std::optional<std::size_t> weakest;
+  double least = 0;
+  for (std::size_t k = 0; k < found.accepted.size() && found.accepted.size() > 1; ++k) {
+    const EffectSearch::State others = beside_others(context, found, k);
+    const Fit fit = fit_beside(context, found, others, k);
+    if (weakest && fit.gain >= least) continue;
+    const FormErrors form_errors(context, found, others, k);
+    if (counts(context, found, others, fit) && (found.hygiene[k] || !form_errors.explain(fit))) continue;
+    weakest = k;
+    least = fit.gain;
+  }
+  if (!weakest) return false;
+  const auto at = static_cast<std::ptrdiff_t>(*weakest);
+  found.accepted.erase(found.accepted.begin() + at);
+  found.fits.erase(found.fits.begin() + at);
+  found.hygiene.erase(found.hygiene.begin() + at);
+  return true;
 }
 
 }  // namespace
@@ -304,7 +384,7 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   EffectSearch::State state = search.state(found.noise, {}, &pilots);
   int named = 0;
   while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
-    FormErrors form_errors(context, found, state);
+    const FormErrors form_errors(context, found, state);
     std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
       return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_errors.explain(one);
     });
@@ -313,6 +393,15 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     named += found.hygiene.back() ? 0 : 1;
     found.accepted.push_back(search.accept(*fit));
     found.fits.push_back(std::move(*fit));
+    // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a third.
+    for (std::size_t k = 0; k + 1 < found.accepted.size(); ++k) {
+      const EffectSearch::State others = beside_others(context, found, k);
+      const Fit now = fit_beside(context, found, others, k);
+      Fit best = best_in_place(context, found, others, k, now);
+      if (best.hypothesis == now.hypothesis) continue;
+      found.accepted[k] = search.accept(best);
+      found.fits[k] = std::move(best);
+    }
     state = search.state(found.noise, found.accepted, &pilots);
   }
   // The first of two may have been a mixture: the best pair, if it is worth more than the best single and its follower.
@@ -335,32 +424,15 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     }
   }
   // Backward: each must still count beside the others; then its shape, size and set beside them.
-  for (std::size_t k = 0; k < found.accepted.size();) {
-    std::vector<AcceptedEffect> others = found.accepted;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    const EffectSearch::State beside = search.state(found.noise, others, &pilots);
-    Fit fit = search.refine(beside, found.accepted[k].hypothesis);
-    if (found.hygiene[k] && !hygienic(context, fit)) fit = found.fits[k];  // no more than was allowed for without a name
-    if (!others.empty() && !counts(context, found, beside, fit)) {
-      found.accepted = std::move(others);
-      found.fits.erase(found.fits.begin() + static_cast<std::ptrdiff_t>(k));
-      found.hygiene.erase(found.hygiene.begin() + static_cast<std::ptrdiff_t>(k));
-      found.sets.clear();
-      k = 0;
-      continue;
-    }
-    // Another hypothesis may fit better now that the others are known.
-    FormErrors form_errors(context, found, beside, k);
-    const auto may_follow = [&](const Fit& one) { return !hygienic(context, one) && !form_errors.explain(one); };
-    if (const std::optional<Fit> best = found.hygiene[k] ? std::optional<Fit>() : best_fit(search, beside, may_follow);
-        best && search.worth(best->hypothesis, best->gain, beside) > search.worth(fit.hypothesis, fit.gain, beside) + 2) {
-      fit = *best;
-    }
+  while (drop_weakest(context, found)) {
+  }
+  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    const EffectSearch::State beside = beside_others(context, found, k);
+    Fit fit = best_in_place(context, found, beside, k, fit_beside(context, found, beside, k));
     set_uncertainty(context, beside, fit);
-    found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, beside, fit));
+    found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, beside, fit, k));
     found.accepted[k] = search.accept(fit);
     found.fits[k] = std::move(fit);
-    ++k;
   }
   found.after = search.state(found.noise, found.accepted, &pilots);
   found.omnibus_after = Omnibus(*found.after.problem, context.basis);

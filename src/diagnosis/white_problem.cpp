@@ -16,6 +16,13 @@ namespace {
 
 constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding
 constexpr double kAbsorbed = 1e-5;  // of a signature's square: below, nothing of it is left beside the base model
+constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gram matrix: what its rounding can hold
+
+VectorXd pseudo_solve(const MatrixXd& A, const VectorXd& b) {
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+  decomposition.setThreshold(kSingular);
+  return decomposition.compute(A).solve(b);
+}
 
 }  // namespace
 
@@ -68,7 +75,8 @@ MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b) {
 }
 
 WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDrive<NoiseModel>& noise,
-                           const PerLogAndDrive<MatrixXd>& extra) {
+                           const PerLogAndDrive<MatrixXd>& extra_columns)
+    : extra(extra_columns) {
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (std::size_t j = 0; j < logs[l].usable.size(); ++j) {
       WhiteSegment segment{l, j, rows, Whitener(noise[l][j], logs[l].present[j], logs[l].unknown[j])};
@@ -113,7 +121,9 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
 Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
   const Index k = inner.size();
   std::vector<Index> free;
-  for (Index i = 0; i < k; ++i) free.push_back(i);
+  for (Index i = 0; i < k; ++i) {
+    if (gram(i, i) > 0) free.push_back(i);
+  }
   Gain best;
   best.amplitude = VectorXd::Zero(k);
   while (!free.empty()) {
@@ -126,7 +136,7 @@ Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::ve
     }
     const VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
-    const VectorXd a = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(VectorXd(scale.asDiagonal() * u));
+    const VectorXd a = scale.asDiagonal() * pseudo_solve(scaled, scale.asDiagonal() * u);
     // Columns whose amplitude has the wrong sign leave, the worst first.
     Index worst = -1;
     double least = 0;
@@ -163,6 +173,11 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
     out.gram.push_back(out.white.gram(first, k));
     out.clean.push_back(1);
     const MatrixXd raw = out.white.raw_gram(first, k);
+    for (Index c = 0; c < k; ++c) {  // a column that a re-fit absorbs leaves rounding only
+      if (out.gram.back()(c, c) >= kAbsorbed * raw(c, c)) continue;
+      out.gram.back().row(c).setZero();
+      out.gram.back().col(c).setZero();
+    }
     const double whole = raw.trace();
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
   }

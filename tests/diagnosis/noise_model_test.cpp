@@ -27,5 +27,16 @@ TEST(NoiseModel, TakesWhiteNoiseAsWhite) {
   EXPECT_LE(fit_noise_model(e, RowMask::Constant(e.size(), true)).order(), 1);
 }
 
+TEST(NoiseModel, IsNotMadeOfTheFewLongRuns) {
+  // Nearly all runs are short; the one that is longer ends in a line, which a high order would foretell without error.
+  VectorXd e = 0.3 * autoregression(VectorXd(0), 400, 3);
+  RowMask usable = RowMask::Constant(e.size(), true);
+  for (Eigen::Index k = 5; k < 360; k += 6) usable(k) = false;
+  e.tail(40) = 0.3 * VectorXd::LinSpaced(40, -1, 1);
+  const NoiseModel model = fit_noise_model(e, usable);
+  EXPECT_LE(model.order(), 4);
+  EXPECT_GT(model.std, 0.2);
+}
+
 }  // namespace
 }  // namespace deltadyn

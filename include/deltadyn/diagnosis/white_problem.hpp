@@ -52,19 +52,20 @@ struct WhiteColumns {
 
 class WhiteProblem {
  public:
-  /// \param extra  columns of effects that the model holds already, [log][drive] rows x e; may be empty
+  /// \param extra_columns  of effects that the model holds already, [log][drive] rows x e; may be empty
   WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDrive<NoiseModel>& noise,
-               const PerLogAndDrive<Eigen::MatrixXd>& extra = {});
+               const PerLogAndDrive<Eigen::MatrixXd>& extra_columns = {});
 
   [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<Eigen::MatrixXd>& columns) const;
 
   std::vector<WhiteSegment> segments;
   Eigen::Index rows = 0;
-  Eigen::Index freedom = 0;  ///< rows less the directions that nothing is known of
-  Eigen::MatrixXd X;         ///< white regressor
-  Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
-  Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
-  Eigen::VectorXd beta;      ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  Eigen::Index freedom = 0;               ///< rows less the directions that nothing is known of
+  Eigen::MatrixXd X;                      ///< white regressor
+  Eigen::MatrixXd Q;                      ///< orthonormal basis of its columns: rows x rank
+  Eigen::VectorXd y, r;                   ///< white torque, and its part orthogonal to Q
+  Eigen::VectorXd beta;                   ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  PerLogAndDrive<Eigen::MatrixXd> extra;  ///< as given
 };
 
 /// Best amplitudes of k columns under sign constraints.
@@ -73,7 +74,7 @@ struct Gain {
   Eigen::VectorXd amplitude;  ///< k
 };
 
-/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`. \param gram C_perp^T C_perp, \param inner C_perp^T r
+/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is 0 take no part. \param gram C_perp^T C_perp, \param inner C_perp^T r
 [[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner, const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
