@@ -34,7 +34,7 @@ FormShare form_share(EffectId id) {
     case EffectId::kinematic_offset:
     case EffectId::hose_force: return {3e-3, 3e-3};  // the first term of a series
     case EffectId::load_dependent_friction:
-    case EffectId::directional_efficiency: return {0.12, 0.06};  // of the torque on one side of the gear or on the other
+    case EffectId::directional_efficiency: return {0.12, 0.04};  // of the torque on one side of the gear or on the other
     case EffectId::joint_elasticity:
     case EffectId::current_lag:
     case EffectId::time_skew: return {0.06, 0.06};
