@@ -10,6 +10,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr Index kLeastPairs = 2;  // one in so many rows must have a usable row at the lag of the order
+
 /// A stable model has died out after a few thousand rows.
 std::vector<double> impulse_response(const VectorXd& ar) {
   constexpr std::size_t kLongest = 20000;
@@ -64,12 +66,6 @@ NoiseModel with_white_share(const NoiseModel& noise, double share) {
   out.std = std::sqrt(power);
   return out;
 }
-
-namespace {
-
-constexpr Index kLeastPairs = 2;  // one in so many rows must have a usable row at the lag of the order
-
-}  // namespace
 
 NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, Index largest_order,
                            double damping) {

@@ -1,5 +1,6 @@
 // A seeded sample of the blind study; the whole of it runs by blind_study.
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "studies/blind_case.hpp"
@@ -33,6 +34,14 @@ TEST(BlindStudy, FindsNothingMissingOnACleanLogWithCorrelatedNoise) {
 TEST(BlindStudy, GivesNoNameToWhatTheCatalogueLacks) {
   const Outcome outcome = run_case("outside", 1, kNullRuns);  // friction that varies over another joint
   EXPECT_EQ(outcome.verdict, "unknown-structure") << to_line("outside-1", outcome);
+}
+
+TEST(BlindStudy, NamesBothOfTwoEffectsInOneDrive) {
+  const Outcome outcome = run_case("pairs", 51, kNullRuns);  // friction that varies over the turn, and that bends over
+  auto named = split(outcome.named), truth = split(outcome.truth);
+  std::sort(named.begin(), named.end());
+  std::sort(truth.begin(), truth.end());
+  EXPECT_EQ(named, truth) << to_line("pairs-51", outcome);
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+
+/// \file
+/// Which hypothesis is the best one in a state of the search.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "diagnosis_steps.hpp"
+
+namespace deltadyn::detail {
+
+inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are refined before they are compared
+
+/// All hypotheses, the one that is worth most first.
+[[nodiscard]] std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state);
+
+/// Is the second effect the first one with fewer parameters?
+[[nodiscard]] bool holds(EffectId rich, EffectId simple);
+
+/// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be noise that
+/// the null knows, and must not stand in the way of the next.
+[[nodiscard]] std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
+                                          const std::function<bool(const Fit&)>& counts = {});
+
+/// What is corrected without a name: a skew of about a sample, and Coulomb's law that is smoothed near rest.
+[[nodiscard]] bool hygienic(const SearchContext& context, const Fit& fit);
+
+}  // namespace deltadyn::detail
