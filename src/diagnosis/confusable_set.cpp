@@ -85,12 +85,15 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   const VectorXd s_best = C_best * best.effect.amplitude;
   const VectorXd r_best = problem.r - s_best;
   const double best_worth = context.search.worth(best.hypothesis, best.gain, state);
-  const auto order = by_worth(context.search, state);
-  std::size_t looked_at = 0;
+  std::vector<std::size_t> order;
+  for (const std::size_t h : best_of(context.search, state, kRefined + 1)) {
+    if (h == best.hypothesis || order.size() == kRefined) continue;
+    if (state.scores[h].gain < 0.5 * best.gain) break;
+    order.push_back(h);
+  }
+  context.search.refine_all(state, order);
   for (const std::size_t h : order) {
-    if (h == best.hypothesis) continue;
-    if (++looked_at > kRefined || state.scores[h].gain < 0.5 * best.gain) break;
-    const Fit other = context.search.refine(state, h);
+    const Fit& other = context.search.refine(state, h);
     const Index m = other.effect.amplitude.size();
     if (other.white.cols < m || hygienic(context, other)) continue;
     const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;

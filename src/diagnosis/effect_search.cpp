@@ -154,7 +154,32 @@ double EffectSearch::worth(std::size_t hypothesis, double gain, const State& sta
   return gain - hypotheses_[hypothesis].freedom() * std::log(static_cast<double>(state.problem->freedom));
 }
 
-Fit EffectSearch::refine(const State& state, std::size_t h) const {
+const Fit& EffectSearch::refine(const State& state, std::size_t h) const {
+  const auto found = state.refined.find(h);
+  return found != state.refined.end() ? found->second : state.refined.emplace(h, refined(state, h)).first->second;
+}
+
+void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>& hypotheses) const {
+  std::vector<std::size_t> missing;
+  for (const std::size_t h : hypotheses) {
+    if (state.refined.count(h) == 0) missing.push_back(h);
+  }
+  std::vector<Fit> fits(missing.size());
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    try {
+      fits[k] = refined(state, missing[k]);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  for (std::size_t k = 0; k < missing.size(); ++k) state.refined.emplace(missing[k], std::move(fits[k]));
+}
+
+Fit EffectSearch::refined(const State& state, std::size_t h) const {
   const Hypothesis& hypothesis = hypotheses_[h];
   const Score& start = state.scores[h];
   const Index k = hypothesis.amplitudes;

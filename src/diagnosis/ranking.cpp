@@ -32,12 +32,15 @@ bool near_rest(const SearchContext& context, const Fit& fit) {
 
 }  // namespace
 
-std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state) {
+std::vector<std::size_t> best_of(const EffectSearch& search, const EffectSearch::State& state, std::size_t count) {
   std::vector<std::size_t> order(state.scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return search.worth(a, state.scores[a].gain, state) > search.worth(b, state.scores[b].gain, state);
   });
+  order.resize(std::min(count, order.size()));
+  order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t h) { return !(state.scores[h].gain > 0); }),
+              order.end());
   return order;
 }
 
@@ -51,12 +54,12 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   std::optional<Fit> best, simpler;
   double best_worth = 0;
   std::vector<Fit> fits;
-  const auto order = by_worth(search, state);
-  for (std::size_t k = 0; k < std::min(kRefined, order.size()); ++k) {
-    if (!(state.scores[order[k]].gain > 0)) continue;
-    Fit fit = search.refine(state, order[k]);
+  const auto order = best_of(search, state, kRefined);
+  search.refine_all(state, order);
+  for (const std::size_t h : order) {
+    Fit fit = search.refine(state, h);
     if (counts && !counts(fit)) continue;
-    const double worth = search.worth(order[k], fit.gain, state);
+    const double worth = search.worth(h, fit.gain, state);
     if (!best || worth > best_worth) {
       best_worth = worth;
       best = fit;

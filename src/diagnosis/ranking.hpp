@@ -13,8 +13,8 @@ namespace deltadyn::detail {
 
 inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are refined before they are compared
 
-/// All hypotheses, the one that is worth most first.
-[[nodiscard]] std::vector<std::size_t> by_worth(const EffectSearch& search, const EffectSearch::State& state);
+/// The hypotheses that are worth most and gain anything, the best first.
+[[nodiscard]] std::vector<std::size_t> best_of(const EffectSearch& search, const EffectSearch::State& state, std::size_t count);
 
 /// Is the second effect the first one with fewer parameters?
 [[nodiscard]] bool holds(EffectId rich, EffectId simple);

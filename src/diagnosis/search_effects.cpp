@@ -40,10 +40,9 @@ std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots
   std::vector<Fit> candidates;
   for (const auto& noise : {estimate.noise, without_memory(estimate.noise)}) {
     const EffectSearch::State state = search.state(noise, provisional, &pilots);
-    const auto order = by_worth(search, state);
-    for (std::size_t k = 0; k < std::min(kProvisionalCandidates, order.size()); ++k) {
-      if (state.scores[order[k]].gain > 0) candidates.push_back(search.refine(state, order[k]));
-    }
+    const auto order = best_of(search, state, kProvisionalCandidates);
+    search.refine_all(state, order);
+    for (const std::size_t h : order) candidates.push_back(search.refine(state, h));
   }
   const double rows = [&] {
     double sum = 0;

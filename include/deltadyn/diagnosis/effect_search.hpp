@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -54,13 +55,17 @@ class EffectSearch {
     std::unique_ptr<WhiteProblem> problem;
     std::vector<Signature> signatures;
     std::vector<Score> scores;
-    std::vector<Eigen::VectorXd> bias;  ///< EncoderPilots::bias, taken off every score
+    std::vector<Eigen::VectorXd> bias;           ///< EncoderPilots::bias, taken off every score
+    mutable std::map<std::size_t, Fit> refined;  ///< what refine() has found; several steps ask for the same
   };
   [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
                             const EncoderPilots* pilots) const;
 
   /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the amplitude is solved for).
-  [[nodiscard]] Fit refine(const State& state, std::size_t hypothesis) const;
+  /// A state is not for several threads.
+  [[nodiscard]] const Fit& refine(const State& state, std::size_t hypothesis) const;
+  /// Refines several at once, on all cores, for the calls of refine() that follow.
+  void refine_all(const State& state, const std::vector<std::size_t>& hypotheses) const;
   [[nodiscard]] AcceptedEffect accept(const Fit& fit) const { return {fit.hypothesis, fit.effect, fit.rows}; }
 
   /// What a hypothesis is worth when hypotheses compete: the gain less what its free parameters gain by chance (Schwarz 1978).
@@ -74,6 +79,8 @@ class EffectSearch {
   [[nodiscard]] Pair best_pair(const State& state, std::size_t best) const;
 
  private:
+  [[nodiscard]] Fit refined(const State& state, std::size_t hypothesis) const;
+
   const EffectModel& model_;
   const std::vector<LogRows>& logs_;
   const GenericBasis& basis_;
