@@ -50,7 +50,7 @@ EffectCandidate candidate_of(const SearchContext& context, const SearchResult& f
 std::vector<bool> reached_by_others(const SearchContext& context, const SearchResult& found, std::size_t but) {
   std::vector<bool> out(static_cast<std::size_t>(context.robot.drives()), false);
   for (std::size_t k = 0; k < found.fits.size(); ++k) {
-    if (k == but) continue;
+    if (k == but || found.hygiene[k]) continue;
     const VectorXd theirs = remaining_squares_by_drive(context, *found.before.problem, found.fits[k]);
     for (Index j = 0; j < theirs.size(); ++j) {
       if (theirs(j) > 0.1 * theirs.sum()) out[static_cast<std::size_t>(j)] = true;
@@ -59,17 +59,21 @@ std::vector<bool> reached_by_others(const SearchContext& context, const SearchRe
   return out;
 }
 
-/// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if these gain too little.
-/// \param worse,better  squares by which the other name, and no name, is worse in each row
-double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached, const VectorXd& worse, const VectorXd& better,
-                  double least_gain) {
+/// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if all drives are alike in
+/// that, or these gain too little.
+/// \param other_worse,none_worse  squares by which the other name, and no name, is worse in each row
+/// \param least_gain              of these drives
+double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached, const VectorXd& other_worse,
+                  const VectorXd& none_worse, double least_gain) {
+  const double nothing = std::numeric_limits<double>::infinity();
+  if (std::count(reached.begin(), reached.end(), true) == 0) return nothing;
   double lead = 0, gain = 0;
   for (const WhiteSegment& segment : problem.segments) {
     if (reached[segment.drive]) continue;
-    lead += worse.segment(segment.offset, segment.rows()).sum();
-    gain += better.segment(segment.offset, segment.rows()).sum();
+    lead += other_worse.segment(segment.offset, segment.rows()).sum();
+    gain += none_worse.segment(segment.offset, segment.rows()).sum();
   }
-  return gain > least_gain ? lead / gain : std::numeric_limits<double>::infinity();
+  return gain > least_gain ? lead / gain : nothing;
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ struct SearchResult {
   Omnibus omnibus_before, omnibus_after;
   Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
   std::vector<AcceptedEffect> accepted;
-  std::vector<Fit> fits;                           ///< of the accepted effects
-  std::vector<bool> hygiene;                       ///< a skew of about a sample: corrected, but nobody's missing effect
+  std::vector<Fit> fits;      ///< of the accepted effects
+  std::vector<bool> hygiene;  ///< a skew of about a sample and the like: corrected, but nobody's missing effect
   std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
 };
 
@@ -84,7 +84,9 @@ struct Remainder {
 
 /// Squares of an effect's white torque, one value a drive.
 [[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
-/// The same for what a re-fit of the problem's model leaves of it: that also stands on drives that the effect itself does not reach.
+/// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one beside other effects.
+[[nodiscard]] Eigen::VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
+/// Its squares, one value a drive: it also stands on drives that the effect itself does not reach.
 [[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
                                                          const Fit& fit);
 

@@ -156,7 +156,7 @@ double EffectSearch::worth(std::size_t hypothesis, double gain, const State& sta
 
 const Fit& EffectSearch::refine(const State& state, std::size_t h) const {
   const auto found = state.refined.find(h);
-  return found != state.refined.end() ? found->second : state.refined.emplace(h, refined(state, h)).first->second;
+  return found != state.refined.end() ? found->second : state.refined.emplace(h, find_refined(state, h)).first->second;
 }
 
 void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>& hypotheses) const {
@@ -169,7 +169,7 @@ void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t k = 0; k < missing.size(); ++k) {
     try {
-      fits[k] = refined(state, missing[k]);
+      fits[k] = find_refined(state, missing[k]);
     } catch (...) {
 #pragma omp critical
       failure = std::current_exception();
@@ -179,7 +179,7 @@ void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>
   for (std::size_t k = 0; k < missing.size(); ++k) state.refined.emplace(missing[k], std::move(fits[k]));
 }
 
-Fit EffectSearch::refined(const State& state, std::size_t h) const {
+Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
   const Hypothesis& hypothesis = hypotheses_[h];
   const Score& start = state.scores[h];
   const Index k = hypothesis.amplitudes;
@@ -293,7 +293,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       const Index ka = ones[a].inner.size(), kc = ones[c].inner.size();
       MatrixXd G(ka + kc, ka + kc);
       const MatrixXd cross = cross_gram(ones[a].white, ones[c].white);
-      G << ones[a].white.gram(0, ka), cross, cross.transpose(), ones[c].white.gram(0, kc);
+      G << ones[a].white.clear_gram(0, ka), cross, cross.transpose(), ones[c].white.clear_gram(0, kc);
       VectorXd u(ka + kc);
       u << ones[a].inner, ones[c].inner;
       std::vector<bool> positive = ones[a].positive;

@@ -48,8 +48,7 @@ std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& pro
 std::string region_of(const SearchContext& context, const Fit& fit, const WhiteProblem& problem, const std::vector<int>& drives) {
   if (drives.empty()) return "";
   const auto drive = static_cast<std::size_t>(drives.front());
-  const MatrixXd C = fit.white.projected(problem.Q, problem.segments, 0, fit.effect.amplitude.size());
-  const VectorXd s = C * fit.effect.amplitude;
+  const VectorXd s = remaining_torque(problem, fit);
   std::vector<std::pair<double, double>> by_rate;  // |rate|, energy
   double whole = 0;
   for (const WhiteSegment& segment : problem.segments) {
@@ -83,27 +82,77 @@ std::string place_of(const Diagnosis& out, std::size_t drive) {
   return text;
 }
 
-/// Do the logs end before the bend does? Then other bends fit them as well, and what follows is luck. A power never ends.
-bool bend_is_open(const NamedEffect& one, double largest_rate) {
-  if (one.effect.id != EffectId::shear_thinning) return false;
-  return one.effect.shape(1) > 0 || largest_rate < kCourse * one.effect.shape(0);
-}
+/// Why the course of friction that bends is open beyond the speeds of the logs; and the rate of the drive that a log should reach.
+struct OpenCourse {
+  std::string reason;
+  double needed_rate = 0;
+};
 
-/// Friction that bends keeps its course beyond the logs' speeds only if they show where it ends. Returns 0 if they do, else the rate of
-/// the drive that a log should reach. \param gap_shrink  on the hold-out log; NaN without one
-double rate_beyond_logs(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
+/// Friction that bends keeps its course beyond the logs' speeds only if they show where the bend ends. Nothing for other effects, and for
+/// logs that are fast for the drive.
+/// \param gap_shrink  on the hold-out log; NaN without one
+std::optional<OpenCourse> open_course(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
   const EffectId id = one.effect.id;
-  if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return 0;
+  if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return std::nullopt;
   const Index j = one.effect.joint;
   double training = 0;
   for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
   const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
-  const bool unsure = one.effect.amplitude_std(0) > kUnsureCourse * std::abs(one.effect.amplitude(0));
-  const bool fails_there = there > kFaster * training && gap_shrink < kMetBeyond;
-  if (!unsure && !fails_there && !bend_is_open(one, training)) return 0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
   if (!std::isfinite(wanted)) wanted = there;
-  return training < kSlowLogs * wanted ? kSlowLogs * wanted : 0.0;
+  if (training >= kSlowLogs * wanted) return std::nullopt;
+  const double unsure = one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0));
+  const bool power = id == EffectId::shear_thinning && one.effect.shape(1) > 0;
+  std::string reason;
+  if (unsure > kUnsureCourse) {
+    reason = fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure);
+  } else if (there > kFaster * training && gap_shrink < kMetBeyond) {
+    reason = fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * gap_shrink);
+  } else if (power) {
+    reason = "but as a power of the rate, which never ends";
+  } else if (id == EffectId::shear_thinning && training < kCourse * one.effect.shape(0)) {
+    reason =
+        fmt::format("but the logs end at {:.2g} times the rate of the bend, before it is over", training / one.effect.shape(0));
+  } else {
+    return std::nullopt;
+  }
+  return OpenCourse{reason, kSlowLogs * wanted};
+}
+
+/// Takes out what would be a guess beyond the logs' speeds, and says what a log should show. If no name is left, nothing can be said.
+void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
+  std::vector<NamedEffect> kept;
+  std::string headline, region;
+  for (const NamedEffect& one : out.named) {
+    const std::optional<OpenCourse> open = open_course(context, one, out.gap_shrink);
+    if (!open) {
+      kept.push_back(one);
+      continue;
+    }
+    const bool turns = context.robot.description().kind_of_drive(one.effect.joint) == DriveKind::revolute;
+    const bool alone = out.named.size() == 1;
+    out.lines.push_back(fmt::format("{} fits {}, {}: as a term of the model it would be a guess{}.", one.name, one.joint,
+                                    open->reason,
+                                    alone ? "" : ", and is left out of it (the figures before and after still hold it)"));
+    out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
+                                   open->needed_rate, turns ? "rad/s" : "m/s"));
+    headline = fmt::format(
+        "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its course at "
+        "higher "
+        "speeds.",
+        one.joint);
+    region = one.region;
+  }
+  out.named = std::move(kept);
+  const bool set =
+      std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+  if (!out.named.empty()) return;
+  out.verdict = DiagnosisVerdict::not_testable;
+  out.headline = headline;
+  out.region = region;
+  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+  out.p_no_gain = 1;
 }
 
 /// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that of the other
@@ -315,32 +364,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
   }
   if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
-    for (const NamedEffect& one : out.named) {
-      const double needed = rate_beyond_logs(context, one, out.gap_shrink);
-      if (!(needed > 0)) continue;
-      const bool turns = context.robot.description().kind_of_drive(one.effect.joint) == DriveKind::revolute;
-      out.verdict = DiagnosisVerdict::not_testable;
-      out.region = one.region;
-      out.headline = fmt::format(
-          "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
-          "course at higher speeds.",
-          one.joint);
-      const double unsure = one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0));
-      std::string reason = fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * out.gap_shrink);
-      if (unsure > kUnsureCourse) {
-        reason = fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure);
-      } else if (!(out.gap_shrink < kMetBeyond)) {
-        reason =
-            fmt::format("but the logs end before the friction has bent over, within {:.2g} times the rate of the bend", kCourse);
-      }
-      out.lines.push_back(fmt::format("{} fits, {}: as a term of the model it would be a guess.", one.name, reason));
-      out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
-                                     needed, turns ? "rad/s" : "m/s"));
-      out.named.clear();
-      out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-      out.p_no_gain = 1;
-      break;
-    }
+    leave_out_open_courses(context, out);
   }
   if (out.verdict == DiagnosisVerdict::nothing_missing || out.verdict == DiagnosisVerdict::not_testable) {
     if (const std::optional<std::size_t> slow = drive_with_slow_residual(context, out)) {

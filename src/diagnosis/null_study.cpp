@@ -156,7 +156,7 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
     std::size_t end = first;
     while (end < names.size() && names[end] == names[first]) ++end;
     const auto at = static_cast<Index>(first), count = static_cast<Index>(end - first);
-    const Gain gain = constrained_gain(white.gram(at, count), white.inner(r, Q_r, problem.segments, at, count),
+    const Gain gain = constrained_gain(white.clear_gram(at, count), white.inner(r, Q_r, problem.segments, at, count),
                                        std::vector<bool>(end - first, false));
     // What chance alone gives each column is taken off.
     out.emplace_back(names[first], std::max(0.0, gain.gain - static_cast<double>(count)));

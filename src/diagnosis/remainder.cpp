@@ -42,11 +42,15 @@ VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& prob
   return out;
 }
 
+VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit) {
+  const WhiteColumns white = problem.whiten(fit.rows);
+  if (white.cols < fit.effect.amplitude.size()) return VectorXd::Zero(problem.rows);
+  return white.projected(problem.Q, problem.segments, 0, white.cols) * fit.effect.amplitude;
+}
+
 VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
   VectorXd out = VectorXd::Zero(context.robot.drives());
-  const WhiteColumns white = problem.whiten(fit.rows);
-  if (white.cols < fit.effect.amplitude.size()) return out;
-  const VectorXd left = white.projected(problem.Q, problem.segments, 0, white.cols) * fit.effect.amplitude;
+  const VectorXd left = remaining_torque(problem, fit);
   for (const WhiteSegment& segment : problem.segments)
     out(static_cast<Index>(segment.drive)) += left.segment(segment.offset, segment.rows()).squaredNorm();
   return out;

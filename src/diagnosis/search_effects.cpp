@@ -8,10 +8,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
@@ -19,7 +15,8 @@ constexpr int kHygienic = 4;         // further ones that may be needed for what
 constexpr std::size_t kProvisionalCandidates = 6;
 constexpr double kMaterialFurther = 0.15;  // kMaterial of every effect beside the first
 constexpr std::size_t kBestForPairs = 10;
-constexpr double kBetter = 2.0;  // worth that another hypothesis must have more than one that was taken before
+constexpr int kMostExchanges = 3;  // of one name for another, at the end
+constexpr double kBetter = 2.0;    // worth that another hypothesis must have more than one that was taken before
 
 /// The same noise without its memory: smooth effects, which an autoregression takes for noise, show in it.
 PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise) {
@@ -89,8 +86,11 @@ EffectSearch::State beside_others(const SearchContext& context, const SearchResu
 }
 
 Fit fit_beside(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others, std::size_t k) {
-  const Fit fit = context.search.refine(others, found.accepted[k].hypothesis);
-  return found.hygiene[k] && !hygienic(context, fit) ? found.fits[k] : fit;  // no more than was allowed for without a name
+  const Fit& fit = context.search.refine(others, found.accepted[k].hypothesis);
+  if (!found.hygiene[k] || hygienic(context, fit)) return fit;
+  Fit allowed = found.fits[k];  // no more than was allowed for without a name
+  allowed.white = others.problem->whiten(allowed.rows);
+  return allowed;
 }
 
 /// The hypothesis that fits better than `fit` in its place, now that the others are known; `fit` if there is none.
@@ -98,7 +98,8 @@ Fit best_in_place(const SearchContext& context, const SearchResult& found, const
                   Fit fit) {
   if (found.hygiene[k]) return fit;
   const FormErrors form_errors(context, found, others, k);
-  const double material = found.accepted.size() > 1 ? kMaterialFurther : kMaterial;
+  const auto named = std::count(found.hygiene.begin(), found.hygiene.end(), false);
+  const double material = named > 1 ? kMaterialFurther : kMaterial;
   const auto may_follow = [&](const Fit& one) {
     return !hygienic(context, one) && counts(context, found, others, one, material) && !form_errors.explain(one);
   };
@@ -128,6 +129,82 @@ bool drop_weakest(const SearchContext& context, SearchResult& found) {
   found.fits.erase(found.fits.begin() + at);
   found.hygiene.erase(found.hygiene.begin() + at);
   return true;
+}
+
+/// Another hypothesis in the place of effect k, if one fits better now that the others are known.
+bool exchange(const SearchContext& context, SearchResult& found, std::size_t k) {
+  if (found.hygiene[k]) return false;
+  const EffectSearch::State others = beside_others(context, found, k);
+  const Fit now = fit_beside(context, found, others, k);
+  Fit best = best_in_place(context, found, others, k, now);
+  if (best.hypothesis == now.hypothesis) return false;
+  found.accepted[k] = context.search.accept(best);
+  found.fits[k] = std::move(best);
+  return true;
+}
+
+/// The best effect beside those found, as long as one counts.
+void take_in_forward(const SearchContext& context, SearchResult& found) {
+  const EffectSearch& search = context.search;
+  std::optional<EffectSearch::State> beside;
+  int named = 0;
+  while (named < context.options.max_effects &&
+         static_cast<int>(found.accepted.size()) < context.options.max_effects + kHygienic) {
+    const EffectSearch::State& state = beside ? *beside : found.before;
+    const FormErrors form_errors(context, found, state);
+    std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
+      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_errors.explain(one);
+    });
+    if (!fit) break;
+    found.hygiene.push_back(hygienic(context, *fit));
+    named += found.hygiene.back() ? 0 : 1;
+    found.accepted.push_back(search.accept(*fit));
+    found.fits.push_back(std::move(*fit));
+    // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a third.
+    for (std::size_t k = 0; k + 1 < found.accepted.size(); ++k) exchange(context, found, k);
+    beside = search.state(found.noise, found.accepted, found.pilots.get());
+  }
+}
+
+/// The first of two may have been a mixture of both: the best pair, if it is worth more than the best single and its follower.
+void prefer_the_best_pair(const SearchContext& context, SearchResult& found) {
+  const EffectSearch& search = context.search;
+  if (found.accepted.size() != 2 || found.hygiene[0] || found.hygiene[1]) return;
+  const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
+  const double forward_gain =
+      found.before.problem->r.squaredNorm() - search.state(found.noise, found.accepted, nullptr).problem->r.squaredNorm();
+  const auto taken = [&](std::size_t h) { return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h; };
+  if (pair.gain <= 1.02 * forward_gain || (taken(pair.first) && taken(pair.second))) return;
+  found.accepted.clear();
+  found.fits.clear();
+  found.hygiene.clear();
+  for (const std::size_t h : {pair.first, pair.second}) {
+    const EffectSearch::State beside = search.state(found.noise, found.accepted, found.pilots.get());
+    found.fits.push_back(search.refine(beside, h));
+    found.accepted.push_back(search.accept(found.fits.back()));
+    found.hygiene.push_back(hygienic(context, found.fits.back()));
+  }
+}
+
+/// Each must still count beside the others; then its shape, size and set beside them, again where one has given way to another.
+void settle_backward(const SearchContext& context, SearchResult& found) {
+  bool exchanged = true;
+  for (int pass = 0; exchanged && pass < kMostExchanges; ++pass) {
+    while (drop_weakest(context, found)) {
+    }
+    exchanged = false;
+    found.sets.clear();
+    for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+      const EffectSearch::State others = beside_others(context, found, k);
+      Fit fit = best_in_place(context, found, others, k, fit_beside(context, found, others, k));
+      exchanged |= fit.hypothesis != found.accepted[k].hypothesis;
+      found.hygiene[k] = found.hygiene[k] || hygienic(context, fit);
+      set_uncertainty(context, others, fit);
+      found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, others, fit, k));
+      found.accepted[k] = context.search.accept(fit);
+      found.fits[k] = std::move(fit);
+    }
+  }
 }
 
 }  // namespace
@@ -194,60 +271,9 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   }
   out.encoder_share = found.null.encoder_share;
 
-  // Forward.
-  EffectSearch::State state = search.state(found.noise, {}, &pilots);
-  int named = 0;
-  while (named < options.max_effects && static_cast<int>(found.accepted.size()) < options.max_effects + 5) {
-    const FormErrors form_errors(context, found, state);
-    std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
-      return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_errors.explain(one);
-    });
-    if (!fit) break;
-    found.hygiene.push_back(hygienic(context, *fit));
-    named += found.hygiene.back() ? 0 : 1;
-    found.accepted.push_back(search.accept(*fit));
-    found.fits.push_back(std::move(*fit));
-    // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a third.
-    for (std::size_t k = 0; k + 1 < found.accepted.size(); ++k) {
-      const EffectSearch::State others = beside_others(context, found, k);
-      const Fit now = fit_beside(context, found, others, k);
-      Fit best = best_in_place(context, found, others, k, now);
-      if (best.hypothesis == now.hypothesis) continue;
-      found.accepted[k] = search.accept(best);
-      found.fits[k] = std::move(best);
-    }
-    state = search.state(found.noise, found.accepted, &pilots);
-  }
-  // The first of two may have been a mixture: the best pair, if it is worth more than the best single and its follower.
-  if (found.accepted.size() == 2 && named == 2) {
-    const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
-    const double forward_gain =
-        found.before.problem->r.squaredNorm() -
-        search.state(found.noise, {found.accepted[0], found.accepted[1]}, nullptr).problem->r.squaredNorm();
-    const auto taken = [&](std::size_t h) { return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h; };
-    if (pair.gain > 1.02 * forward_gain && !(taken(pair.first) && taken(pair.second))) {
-      std::vector<AcceptedEffect> accepted;
-      std::vector<Fit> fits;
-      for (const std::size_t h : {pair.first, pair.second}) {
-        const EffectSearch::State beside = search.state(found.noise, accepted, &pilots);
-        fits.push_back(search.refine(beside, h));
-        accepted.push_back(search.accept(fits.back()));
-      }
-      found.accepted = std::move(accepted);
-      found.fits = std::move(fits);
-    }
-  }
-  // Backward: each must still count beside the others; then its shape, size and set beside them.
-  while (drop_weakest(context, found)) {
-  }
-  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
-    const EffectSearch::State beside = beside_others(context, found, k);
-    Fit fit = best_in_place(context, found, beside, k, fit_beside(context, found, beside, k));
-    set_uncertainty(context, beside, fit);
-    found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, beside, fit, k));
-    found.accepted[k] = search.accept(fit);
-    found.fits[k] = std::move(fit);
-  }
+  take_in_forward(context, found);
+  prefer_the_best_pair(context, found);
+  settle_backward(context, found);
   found.after = search.state(found.noise, found.accepted, &pilots);
   found.omnibus_after = Omnibus(*found.after.problem, context.basis);
   found.structure_after = found.omnibus_after.gains(*found.after.problem, found.after.problem->r);

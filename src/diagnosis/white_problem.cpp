@@ -49,6 +49,17 @@ MatrixXd WhiteColumns::gram(Index first, Index count) const {
   return raw_gram(first, count) - part_of_base.transpose() * part_of_base;
 }
 
+MatrixXd WhiteColumns::clear_gram(Index first, Index count) const {
+  MatrixXd G = gram(first, count);
+  const VectorXd raw = raw_gram(first, count).diagonal();
+  for (Index c = 0; c < count; ++c) {
+    if (G(c, c) >= kAbsorbed * raw(c)) continue;
+    G.row(c).setZero();
+    G.col(c).setZero();
+  }
+  return G;
+}
+
 WhiteColumns WhiteColumns::part(Index first, Index count) const {
   WhiteColumns out;
   out.cols = count;
@@ -170,14 +181,9 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
       out.kept.push_back(0);
       continue;
     }
-    out.gram.push_back(out.white.gram(first, k));
+    out.gram.push_back(out.white.clear_gram(first, k));
     out.clean.push_back(1);
     const MatrixXd raw = out.white.raw_gram(first, k);
-    for (Index c = 0; c < k; ++c) {  // a column that a re-fit absorbs leaves rounding only
-      if (out.gram.back()(c, c) >= kAbsorbed * raw(c, c)) continue;
-      out.gram.back().row(c).setZero();
-      out.gram.back().col(c).setZero();
-    }
     const double whole = raw.trace();
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
   }

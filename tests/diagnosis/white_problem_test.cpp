@@ -28,6 +28,7 @@ TEST(ConstrainedGain, GivesNothingForTheWrongSign) {
 TEST(ConstrainedGain, LeavesOutColumnsOfWhichNothingIsLeft) {
   MatrixXd gram = MatrixXd::Zero(2, 2);
   gram(0, 0) = 4;
+  gram(1, 1) = -1e-18;
   const Gain gain = constrained_gain(gram, Eigen::Vector2d(2, 1e-9), {false, false});  // rounding in the second
   EXPECT_NEAR(gain.gain, 1, 1e-12);
   EXPECT_EQ(gain.amplitude(1), 0);
@@ -36,9 +37,26 @@ TEST(ConstrainedGain, LeavesOutColumnsOfWhichNothingIsLeft) {
 TEST(ConstrainedGain, SharesBetweenEqualColumns) {
   const MatrixXd C = MatrixXd::Random(30, 1) * Eigen::RowVector2d(1, 2);
   const VectorXd r = 3 * C.col(0);
-  const Gain gain = constrained_gain(C.transpose() * C, C.transpose() * r, {false, false});
+  MatrixXd gram = C.transpose() * C;
+  VectorXd inner = C.transpose() * r;
+  gram(1, 1) *= 1 + 1e-11;  // rounding, which must not become a direction of its own
+  inner(1) *= 1 + 1e-7;
+  const Gain gain = constrained_gain(gram, inner, {false, false});
   EXPECT_NEAR(gain.gain, r.squaredNorm(), 1e-6 * r.squaredNorm());
+  EXPECT_LT(gain.amplitude.norm(), 10);
   EXPECT_LT((C * gain.amplitude - r).norm(), 1e-6 * r.norm());
+}
+
+TEST(WhiteColumns, HaveNoSquareWhereOnlyRoundingIsLeft) {
+  WhiteColumns columns;
+  columns.cols = 2;
+  columns.blocks = {MatrixXd::Random(40, 2)};
+  MatrixXd Q = columns.blocks[0].col(0).normalized();  // the first column is the base's
+  columns.base = Q.transpose() * columns.blocks[0];
+  const MatrixXd gram = columns.clear_gram(0, 2);
+  EXPECT_EQ(gram(0, 0), 0);
+  EXPECT_EQ(gram(0, 1), 0);
+  EXPECT_EQ(gram(1, 1), columns.gram(0, 2)(1, 1));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 /// (diagnosis page, steps 3, 5, 7, 8).
 
 #include <Eigen/Core>
-#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -79,7 +78,7 @@ class EffectSearch {
   [[nodiscard]] Pair best_pair(const State& state, std::size_t best) const;
 
  private:
-  [[nodiscard]] Fit refined(const State& state, std::size_t hypothesis) const;
+  [[nodiscard]] Fit find_refined(const State& state, std::size_t hypothesis) const;
 
   const EffectModel& model_;
   const std::vector<LogRows>& logs_;

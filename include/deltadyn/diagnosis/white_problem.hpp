@@ -38,6 +38,8 @@ struct WhiteColumns {
                                       const std::vector<WhiteSegment>& segments, Eigen::Index first, Eigen::Index count) const;
   /// C_perp^T C_perp.
   [[nodiscard]] Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index count) const;
+  /// The same, zero in rows and columns of which the projection leaves rounding only.
+  [[nodiscard]] Eigen::MatrixXd clear_gram(Eigen::Index first, Eigen::Index count) const;
   /// C^T C without projection.
   [[nodiscard]] Eigen::MatrixXd raw_gram(Eigen::Index first, Eigen::Index count) const;
   /// Columns [first, first + count) alone.
@@ -74,7 +76,9 @@ struct Gain {
   Eigen::VectorXd amplitude;  ///< k
 };
 
-/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is 0 take no part. \param gram C_perp^T C_perp, \param inner C_perp^T r
+/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no part.
+/// \param gram   C_perp^T C_perp
+/// \param inner  C_perp^T r
 [[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner, const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
