@@ -102,7 +102,7 @@ bool FormErrors::explain(const Fit& fit) const {
     // A second effect of a kind may be the first one at the wrong place.
     if (!here) share = same_kind ? kElsewhere : std::min(share, depends_alike ? kElsewhere : kOther);
     if (fit.gain < kAnywhere * gain_of(k)) return true;
-    if (fit.gain < share * left && (here || same_kind || !stands_out(fit))) return true;
+    if (fit.gain < share * left && (here || depends_alike || !stands_out(fit))) return true;
   }
   return false;
 }

@@ -152,6 +152,7 @@ TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
   const auto usual = [](const std::string& key) {
     if (key == "kind" || key == "recorded" || key == "encoder") return "1";
     if (key == "share") return "0.5";  // of the load, of a peak or of a torque constant
+    if (key == "motor_share") return "0.4";
     return key == "inertia_over_stiffness" ? "1e-5" : "0.01";
   };
   int count = 0;
