@@ -69,7 +69,7 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
 
 std::string ruling_of(const SearchContext& context, const SearchResult& found, std::size_t h, const ConsideredEffect& one) {
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
-    if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : "found";
+    if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : kFound;
     for (const EffectCandidate& other : found.sets[k]) {
       if (other.name == one.name && other.joint == one.joint)
         return "cannot be told from " + effect_kind(found.fits[k].effect.id).name;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "deltadyn/diagnosis/effect_search.hpp"
 #include "deltadyn/identification/cutoff_scan.hpp"
@@ -61,9 +62,23 @@ constexpr double kSameSize = 0.003;         // ... until no amplitude changes by
 constexpr double kUsualNoise = 0.01;        // of a drive's torque
 constexpr double kFewestRowsPerBase = 4.0;  // rows of a drive in units of base parameters a drive
 
-bool same_log(const Log& a, const Log& b) {
-  if (a.samples() != b.samples() || a.q.cols() != b.q.cols()) return false;
-  return (a.q - b.q).cwiseAbs().maxCoeff() == 0 && (a.tau - b.tau).cwiseAbs().maxCoeff() == 0;
+/// Positions and torques of every sample, to be compared as they are.
+std::set<std::vector<double>> samples_of(const Log& log) {
+  std::set<std::vector<double>> out;
+  for (Index k = 0; k < log.samples(); ++k) {
+    std::vector<double> one(log.q.row(k).begin(), log.q.row(k).end());
+    one.insert(one.end(), log.tau.row(k).begin(), log.tau.row(k).end());
+    out.insert(std::move(one));
+  }
+  return out;
+}
+
+/// Is most of the second log in the first? Single samples may be alike by chance, at rest.
+bool holds_most_of(const Log& log, const Log& part) {
+  if (log.q.cols() != part.q.cols()) return false;
+  const std::set<std::vector<double>> samples = samples_of(log), of_part = samples_of(part);
+  const auto shared = std::count_if(of_part.begin(), of_part.end(), [&](const auto& one) { return samples.count(one) > 0; });
+  return 2 * shared > static_cast<std::ptrdiff_t>(of_part.size());
 }
 
 /// The highest cut-off that is as good as the best one: smooth motions leave the choice open, and a narrow band widens every reversal.
@@ -195,8 +210,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   if (all_logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   if (holdout != nullptr) {
     for (const Log& log : all_logs) {
-      if (same_log(log, *holdout)) {
-        throw Error("the hold-out log is one of the training logs (" + log.file + ")", holdout->file,
+      if (holds_most_of(log, *holdout)) {
+        throw Error("the hold-out log is one of the training logs (" + log.file + ") or cut from it", holdout->file,
                     "hold out a log that takes no part in the search, else it proves nothing", ExitCode::usage);
       }
     }
@@ -257,7 +272,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
   }
   // Rows enough to fit the base model and still see something beside it?
   double length = 0;
-  for (const LogRows& log : rows) length += log.t_s(log.rows() - 1) - log.t_s(0);
+  for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
   const double fewest = fewest_rows(rows);
   const double needed = std::max(120.0, kFewestRowsPerBase * base.count());
   if (fewest < needed) {

@@ -90,6 +90,9 @@ struct Remainder {
 [[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
                                                          const Fit& fit);
 
+/// Ruling of an effect that the search has found.
+inline constexpr const char* kFound = "found";
+
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.
 inline constexpr double kMaterial = 0.02;

@@ -26,13 +26,19 @@ constexpr double kSlowOverBoth = 175;       // ... the product of the two
 constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
 constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
 constexpr double kCourse = 3.5;        // times the rate over which friction bends: training logs that show where the bend ends
+constexpr double kTwoSpeeds = 1.5;     // ratio of the largest rates of training logs from which they hold each other's course
 constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
 constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
 constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
 constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
 constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
 constexpr double kAboveFloor = 1.1;    // rms over floor of a drive below which nothing is left to explain in the training logs
+constexpr double kOtherMachine = 2.0;  // rms of the hold-out log over that of training from which the machine itself may differ
 constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
+
+bool turns(const SearchContext& context, int drive) {
+  return context.robot.description().kind_of_drive(drive) == DriveKind::revolute;
+}
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
@@ -69,9 +75,8 @@ std::string region_of(const SearchContext& context, const Fit& fit, const WhiteP
   }
   std::string names;
   for (const int j : drives) names += (names.empty() ? "drive " : ", ") + std::to_string(j + 1);
-  const bool turns = context.robot.description().kind_of_drive(drives.front()) == DriveKind::revolute;
-  return fmt::format("{}; 80 % of it at {:.3g} to {:.3g} {} of drive {}", names, low, high, turns ? "rad/s" : "m/s",
-                     drives.front() + 1);
+  return fmt::format("{}; 80 % of it at {:.3g} to {:.3g} {} of drive {}", names, low, high,
+                     turns(context, drives.front()) ? "rad/s" : "m/s", drives.front() + 1);
 }
 
 std::string place_of(const Diagnosis& out, std::size_t drive) {
@@ -95,8 +100,13 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
   const EffectId id = one.effect.id;
   if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return std::nullopt;
   const Index j = one.effect.joint;
-  double training = 0;
-  for (const LogRows& log : context.logs) training = std::max(training, log.qd.col(j).cwiseAbs().maxCoeff());
+  double training = 0, slowest = std::numeric_limits<double>::infinity();
+  for (const LogRows& log : context.logs) {
+    const double largest = log.qd.col(j).cwiseAbs().maxCoeff();
+    training = std::max(training, largest);
+    slowest = std::min(slowest, largest);
+  }
+  const bool one_speed = training < kTwoSpeeds * slowest;
   const double there = context.holdout != nullptr ? context.holdout->qd.col(j).cwiseAbs().maxCoeff() : 0.0;
   double wanted = context.robot.description().limits[static_cast<std::size_t>(j)].velocity;
   if (!std::isfinite(wanted)) wanted = there;
@@ -108,9 +118,9 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
     reason = fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure);
   } else if (there > kFaster * training && gap_shrink < kMetBeyond) {
     reason = fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * gap_shrink);
-  } else if (power) {
+  } else if (one_speed && power) {
     reason = "but as a power of the rate, which never ends";
-  } else if (id == EffectId::shear_thinning && training < kCourse * one.effect.shape(0)) {
+  } else if (one_speed && id == EffectId::shear_thinning && training < kCourse * one.effect.shape(0)) {
     reason =
         fmt::format("but the logs end at {:.2g} times the rate of the bend, before it is over", training / one.effect.shape(0));
   } else {
@@ -129,13 +139,12 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
       kept.push_back(one);
       continue;
     }
-    const bool turns = context.robot.description().kind_of_drive(one.effect.joint) == DriveKind::revolute;
     const bool alone = out.named.size() == 1;
     out.lines.push_back(fmt::format("{} fits {}, {}: as a term of the model it would be a guess{}.", one.name, one.joint,
                                     open->reason,
                                     alone ? "" : ", and is left out of it (the figures before and after still hold it)"));
     out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
-                                   open->needed_rate, turns ? "rad/s" : "m/s"));
+                                   open->needed_rate, turns(context, one.effect.joint) ? "rad/s" : "m/s"));
     headline = fmt::format(
         "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its course at "
         "higher "
@@ -325,6 +334,16 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
           out.verdict = DiagnosisVerdict::unknown_structure;
           out.region = place_of(out, static_cast<std::size_t>(touched.front()));
           out.lines.push_back(line);
+          for (NamedEffect& one : out.named) one.why = "the hold-out log does not confirm it";
+          const auto drive = static_cast<std::size_t>(touched.front());
+          if (proof->rms_before(touched.front()) > kOtherMachine * out.drives[drive].rms) {
+            out.next.push_back(
+                fmt::format("The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was anything "
+                            "changed in between "
+                            "(load, hose, robot)?",
+                            proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N", drive + 1,
+                            out.drives[drive].rms));
+          }
         } else {
           // Chance, or a trace of no use to anybody.
           out.verdict = DiagnosisVerdict::nothing_missing;
@@ -380,9 +399,17 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
   }
   if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
     for (const NamedEffect& one : out.named) out.effects.push_back(one.effect);
-  } else if (out.verdict == DiagnosisVerdict::unknown_structure) {
-    // A candidate that does not suffice is shown, not added.
-    for (NamedEffect& one : out.named) one.why = "does not explain enough";
+  } else {
+    // A candidate that does not suffice, or that the hold-out log contradicts, is shown, not added.
+    for (NamedEffect& one : out.named) {
+      if (one.why.empty()) one.why = "it does not explain enough";
+    }
+  }
+  for (ConsideredEffect& one : out.considered) {
+    const bool added = std::any_of(out.named.begin(), out.named.end(), [&](const NamedEffect& named) {
+      return named.name == one.name && named.joint == one.joint && named.why.empty();
+    });
+    if (one.ruling == kFound && !added) one.ruling = "fits, but is not confirmed";
   }
 }
 

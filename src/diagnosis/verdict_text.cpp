@@ -47,8 +47,11 @@ void say(const SearchContext& context, Diagnosis& out) {
       say_parameters_are_off(context, out);
       return;
     case DiagnosisVerdict::not_testable:
+      if (!out.next.empty()) return;  // the judge knows what is wanted
       out.next.push_back(
-          "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow.");
+          context.holdout != nullptr
+              ? "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow."
+              : "Record a motion that excites the dynamics, fast and slow: delta-excite plans one.");
       return;
     case DiagnosisVerdict::unknown_structure:
       out.headline = "Something is missing that no effect of the catalogue explains: " + out.region + ".";

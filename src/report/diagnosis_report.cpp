@@ -118,8 +118,8 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
       "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model fitted to "
       "these "
       "logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were known. "
-      "Rows near "
-      "velocity reversals are left out. All that follows speaks of the fitted model.");
+      "The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All that "
+      "follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
                {"parameters as given", Align::right},
                {"fitted", Align::right},
@@ -242,11 +242,13 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     report.table(table);
     report.note(
         "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a standard "
-        "deviation of 1 % of "
-        "the size, 3 % for laws of friction and springs, 6 % for losses that grow with the load.");
+        "deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the load, 15 % for the "
+        "spring in a drive.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.", p_text(one.p_value),
                             format_percent(one.explained_share)));
-    if (one.confusable.empty()) {
+    if (!one.why.empty()) {
+      report.paragraph("Not added to the model: " + one.why + ".");
+    } else if (one.confusable.empty()) {
       report.paragraph("Nothing else in the catalogue explains it as well.");
     } else {
       std::vector<std::string> items;

@@ -116,6 +116,12 @@ TEST_F(Diagnosing, RefusesInputThatWouldProveNothing) {
   EXPECT_NE(same.err.find("hold-out log is one of the training logs"), std::string::npos) << same.err;
   EXPECT_FALSE(fs::exists(path("diagnosis.csv")));
 
+  const std::string whole = read_text(path("fast.csv"));
+  (void)folder.write("check.csv", whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
+  const ToolResult excerpt = run(diagnose("truth.csv"));
+  EXPECT_EQ(excerpt.code, 2);
+  EXPECT_NE(excerpt.err.find("cut from it"), std::string::npos) << excerpt.err;
+
   (void)folder.write("old.csv", "# deltadyn effects 0\neffect,joint,parameter,value,unit,std\n");
   const ToolResult old = run(diagnose("truth.csv", {"--effects", path("old.csv")}));
   EXPECT_EQ(old.code, 3);
