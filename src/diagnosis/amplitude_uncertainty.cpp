@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diagnosis_steps.hpp"
+#include "form_share.hpp"
 
 namespace deltadyn::detail {
 
@@ -12,31 +13,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kShapeStep = 0.02;   // of a shape parameter, either way
-constexpr double kBlock_s = 0.25;     // longer than any memory that counts as noise
-constexpr double kLeastBlocks = 12;   // from which blocks say anything about the noise
-constexpr double kExactForm = 0.01;   // of an amplitude, standard deviation that the parameters behind its column leave ...
-constexpr double kLawForm = 0.03;     // ... and the same where the machine's law is another than the catalogue's
-constexpr double kLoadForm = 0.06;    // ... and where the load is the model's, not what the gear passes on
-constexpr double kFirstOrder = 0.15;  // ... and where the column is the first term of a series
-
-/// What no residual tells: how far an amplitude is off because the column is not quite what the machine does. The shares are those of
-/// hidden effects that were made in other forms than the catalogue's.
-double form_share(EffectId id) {
-  switch (id) {
-    case EffectId::asymmetric_coulomb:
-    case EffectId::asymmetric_viscous:
-    case EffectId::rotor_inertia:
-    case EffectId::limb_inertia_mismatch:
-    case EffectId::payload:
-    case EffectId::base_tilt:
-    case EffectId::torque_constant_error: return kExactForm;
-    case EffectId::load_dependent_friction:
-    case EffectId::directional_efficiency: return kLoadForm;
-    case EffectId::joint_elasticity: return kFirstOrder;
-    default: return kLawForm;
-  }
-}
+constexpr double kShapeStep = 0.02;  // of a shape parameter, either way
+constexpr double kBlock_s = 0.25;    // longer than any memory that counts as noise
+constexpr double kLeastBlocks = 12;  // from which blocks say anything about the noise
 
 /// Shape parameters that are fitted beside the amplitudes.
 std::vector<Index> free_shapes(const Effect& effect) {
@@ -110,7 +89,7 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   }
   if (blocks >= kLeastBlocks) variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));
   const VectorXd std = scale.cwiseProduct(variance.cwiseMax(0.0).cwiseSqrt());
-  const double form = form_share(fit.effect.id);
+  const double form = form_share(fit.effect.id).amplitude;
   fit.effect.amplitude_std = (std.head(k).cwiseAbs2() + (form * fit.effect.amplitude).cwiseAbs2()).cwiseSqrt();
   if (effect_kind(fit.effect.id).tied) fit.effect.shape_std(0) = fit.effect.amplitude_std(0);
   for (std::size_t s = 0; s < shapes.size(); ++s) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "form_share.hpp"
+
 namespace deltadyn::detail {
 
 using Eigen::Index;
@@ -15,35 +17,6 @@ constexpr double kAnywhere = 1e-4;   // ... and for any effect, as the parameter
 constexpr double kFarMore = 3.0;   // an effect that gains so many times what the best of any other class does is no error of form
 constexpr double kAsGood = 0.9;    // share of a gain from which an effect at the earlier one's place would do as well
 constexpr double kReached = 0.05;  // of an effect's squares: a drive with less is not reached
-
-/// Shares of an effect's gain that the catalogue's form of it can leave at its own place: for effects that depend on the same, and for all
-/// others. About twice what hidden effects leave that were made in other forms than the catalogue's.
-struct FormShare {
-  double own, other;
-};
-
-FormShare form_share(EffectId id) {
-  switch (id) {
-    case EffectId::asymmetric_coulomb:
-    case EffectId::asymmetric_viscous:
-    case EffectId::rotor_inertia:
-    case EffectId::limb_inertia_mismatch:
-    case EffectId::payload:
-    case EffectId::torque_constant_error: return {5e-4, 5e-4};  // linear in what is known
-    case EffectId::base_tilt:
-    case EffectId::kinematic_offset:
-    case EffectId::hose_force: return {3e-3, 3e-3};  // the first term of a series
-    case EffectId::load_dependent_friction:
-    case EffectId::directional_efficiency: return {0.12, 0.04};  // of the torque on one side of the gear or on the other
-    case EffectId::joint_elasticity:
-    case EffectId::current_lag:
-    case EffectId::time_skew: return {0.06, 0.06};
-    case EffectId::presliding:
-    case EffectId::hysteresis:
-    case EffectId::backlash: return {0.25, 0.06};
-    default: return {0.05, 0.02};
-  }
-}
 
 const std::string& class_of(EffectId id) {
   return effect_kind(id).effect_class;
