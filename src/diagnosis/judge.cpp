@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kExplained = 0.8;          // of the structure that names must explain
+constexpr double kExplainedByMany = 0.985;  // ... and that several must: together they can follow much that is none of them
 constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
 constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
 constexpr double kSlowOverNoise = 10;       // of a drive's residual; slow noise of all drives comes to 20, hence ...
@@ -276,13 +277,14 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
   if (!out.named.empty()) out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
-  if (unexplained && (out.named.empty() || out.explained_share < kExplained)) {
+  const double must_explain = out.named.size() > 1 ? kExplainedByMany : kExplained;
+  if (unexplained && (out.named.empty() || out.explained_share < must_explain)) {
     out.verdict = DiagnosisVerdict::unknown_structure;
     out.region = place_of(out, worst_drive);
     if (!out.named.empty()) {
       out.lines.push_back(fmt::format(
-          "The best of the catalogue, {} at {}, explains {:.0f} % of the structure only; a name for the rest would be a guess.",
-          out.named.front().name, out.named.front().joint, 100 * out.explained_share));
+          "The best of the catalogue, {} at {}{}, explains {:.0f} % of the structure only; a name for the rest would be a guess.",
+          out.named.front().name, out.named.front().joint, out.named.size() > 1 ? " and others" : "", 100 * out.explained_share));
     }
   }
 
