@@ -96,6 +96,8 @@ inline constexpr const char* kFound = "found";
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.
 inline constexpr double kMaterial = 0.02;
+/// The same for every effect beside the first.
+inline constexpr double kMaterialFurther = 0.15;
 /// The same for structure without a name: larger, as the basis is free enough to follow slow noise of one log for a part.
 inline constexpr double kMaterialStructure = 0.3;
 

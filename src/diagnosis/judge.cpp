@@ -277,8 +277,9 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
   if (!out.named.empty()) out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
-  const double must_explain = out.named.size() > 1 ? kExplainedByMany : kExplained;
-  if (unexplained && (out.named.empty() || out.explained_share < must_explain)) {
+  const bool unknown = out.named.size() > 1 ? worst > kMaterialFurther && out.explained_share < kExplainedByMany
+                                            : unexplained && (out.named.empty() || out.explained_share < kExplained);
+  if (unknown) {
     out.verdict = DiagnosisVerdict::unknown_structure;
     out.region = place_of(out, worst_drive);
     if (!out.named.empty()) {

@@ -13,7 +13,6 @@ namespace {
 constexpr double kProvisional = 20;  // gain that lets an effect into the noise model before the null is known
 constexpr int kHygienic = 4;         // further ones that may be needed for what counts as hygiene only
 constexpr std::size_t kProvisionalCandidates = 6;
-constexpr double kMaterialFurther = 0.15;  // kMaterial of every effect beside the first
 constexpr std::size_t kBestForPairs = 10;
 constexpr int kMostExchanges = 3;  // of one name for another, at the end
 constexpr double kBetter = 2.0;    // worth that another hypothesis must have more than one that was taken before
