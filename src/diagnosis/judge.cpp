@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kExplained = 0.8;          // of the structure that names must explain
+constexpr double kExplained = 0.8;  // of the structure that names must explain
+constexpr double kHardlyExplained =
+    0.4;  // ... from which less says that the name is wrong, even if the hold-out log does not show it
 constexpr double kExplainedByMany = 0.985;  // ... and that several must: together they can follow much that is none of them
 constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
 constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
@@ -277,8 +279,9 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
   if (!out.named.empty()) out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
-  const bool unknown = out.named.size() > 1 ? worst > kMaterialFurther && out.explained_share < kExplainedByMany
-                                            : unexplained && (out.named.empty() || out.explained_share < kExplained);
+  const double must_explain = out.named.size() > 1 ? kExplainedByMany : kHardlyExplained;
+  const bool too_little = !out.named.empty() && worst > kMaterialFurther && out.explained_share < must_explain;
+  const bool unknown = too_little || (unexplained && (out.named.empty() || out.explained_share < kExplained));
   if (unknown) {
     out.verdict = DiagnosisVerdict::unknown_structure;
     out.region = place_of(out, worst_drive);
