@@ -22,15 +22,21 @@ const std::string& class_of(EffectId id) {
   return effect_kind(id).effect_class;
 }
 
-/// Does `other` depend on what `one` depends on? Memory of a reversal is a function of the way since then. And losses in a gear that are
-/// stated for its one side are, for the other side, such losses and a share of the torque itself, as gravity and inertia make it.
+/// Does `other` depend on what `one` depends on? Memory of a reversal is a function of the way since then. Losses in a gear that are
+/// stated for its one side are, for the other side, such losses and a share of the torque itself, as gravity and inertia make it. And
+/// friction that differs by direction may do so by rate, place or time.
 bool alike(EffectId one, EffectId other) {
   const auto is = [](EffectId id, const char* effect_class) { return effect_kind(id).effect_class == effect_class; };
   const auto by_position = [&](EffectId id) { return is(id, "position-periodic") || is(id, "reversal-memory"); };
   const auto of_torque = [&](EffectId id) {
     return is(id, "load") || is(id, "quasi-constant") || is(id, "pose-force") || is(id, "inertia-like");
   };
-  return class_of(one) == class_of(other) || (by_position(one) && by_position(other)) || (is(one, "load") && of_torque(other));
+  const auto of_friction = [&](EffectId id) {
+    return by_position(id) || is(id, "velocity-shape") || is(id, "quasi-constant") || is(id, "drift");
+  };
+  const bool by_direction = one == EffectId::asymmetric_coulomb || one == EffectId::asymmetric_viscous;
+  return class_of(one) == class_of(other) || (by_position(one) && by_position(other)) || (is(one, "load") && of_torque(other)) ||
+         (by_direction && of_friction(other));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct FormShare {
   switch (id) {
     case EffectId::asymmetric_coulomb:
     case EffectId::asymmetric_viscous:
+      return {0.01, 0.12, 5e-4};  // linear, but friction that differs by direction does so in more ways
     case EffectId::rotor_inertia:
     case EffectId::limb_inertia_mismatch:
     case EffectId::payload:
