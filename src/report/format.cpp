@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <utility>
 #include <fmt/format.h>
+#include <utility>
 
 namespace deltadyn {
 namespace {
