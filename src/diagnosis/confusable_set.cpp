@@ -34,18 +34,6 @@ double block_std(const SearchContext& context, const WhiteProblem& problem, cons
   return std::sqrt(square);
 }
 
-EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit) {
-  const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
-  EffectCandidate out;
-  out.effect = fit.effect;
-  out.name = hypothesis.name();
-  out.effect_class = hypothesis.kind().effect_class;
-  out.joint = hypothesis.joint_name();
-  out.gain = fit.gain;
-  out.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
-  return out;
-}
-
 /// Drives that bear a tenth or more of one of the other effects: there, what its form leaves may decide between two names.
 std::vector<bool> reached_by_others(const SearchContext& context, const SearchResult& found, std::size_t but) {
   std::vector<bool> out(static_cast<std::size_t>(context.robot.drives()), false);
@@ -77,6 +65,18 @@ double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached,
 }
 
 }  // namespace
+
+EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit) {
+  const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
+  EffectCandidate out;
+  out.effect = fit.effect;
+  out.name = hypothesis.name();
+  out.effect_class = hypothesis.kind().effect_class;
+  out.joint = hypothesis.joint_name();
+  out.gain = fit.gain;
+  out.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
+  return out;
+}
 
 std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
                                             const EffectSearch::State& state, const Fit& best, std::size_t place) {

@@ -9,6 +9,9 @@
 
 namespace deltadyn::detail {
 
+/// A fit as a candidate: names, gain and its chance on clean logs.
+[[nodiscard]] EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit);
+
 /// Everything that the data cannot tell from `best` beside the other effects.
 /// \param state  beside the others
 /// \param place  of `best` in `found`

@@ -242,6 +242,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
     if (held_log) held_log = without_effects(robot, {*held_log}, p, fixed, kMotionOverPass * cutoff_hz).front();
   }
 
+  double length = 0;
+  for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
   const BaseParameters base = find_base_parameters(robot);
   ProcessingOptions processing;
   std::vector<LogRows> rows, held;
@@ -264,15 +266,11 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
       rows.push_back(make_log_rows(robot, base, std::move(ready[l]), static_cast<int>(l) + 1));
     if (held_log) held.push_back(make_log_rows(robot, base, std::move(ready.back()), 0));
   } catch (const Error& error) {
-    double length = 0;
-    for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
     if (std::string(error.problem()).find("too short") == std::string::npos) throw;
     detail::say_too_short(length, std::max(10.0, 4 * length), out);
     return finish();
   }
   // Rows enough to fit the base model and still see something beside it?
-  double length = 0;
-  for (const Log& log : logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
   const double fewest = fewest_rows(rows);
   const double needed = std::max(120.0, kFewestRowsPerBase * base.count());
   if (fewest < needed) {

@@ -41,6 +41,12 @@ bool alike(EffectId one, EffectId other) {
 
 }  // namespace
 
+FormErrors::FormErrors(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state,
+                       std::optional<std::size_t> but)
+    : context_(context), found_(found), state_(state), but_(but) {
+  for (const Fit& fit : found.fits) squares_.push_back(remaining_squares_by_drive(context, *found.before.problem, fit));
+}
+
 double FormErrors::gain_of(std::size_t k) const {
   return std::max(found_.fits[k].gain, but_ ? found_.before.scores[found_.fits[k].hypothesis].gain : 0.0);
 }
@@ -64,10 +70,10 @@ double FormErrors::best_at(int joint) const {
 
 bool FormErrors::explain(const Fit& fit) const {
   const VectorXd own = remaining_squares_by_drive(context_, *found_.before.problem, fit);
-  for (std::size_t k = 0; k < found_.fits.size(); ++k) {
+  for (std::size_t k = 0; k < squares_.size(); ++k) {
     if (!counts(k)) continue;
     const Effect& other = found_.fits[k].effect;
-    const VectorXd theirs = remaining_squares_by_drive(context_, *found_.before.problem, found_.fits[k]);
+    const VectorXd& theirs = squares_[k];
     double shared = 0;
     for (Index j = 0; j < own.size(); ++j) {
       if (own(j) > kReached * own.sum()) shared += theirs(j);

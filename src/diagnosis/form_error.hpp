@@ -15,8 +15,7 @@ class FormErrors {
   /// \param state  beside what was found
   /// \param but    the effect of `found` that is in question
   FormErrors(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state,
-             std::optional<std::size_t> but = std::nullopt)
-      : context_(context), found_(found), state_(state), but_(but) {}
+             std::optional<std::size_t> but = std::nullopt);
 
   /// Can the form of another effect have left what `fit` gains? Most is left at the same place and in what that effect depends on itself;
   /// what it does on other drives than `fit` does not count.
@@ -35,6 +34,7 @@ class FormErrors {
   const SearchResult& found_;
   const EffectSearch::State& state_;
   std::optional<std::size_t> but_;
+  std::vector<Eigen::VectorXd> squares_;  ///< of each effect found, what a re-fit leaves, by drive
 };
 
 }  // namespace deltadyn::detail

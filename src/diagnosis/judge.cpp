@@ -7,6 +7,7 @@
 
 #include "deltadyn/signal/reversal_mask.hpp"
 
+#include "confusable_set.hpp"
 #include "holdout_proof.hpp"
 
 namespace deltadyn::detail {
@@ -132,6 +133,11 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
   return OpenCourse{reason, kSlowLogs * wanted};
 }
 
+DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
+  const bool set = std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+}
+
 /// Takes out what would be a guess beyond the logs' speeds, and says what a log should show. If no name is left, nothing can be said.
 void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
   std::vector<NamedEffect> kept;
@@ -156,10 +162,10 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
     region = one.region;
   }
   out.named = std::move(kept);
-  const bool set =
-      std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
-  out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
-  if (!out.named.empty()) return;
+  if (!out.named.empty()) {
+    out.verdict = verdict_of(out.named);
+    return;
+  }
   out.verdict = DiagnosisVerdict::not_testable;
   out.headline = headline;
   out.region = region;
@@ -259,12 +265,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
       continue;
     }
     NamedEffect one;
-    one.effect = fit.effect;
-    one.name = hypothesis.name();
-    one.effect_class = hypothesis.kind().effect_class;
-    one.joint = hypothesis.joint_name();
-    one.gain = fit.gain;
-    one.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
+    static_cast<EffectCandidate&>(one) = candidate_of(context, found, fit);
     // An effect that was taken in beside others can have gained more alone than all of them together.
     const Remainder torque = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude);
     largest_share = std::max(largest_share, noise_shares(context, torque, found.floor).maxCoeff());
@@ -275,10 +276,8 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     out.named.push_back(std::move(one));
   }
   std::sort(out.named.begin(), out.named.end(), [](const NamedEffect& a, const NamedEffect& b) { return a.gain > b.gain; });
-  const bool set =
-      std::any_of(out.named.begin(), out.named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
-  if (!out.named.empty()) out.verdict = set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+  if (!out.named.empty()) out.verdict = verdict_of(out.named);
   const double must_explain = out.named.size() > 1 ? kExplainedByMany : kHardlyExplained;
   const bool too_little = !out.named.empty() && worst > kMaterialFurther && out.explained_share < must_explain;
   const bool unknown = too_little || (unexplained && (out.named.empty() || out.explained_share < kExplained));

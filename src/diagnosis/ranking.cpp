@@ -58,7 +58,7 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   search.refine_all(state, order);
   for (const std::size_t h : order) {
     Fit fit = search.refine(state, h);
-    if (counts && !counts(fit)) continue;
+    if (!counts(fit)) continue;
     const double worth = search.worth(h, fit.gain, state);
     if (!best || worth > best_worth) {
       best_worth = worth;

@@ -22,7 +22,7 @@ inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are ref
 /// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be noise that
 /// the null knows, and must not stand in the way of the next.
 [[nodiscard]] std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
-                                          const std::function<bool(const Fit&)>& counts = {});
+                                          const std::function<bool(const Fit&)>& counts);
 
 /// What is corrected without a name: a skew or a lag of about a sample, and Coulomb's law that is smoothed near rest.
 [[nodiscard]] bool hygienic(const SearchContext& context, const Fit& fit);
