@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/signal/log_finding.hpp"
+
 namespace deltadyn {
 
 struct Log {
@@ -18,7 +20,8 @@ struct Log {
   Eigen::MatrixXd tau;       ///< N x drives [N m | N]; empty if the file holds a motion only
   std::vector<long> line;    ///< line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
   std::vector<char> filled;  ///< 1 where values were filled in: leave these samples out of a fit; empty: none
-  std::vector<std::string> notes;  ///< what the reader repaired or wants to say, with line numbers
+  std::vector<std::string> notes;    ///< what the reader repaired or wants to say, with line numbers
+  std::vector<LogFinding> findings;  ///< what checks found out about this log
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
   [[nodiscard]] Eigen::Index drives() const { return q.cols(); }
