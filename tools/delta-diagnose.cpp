@@ -77,7 +77,7 @@ class Diagnose {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     }
     const RobotDescription description = read_robot_file(robot_file_);
-    const ParameterTable table = read_parameters(parameter_file_);
+    const ParameterTable table = read_parameters(parameter_file_, description);
     ParameterOptions layout = parameter_options_of(table, description);
     // As delta-identify does: a drive on its test bench has its amplifier's offset.
     if (description.type == Axis::kName) layout.offset = true;

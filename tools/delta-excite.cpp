@@ -23,6 +23,7 @@
 #include "deltadyn/report/excitation_report.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
@@ -153,7 +154,7 @@ class Excite {
     const NominalParameters nominal = nominal_parameters(*robot, PartShapes(description));
     const VectorXd parameters = params_file_.empty()
                                     ? nominal.value
-                                    : values(read_parameters(params_file_), robot->parameter_names(), robot->parameter_units());
+                                    : values(read_parameters(params_file_, description), robot->parameter_names(), robot->parameter_units());
     const MotionLimits limits = motion_limits(*robot, parameters);
     const BaseParameters base = find_base_parameters(*robot);
     const VectorXd scale = torque_scale(*robot, nominal.value);
@@ -318,7 +319,22 @@ class Excite {
     if (!params_file_.empty()) limits.parameters = parameters;
     set_task_limits(robot, limits);
     limits.validate(description);
+    tell_beyond_file(description, limits);
     return limits;
+  }
+
+  /// The robot file holds what the machine can do; more than that is said, and far more refused.
+  static void tell_beyond_file(const RobotDescription& description, const MotionLimits& limits) {
+    for (int i = 0; i < description.drives(); ++i) {
+      DriveLimits asked;
+      asked.lower = limits.q_lower(i);
+      asked.upper = limits.q_upper(i);
+      asked.velocity = limits.qd(i);
+      asked.acceleration = limits.qdd(i);
+      asked.effort = limits.tau(i);
+      const std::string beyond = plausibility::compare_limits(description, i, asked, "limits");
+      if (!beyond.empty()) fmt::print("note: {}\n", beyond);
+    }
   }
 
   void set_task_limits(const Robot& robot, MotionLimits& limits) const {

@@ -179,7 +179,7 @@ class Identify {
       fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
       return;
     }
-    const ParameterMatch match = match_parameters(read_parameters(prior_file_), robot.parameter_names(), robot.parameter_units());
+    const ParameterMatch match = match_parameters(read_parameters(prior_file_, robot.description()), robot.parameter_names(), robot.parameter_units());
     prior = match.value;
     for (Eigen::Index k = 0; k < prior.size(); ++k) {
       const double std = match.std(k);

@@ -98,7 +98,7 @@ class Simulate {
   void execute(ToolRun& run) {
     run.check_files({output_}, {robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, effects_file_});
     const RobotDescription description = read_robot_file(robot_file_);
-    const ParameterTable table = read_parameters(parameter_file_);
+    const ParameterTable table = read_parameters(parameter_file_, description);
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
     std::vector<Effect> effects;
@@ -111,7 +111,7 @@ class Simulate {
     std::unique_ptr<Robot> model;
     Eigen::VectorXd known = p;
     if (!controller_parameter_file_.empty()) {
-      const ParameterTable controller_table = read_parameters(controller_parameter_file_);
+      const ParameterTable controller_table = read_parameters(controller_parameter_file_, description);
       model = make_robot(description, parameter_options_of(controller_table, description));
       known = matched(controller_table, *model);
     }

@@ -53,7 +53,7 @@ class Validate {
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     }
     const RobotDescription description = read_robot_file(robot_file_);
-    const ParameterTable table = read_parameters(parameter_file_);
+    const ParameterTable table = read_parameters(parameter_file_, description);
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);

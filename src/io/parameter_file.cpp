@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 namespace deltadyn {
 namespace {
@@ -66,6 +69,14 @@ std::string shared_name(const std::string& name) {
     return number ? body + name.substr(dot) : std::string();
   }
   return {};
+}
+
+/// "upper_arm2" -> upper_arm; nothing if it is no body.
+std::optional<Body> body_of(std::string name) {
+  while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back())) != 0) name.pop_back();
+  for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper, Body::telescope_lower})
+    if (name == deltadyn::name(body)) return body;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -125,6 +136,26 @@ ParameterTable read_parameters(const std::string& path) {
     }
     table.entries.push_back(std::move(entry));
   }
+  return table;
+}
+
+ParameterTable read_parameters(const std::string& path, const RobotDescription& robot) {
+  ParameterTable table = read_parameters(path);
+  std::map<std::string, std::pair<InertialVector<double>, long>> bodies;  // with the line of the first row
+  for (const ParameterEntry& entry : table.entries) {
+    const auto dot = entry.name.rfind('.');
+    if (dot == std::string::npos) continue;
+    const std::string owner = entry.name.substr(0, dot), quantity = entry.name.substr(dot + 1);
+    const auto* place_in_body = std::find(std::begin(kInertialNames), std::end(kInertialNames), quantity);
+    if (place_in_body == std::end(kInertialNames)) {
+      plausibility::require_joint_parameter(quantity, entry.value, entry.name, place(path, entry.line, "value"));
+    } else if (body_of(owner)) {
+      auto& body = bodies.try_emplace(owner, InertialVector<double>(InertialVector<double>::Zero()), entry.line).first->second;
+      body.first(place_in_body - std::begin(kInertialNames)) = entry.value;
+    }
+  }
+  for (const auto& [name, body] : bodies)
+    plausibility::require_body(robot, *body_of(name), body.first, name, place(path, body.second, "value"));
   return table;
 }
 

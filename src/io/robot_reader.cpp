@@ -10,6 +10,7 @@
 
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 #include "robot_file_format.hpp"
 #include "urdf_tree.hpp"
@@ -55,6 +56,7 @@ class Reader {
     for (const Joint* drive : drives_) robot_.limits.push_back(drive->limits);
     extension();
     robot_.validate(tree_.where);
+    inertials();
     return robot_;
   }
 
@@ -388,6 +390,25 @@ class Reader {
     robot_.telescope = bar;
   }
 
+  // --- inertials --------------------------------------------------------------------------------
+  /// They are not used here, but masses in grams say that the file is not in SI units.
+  void inertials() const {
+    for (const auto& [name, inertial] : tree_.inertials) {
+      const robot_file::LinkPlace& place = tree_.links.at(name);
+      if (place.body == 0) continue;  // the base may weigh what it likes
+      plausibility::require_body(robot_, role_of(place.body), inertial.in_frame(place.X_BL), "link " + name, tree_.where);
+    }
+  }
+
+  [[nodiscard]] Body role_of(int index) const {
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i)
+      if (drives_[i]->child == index) return Body::upper_arm;
+    if (index == plate_) return Body::platform;
+    for (const Strut& strut : struts_)
+      if (strut.body == index) return Body::strut;
+    return Body::telescope_upper;
+  }
+
   // --- extension ------------------------------------------------------------------------------------
   void extension() {
     if (!tree_.declared_type.empty() && tree_.declared_type != robot_.type)
@@ -435,7 +456,8 @@ class Reader {
 }  // namespace
 
 RobotDescription robot_from_urdf(const std::string& text, const std::string& where) {
-  const UrdfTree tree = robot_file::parse_urdf_tree(text, where);
+  UrdfTree tree = robot_file::parse_urdf_tree(text, where);
+  robot_file::place_base(tree);
   return Reader(tree).run();
 }
 

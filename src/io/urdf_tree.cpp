@@ -176,9 +176,23 @@ DriveLimits limits_of(const urdf::Joint& joint) {
   return limits;
 }
 
+void read_inertial(const urdf::Link& link, UrdfTree& tree) {
+  if (!link.inertial) return;
+  const urdf::Inertial& from = *link.inertial;
+  LinkInertial to;
+  to.mass = from.mass;
+  to.X_LC = pose_of(from.origin);
+  to.I_C << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
+  if (!std::isfinite(to.mass) || !to.I_C.allFinite() || !to.X_LC.matrix().allFinite())
+    refuse("the <inertial> holds a number that is not finite", fmt::format("{}, link {}", tree.where, link.name),
+           "give finite numbers, or leave <inertial> out");
+  tree.inertials[link.name] = to;
+}
+
 /// Walks down from a link whose place is known.
 void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree) {
   const LinkPlace here = tree.links.at(link.name);
+  read_inertial(link, tree);
   for (const auto& joint : link.child_joints) {
     const auto child = [&] {
       for (const auto& other : link.child_links)
@@ -188,7 +202,7 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree)
     if (!child) refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "");
     const Pose X_BJ = here.X_BL * pose_of(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) {
-      tree.links[child->name] = {here.body, X_BJ};
+      tree.links[child->name] = {here.body, X_BJ, link.name};
       tree.bodies[static_cast<std::size_t>(here.body)].links.push_back(child->name);
     } else {
       const int line = facts.joint_lines.at(joint->name);
@@ -205,6 +219,7 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree)
       Joint moving;
       moving.name = joint->name;
       moving.line = line;
+      moving.parent_link = link.name;
       moving.prismatic = prismatic;
       moving.parent = here.body;
       moving.child = body;
@@ -215,7 +230,7 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree)
       moving.limits = limits_of(*joint);
       tree.joints.push_back(moving);
       tree.bodies.push_back({child->name, {}, {child->name}});
-      tree.links[child->name] = {body, Pose::Identity()};
+      tree.links[child->name] = {body, Pose::Identity(), {}};
     }
     add_children(*child, facts, tree);
   }
@@ -265,6 +280,16 @@ void read_loops(const XMLElement* robot, UrdfTree& tree) {
 
 }  // namespace
 
+InertialVector<double> LinkInertial::in_frame(const Pose& X_FL) const {
+  const Pose X_FC = X_FL * X_LC;
+  const Eigen::Vector3d c = X_FC.translation();
+  const Eigen::Matrix3d I = X_FC.linear() * I_C * X_FC.linear().transpose() +
+                            mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+  InertialVector<double> p;
+  p << mass, mass * c, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(1, 2), I(0, 2);
+  return p;
+}
+
 double parse_number(const std::string& text, const std::string& where, const std::string& attribute_name) {
   const char* begin = text.data();
   const char* end = begin + text.size();
@@ -296,7 +321,7 @@ UrdfTree parse_urdf_tree(const std::string& text, const std::string& where) {
   tree.where = where;
   const auto root = model->getRoot();
   tree.bodies.push_back({root->name, {}, {root->name}});
-  tree.links[root->name] = {0, Pose::Identity()};
+  tree.links[root->name] = {0, Pose::Identity(), {}};
   add_children(*root, facts, tree);
   read_loops(robot, tree);
   read_extension(robot, tree);

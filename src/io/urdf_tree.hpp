@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn::robot_file {
@@ -17,6 +18,7 @@ using Pose = Eigen::Isometry3d;
 struct Joint {
   std::string name;
   int line = 0;
+  std::string parent_link;       ///< as written; one of the links of `parent`
   bool prismatic = false;        ///< else revolute or continuous
   int parent = -1;               ///< body
   int child = -1;                ///< body
@@ -35,6 +37,7 @@ struct Body {
 struct LinkPlace {
   int body = -1;
   Pose X_BL = Pose::Identity();  ///< link frame in the body's frame
+  std::string parent;            ///< link that it is fixed to, empty if it is the first of its body
 };
 
 struct LoopEnd {
@@ -47,6 +50,15 @@ struct Loop {
   int line = 0;
   LoopEnd predecessor, successor;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+};
+
+/// `<inertial>` of a link, as written.
+struct LinkInertial {
+  double mass = 0;
+  Pose X_LC = Pose::Identity();                   ///< centre of mass and axes of the inertia, in the link's frame
+  Eigen::Matrix3d I_C = Eigen::Matrix3d::Zero();  ///< about the centre of mass, in those axes
+  /// The ten parameters about the origin of a frame F in which the link stands at X_FL.
+  [[nodiscard]] InertialVector<double> in_frame(const Pose& X_FL) const;
 };
 
 /// One `<drive>` of the `<deltadyn>` element; attributes as written.
@@ -62,14 +74,21 @@ struct UrdfTree {
   std::vector<Joint> joints;
   std::map<std::string, LinkPlace> links;
   std::vector<Loop> loops;
-  std::string declared_type;  ///< of the `<deltadyn>` element, empty if there is none
+  std::map<std::string, LinkInertial> inertials;  ///< of the links that have one
+  std::string declared_type;                      ///< of the `<deltadyn>` element, empty if there is none
   int extension_line = 0;
-  Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
+  Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);  ///< in the frame of the root link
   std::vector<DriveNote> drives;
 };
 
 /// Throws deltadyn::Error with the line if the file is not well-formed URDF or URDF+.
 [[nodiscard]] UrdfTree parse_urdf_tree(const std::string& text, const std::string& where);
+
+/// Turns the tree from the frame of its root link to that of the robot's base W: gravity and the places of the drives. A base that
+/// hangs, leans or is turned is a link that fixed joints hold against the root ("world"). W is the frame of the last link that
+/// carries all drives and against which the limbs are turned about z only; if there is none (drives on brackets of their own below
+/// a turned base), W is made from the frames of the drives.
+void place_base(UrdfTree& tree);
 
 /// A finite number, or throws deltadyn::Error that names the attribute.
 [[nodiscard]] double parse_number(const std::string& text, const std::string& where, const std::string& attribute);

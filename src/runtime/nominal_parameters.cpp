@@ -5,6 +5,7 @@
 
 #include "deltadyn/model/shapes.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 namespace deltadyn {
 namespace {
@@ -37,11 +38,22 @@ double arm_length(const RobotDescription& robot) {
   return length > 0 ? length : 0.1;  // an axis without an arm: a short stub
 }
 
+/// A part that is thicker than it is long is a length in another unit: half its length, and 5 cm for parts that are short.
+void require_thin(double thickness, double length, const std::string& what) {
+  plausibility::require(plausibility::kDiameter, thickness, what, "", ExitCode::usage);
+  const double most = 0.5 * length + 0.05;
+  if (thickness > most)
+    refuse(fmt::format("{} is {:.6g} m, which does not go with a length of {:.6g} m", what, thickness, length),
+           "give it in metres");
+}
+
 /// Tube from its density.
 Ten tube(double density, double diameter, double wall, const Vec& from, const Vec& to, const char* what) {
   require_positive(density, fmt::format("the density of the {}", what).c_str());
   require_positive(diameter, fmt::format("the diameter of the {}", what).c_str());
   require_positive(wall, fmt::format("the wall of the {}", what).c_str());
+  plausibility::require(plausibility::kDensity, density, fmt::format("the density of the {}", what), "", ExitCode::usage);
+  require_thin(diameter, (to - from).norm(), fmt::format("the diameter of the {}", what));
   const double outer = diameter / 2;
   if (wall > outer)
     refuse(fmt::format("the wall of the {}, {} m, is thicker than half its diameter {} m", what, wall, diameter),
@@ -54,6 +66,10 @@ Ten round(double mass, double outer_diameter, double inner_diameter, const Vec& 
   require_positive(mass, fmt::format("the mass of the {}", what).c_str());
   require_positive(outer_diameter, fmt::format("the diameter of the {}", what).c_str());
   require_not_negative(inner_diameter, fmt::format("the inner diameter of the {}", what).c_str());
+  plausibility::require(plausibility::kDiameter, outer_diameter, fmt::format("the diameter of the {}", what), "",
+                        ExitCode::usage);
+  plausibility::require(plausibility::kLength, (to - from).norm(), fmt::format("the length of the {}", what), "",
+                        ExitCode::usage);
   if (inner_diameter >= outer_diameter)
     refuse(fmt::format("the inner diameter of the {} is not below the outer one", what), "swap them");
   require_positive((to - from).norm(), fmt::format("the length of the {}", what).c_str());
@@ -117,6 +133,12 @@ Ten std_of(const Ten& p, double share) {
   return from_pseudo_inertia<double>(scale).cwiseAbs();
 }
 
+Body kind_of(const std::string& name) {
+  for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper})
+    if (name.rfind(deltadyn::name(body), 0) == 0) return body;
+  return Body::telescope_lower;
+}
+
 double friction_of(const std::string& joint, bool viscous, const RobotDescription& robot, const PartShapes& s) {
   if (joint == "telescope") return viscous ? s.telescope_viscous : s.telescope_coulomb;
   if (robot.telescope && joint == fmt::format("drive{}", robot.drives()))
@@ -174,6 +196,8 @@ PartShapes::PartShapes(const RobotDescription& robot) {
 NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shapes) {
   require_positive(shapes.body_std, "the relative standard deviation of the bodies");
   require_positive(shapes.friction_std, "the relative standard deviation of the friction");
+  for (const double share : {shapes.body_std, shapes.friction_std})
+    plausibility::require(plausibility::kShare, share, "a standard deviation", "", ExitCode::usage);
   for (const double friction : {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous,
                                 shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb})
     require_positive(friction, "a friction coefficient");
@@ -189,6 +213,7 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
       const Ten p = body_of(body, robot.description(), shapes);
       if (!is_physically_consistent<double>(p))
         refuse(fmt::format("the shapes of {} make no physically consistent body", body), "give every part a thickness");
+      plausibility::require_body(robot.description(), kind_of(body), p, body, "", ExitCode::usage);
       nominal.value.segment<kInertialParameters>(column) = p.array() + 0.0;  // no -0 in a file that people read
       nominal.std.segment<kInertialParameters>(column) = std_of(p, shapes.body_std);
       k += kInertialParameters;
@@ -196,6 +221,7 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
     }
     if (entry == "viscous" || entry == "coulomb") {
       nominal.value(column) = friction_of(body, entry == "viscous", robot.description(), shapes);
+      plausibility::require_joint_parameter(entry, nominal.value(column), names[k], "", ExitCode::usage);
       nominal.std(column) = shapes.friction_std * nominal.value(column);
     } else {
       // Rotor inertia and offset: unknown beforehand, of the size of the drive's own friction.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 namespace deltadyn {
 namespace {
@@ -79,7 +80,9 @@ void validate_limits(const DriveLimits& limits, std::size_t number, const std::s
     refuse(fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper), where,
            "swap or mend the limits");
   const auto positive = [&](double value, const char* what) {
-    if (!(value > 0)) refuse(fmt::format("{}: the {} limit is {}, but must be positive", name, what, value), where, "");
+    if (!(value > 0))
+      refuse(fmt::format("{}: the {} limit is {}, but must be positive", name, what, value), where,
+             "give a positive limit, or leave it out if there is none");
   };
   positive(limits.velocity, "velocity");
   positive(limits.acceleration, "acceleration");
@@ -131,6 +134,8 @@ void RobotDescription::validate(const std::string& where) const {
       refuse("all parallelograms lie in the same direction, so the plate could turn", where,
              "give the limbs different azimuths, e.g. 0, 120 and 240 degrees");
   }
+  plausibility::require_geometry(*this, where);
+  for (int i = 0; i < drives(); ++i) plausibility::require_limits(*this, i, limits[static_cast<std::size_t>(i)], where);
 }
 
 }  // namespace deltadyn

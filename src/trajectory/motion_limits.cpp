@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/trajectory/task_columns.hpp"
 
 namespace deltadyn {
@@ -25,6 +26,29 @@ const char* word(LimitedQuantity quantity) {
     case LimitedQuantity::region: break;
   }
   return "";
+}
+
+/// Limits of the drives and of the task by the same rules as everywhere; infinite ones do not limit.
+void require_plausible(const MotionLimits& limits, const RobotDescription& robot, const std::vector<TaskColumns>& columns) {
+  using namespace plausibility;
+  const auto bounded = [](const Rule& rule, double value, const std::string& what) {
+    if (!std::isinf(value)) require(rule, value, what, "limits", ExitCode::usage);
+  };
+  for (int i = 0; i < robot.drives(); ++i) {
+    DriveLimits drive;
+    drive.lower = limits.q_lower(i);
+    drive.upper = limits.q_upper(i);
+    drive.velocity = limits.qd(i);
+    drive.acceleration = limits.qdd(i);
+    drive.effort = limits.tau(i);
+    require_limits(robot, i, drive, "limits", ExitCode::usage);
+    if (robot.parts.empty()) continue;  // the coordinate is the drive itself
+    const TaskColumns& column = columns[static_cast<std::size_t>(i)];
+    for (const double end : {limits.z_lower(i), limits.z_upper(i)})
+      bounded(column.rotation ? kYaw : kOffset, end, column.name + ": a position limit");
+    bounded(column.rotation ? kYawVelocity : kPlateVelocity, limits.zd(i), column.name + ": the velocity limit");
+    bounded(column.rotation ? kYawAcceleration : kPlateAcceleration, limits.zdd(i), column.name + ": the acceleration limit");
+  }
 }
 
 void require_size(const Eigen::VectorXd& v, int n, const char* what) {
@@ -106,6 +130,7 @@ void MotionLimits::validate(const RobotDescription& robot) const {
         !(std::isfinite(q_lower(i)) && std::isfinite(q_upper(i))))
       unlimited("position range", "--drive-range-rad", "--drive-range-m");
   }
+  require_plausible(*this, robot, columns);
   if (region) {
     const char axes[] = "xyz";
     for (int i = 0; i < 3; ++i) {

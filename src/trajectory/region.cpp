@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 namespace deltadyn {
 
@@ -110,8 +111,13 @@ void Region::validate() const {
     if (!(value > 0) || !std::isfinite(value))
       throw Error(fmt::format("the {} of the workspace is {} m, but must be positive", what, value), "workspace",
                   "give a positive length in metres", ExitCode::usage);
+    plausibility::require(plausibility::kOffset, value, fmt::format("the {} of the workspace", what), "workspace",
+                          ExitCode::usage);
   };
-  if (!centre.allFinite()) throw Error("the centre of the workspace is not finite", "workspace", "", ExitCode::usage);
+  if (!centre.allFinite())
+    throw Error("the centre of the workspace is not finite", "workspace", "give three finite numbers", ExitCode::usage);
+  plausibility::require(plausibility::kOffset, centre.cwiseAbs().maxCoeff(), "the centre of the workspace", "workspace",
+                        ExitCode::usage);
   if (shape == RegionShape::box) {
     need(size.minCoeff(), "shortest edge");
     need(size.maxCoeff(), "longest edge");

@@ -49,7 +49,7 @@ class RandomRobot {
       robot.telescope = TelescopeGeometry<double>{vector(0.1), vector(0.1)};
       robot.limits.emplace_back();  // unlimited
     }
-    robot.gravity = vector(10);
+    robot.gravity = 9.81 * vector(1).normalized();
     return robot;
   }
 
@@ -69,7 +69,7 @@ class RandomRobot {
     }
     robot.limbs.push_back(limb);
     robot.limits.push_back(limits());
-    robot.gravity = vector(10);
+    robot.gravity = 9.81 * vector(1).normalized();
     return robot;
   }
 

@@ -55,9 +55,9 @@ TEST(Workspace, OfAnAxisIsItsDrive) {
 
 TEST(Workspace, RefusesARobotThatReachesNothing) {
   Lengths lengths;
-  lengths.strut = 0.001;
-  lengths.upper_arm = 0.001;
-  lengths.base_radius = 5;
+  lengths.strut = 0.1;
+  lengths.upper_arm = 0.1;
+  lengths.base_radius = 0.55;
   const auto robot = make_robot(delta_description("delta3", lengths));
   EXPECT_THROW(WorkspaceSampler sampler(*robot), Error);
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
@@ -112,8 +113,8 @@ class Create {
     RobotDescription robot;
     robot.type = type_;
     robot.name = name_.empty() ? type_ : name_;
-    if (!(std::isfinite(gravity_) && gravity_ >= 0))
-      refuse_usage("--gravity-m-s2 must not be negative", "give the direction by --gravity-direction");
+    if (gravity_ < 0) refuse_usage("--gravity-m-s2 must not be negative", "give the direction by --gravity-direction");
+    plausibility::require(plausibility::kGravity, gravity_, "--gravity-m-s2", "", ExitCode::usage);
     robot.gravity = gravity_direction_.empty()
                         ? Eigen::Vector3d(0, 0, -gravity_)
                         : Eigen::Vector3d(gravity_ * direction_of(gravity_direction_, "--gravity-direction"));
@@ -128,7 +129,8 @@ class Create {
       const auto closes = make_robot(robot);
       const WorkspaceSampler sampler(*closes);  // refuses lengths that do not close
     } catch (const Error& e) {
-      refuse_usage(e.problem(), "check the lengths and limits given");  // they are the flags here, not a file's
+      // They are the flags here, not a file's.
+      refuse_usage(e.problem(), e.mend().empty() ? "check the lengths and limits given" : e.mend());
     }
     if (output_.empty()) {
       fmt::print("{}", robot_to_urdf(robot));
@@ -141,10 +143,9 @@ class Create {
   }
 
   static double required(const std::optional<double>& value, const std::string& name) {
-    constexpr double kLargest_m = 10;  // no Delta is that large; such a number is in millimetres
     if (!value) refuse_usage(fmt::format("{} is needed for this type", name), "give it in metres");
     if (!(std::isfinite(*value) && *value >= 0)) refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
-    if (*value > kLargest_m) refuse_usage(fmt::format("{} {} looks like millimetres", name, *value), "give it in metres");
+    plausibility::require(plausibility::kOffset, *value, name, "", ExitCode::usage);
     return *value;
   }
 

@@ -40,8 +40,14 @@ class Prior {
     options.individual_limbs = individual_limbs_;
     const auto robot = make_robot(description, options);
     PartShapes shapes(description);
-    for (const Shape& shape : shapes_)
-      if (shape.value) shapes.*shape.member = *shape.value;
+    for (const Shape& shape : shapes_) {
+      if (!shape.value) continue;
+      if (!has(description, shape.part))
+        throw Error(
+            fmt::format("{} does not belong to this {}, which has no {}", shape.flag, description.type, kPartNames[shape.part]),
+            "", "leave it out", ExitCode::usage);
+      shapes.*shape.member = *shape.value;
+    }
     const NominalParameters nominal = nominal_parameters(*robot, shapes);
     ParameterTable table;
     for (int k = 0; k < robot->parameters(); ++k) {
@@ -61,8 +67,26 @@ class Prior {
     run.summary.add("columns", robot->parameters());
   }
 
+  enum Part { arm, carriage, strut, platform, tool, telescope, any };
+  static constexpr const char* kPartNames[] = {"upper arm", "carriage", "struts", "plate", "tool", "telescope bar", ""};
+
+  /// A flag for a part that the robot does not have is a mistake, not a wish.
+  [[nodiscard]] bool has(const RobotDescription& robot, Part part) const {
+    switch (part) {
+      case arm: return robot.drive_kind == DriveKind::revolute;
+      case carriage: return robot.drive_kind == DriveKind::prismatic;
+      case strut:
+      case platform: return !robot.parts.empty();
+      case tool: return robot.telescope && !without_tool_;
+      case telescope: return robot.telescope.has_value();
+      case any: break;
+    }
+    return true;
+  }
+
   struct Shape {
     std::string flag, help;
+    Part part;
     double PartShapes::*member;
     std::optional<double> value = {};
   };
@@ -70,45 +94,46 @@ class Prior {
   std::string robot_file_, output_;
   bool without_tool_ = false, individual_limbs_ = false;
   std::vector<Shape> shapes_ = {
-      {"--upper-arm-outer-diameter-m", "tube of the upper arm [m]", &PartShapes::upper_arm_outer_diameter},
-      {"--upper-arm-wall-m", "its wall [m]", &PartShapes::upper_arm_wall},
-      {"--upper-arm-density-kg-m3", "its density [kg/m^3], carbon fibre 1600", &PartShapes::upper_arm_density},
-      {"--upper-arm-hub-mass-kg", "hub about the drive axis [kg], 0: none", &PartShapes::upper_arm_hub_mass},
-      {"--upper-arm-hub-diameter-m", "its diameter [m]", &PartShapes::upper_arm_hub_diameter},
-      {"--upper-arm-hub-width-m", "its width along the axis [m]", &PartShapes::upper_arm_hub_width},
-      {"--carriage-mass-kg", "carriage of a prismatic drive [kg]", &PartShapes::carriage_mass},
-      {"--carriage-diameter-m", "its diameter [m]", &PartShapes::carriage_diameter},
-      {"--carriage-length-m", "its length along the rail [m]", &PartShapes::carriage_length},
-      {"--strut-outer-diameter-m", "tube of a strut [m]", &PartShapes::strut_outer_diameter},
-      {"--strut-wall-m", "its wall [m]", &PartShapes::strut_wall},
-      {"--strut-density-kg-m3", "its density [kg/m^3]", &PartShapes::strut_density},
-      {"--strut-sockets-mass-kg", "both sockets of one strut [kg], 0: none; default as heavy as the tube",
+      {"--upper-arm-outer-diameter-m", "tube of the upper arm [m]", arm, &PartShapes::upper_arm_outer_diameter},
+      {"--upper-arm-wall-m", "its wall [m]", arm, &PartShapes::upper_arm_wall},
+      {"--upper-arm-density-kg-m3", "its density [kg/m^3], carbon fibre 1600", arm, &PartShapes::upper_arm_density},
+      {"--upper-arm-hub-mass-kg", "hub about the drive axis [kg], 0: none", arm, &PartShapes::upper_arm_hub_mass},
+      {"--upper-arm-hub-diameter-m", "its diameter [m]", arm, &PartShapes::upper_arm_hub_diameter},
+      {"--upper-arm-hub-width-m", "its width along the axis [m]", arm, &PartShapes::upper_arm_hub_width},
+      {"--carriage-mass-kg", "carriage of a prismatic drive [kg]", carriage, &PartShapes::carriage_mass},
+      {"--carriage-diameter-m", "its diameter [m]", carriage, &PartShapes::carriage_diameter},
+      {"--carriage-length-m", "its length along the rail [m]", carriage, &PartShapes::carriage_length},
+      {"--strut-outer-diameter-m", "tube of a strut [m]", strut, &PartShapes::strut_outer_diameter},
+      {"--strut-wall-m", "its wall [m]", strut, &PartShapes::strut_wall},
+      {"--strut-density-kg-m3", "its density [kg/m^3]", strut, &PartShapes::strut_density},
+      {"--strut-sockets-mass-kg", "both sockets of one strut [kg], 0: none; default as heavy as the tube", strut,
        &PartShapes::strut_sockets_mass},
-      {"--strut-socket-diameter-m", "their diameter [m]", &PartShapes::strut_socket_diameter},
-      {"--strut-socket-length-m", "their length [m]", &PartShapes::strut_socket_length},
-      {"--platform-mass-kg", "travelling plate [kg]", &PartShapes::platform_mass},
-      {"--platform-diameter-m", "its diameter [m]", &PartShapes::platform_diameter},
-      {"--platform-thickness-m", "its thickness [m]", &PartShapes::platform_thickness},
-      {"--tool-mass-kg", "tool [kg]", &PartShapes::tool_mass},
-      {"--tool-diameter-m", "its diameter [m]", &PartShapes::tool_diameter},
-      {"--tool-length-m", "its length below the plate's centre [m]", &PartShapes::tool_length},
-      {"--telescope-mass-kg", "both parts of the telescope bar [kg]", &PartShapes::telescope_mass},
-      {"--telescope-upper-share", "share of the upper part in that mass, the paper's is 0.6", &PartShapes::telescope_upper_share},
-      {"--telescope-upper-length-m", "solid rod of the upper part [m]", &PartShapes::telescope_upper_length},
-      {"--telescope-upper-diameter-m", "its diameter [m]", &PartShapes::telescope_upper_diameter},
-      {"--telescope-lower-length-m", "tube of the lower part [m]", &PartShapes::telescope_lower_length},
-      {"--telescope-lower-outer-diameter-m", "its outer diameter [m]", &PartShapes::telescope_lower_outer_diameter},
-      {"--telescope-lower-inner-diameter-m", "its inner diameter [m]", &PartShapes::telescope_lower_inner_diameter},
-      {"--drive-viscous", "friction of a limb's drive [N m s/rad or N s/m]", &PartShapes::drive_viscous},
-      {"--drive-coulomb", "the same [N m or N]", &PartShapes::drive_coulomb},
-      {"--telescope-drive-viscous-Nm-s-rad", "friction of the telescope's drive [N m s/rad]",
+      {"--strut-socket-diameter-m", "their diameter [m]", strut, &PartShapes::strut_socket_diameter},
+      {"--strut-socket-length-m", "their length [m]", strut, &PartShapes::strut_socket_length},
+      {"--platform-mass-kg", "travelling plate [kg]", platform, &PartShapes::platform_mass},
+      {"--platform-diameter-m", "its diameter [m]", platform, &PartShapes::platform_diameter},
+      {"--platform-thickness-m", "its thickness [m]", platform, &PartShapes::platform_thickness},
+      {"--tool-mass-kg", "tool [kg]", tool, &PartShapes::tool_mass},
+      {"--tool-diameter-m", "its diameter [m]", tool, &PartShapes::tool_diameter},
+      {"--tool-length-m", "its length below the plate's centre [m]", tool, &PartShapes::tool_length},
+      {"--telescope-mass-kg", "both parts of the telescope bar [kg]", telescope, &PartShapes::telescope_mass},
+      {"--telescope-upper-share", "share of the upper part in that mass, the paper's is 0.6", telescope,
+       &PartShapes::telescope_upper_share},
+      {"--telescope-upper-length-m", "solid rod of the upper part [m]", telescope, &PartShapes::telescope_upper_length},
+      {"--telescope-upper-diameter-m", "its diameter [m]", telescope, &PartShapes::telescope_upper_diameter},
+      {"--telescope-lower-length-m", "tube of the lower part [m]", telescope, &PartShapes::telescope_lower_length},
+      {"--telescope-lower-outer-diameter-m", "its outer diameter [m]", telescope, &PartShapes::telescope_lower_outer_diameter},
+      {"--telescope-lower-inner-diameter-m", "its inner diameter [m]", telescope, &PartShapes::telescope_lower_inner_diameter},
+      {"--drive-viscous", "friction of a limb's drive [N m s/rad or N s/m]", any, &PartShapes::drive_viscous},
+      {"--drive-coulomb", "the same [N m or N]", any, &PartShapes::drive_coulomb},
+      {"--telescope-drive-viscous-Nm-s-rad", "friction of the telescope's drive [N m s/rad]", telescope,
        &PartShapes::telescope_drive_viscous},
-      {"--telescope-drive-coulomb-Nm", "the same [N m]", &PartShapes::telescope_drive_coulomb},
-      {"--telescope-viscous-N-s-m", "friction of the sliding bar [N s/m]", &PartShapes::telescope_viscous},
-      {"--telescope-coulomb-N", "the same [N]", &PartShapes::telescope_coulomb},
-      {"--body-std", "assumed standard deviation of masses and moments as a share of the value, default 0.5",
+      {"--telescope-drive-coulomb-Nm", "the same [N m]", telescope, &PartShapes::telescope_drive_coulomb},
+      {"--telescope-viscous-N-s-m", "friction of the sliding bar [N s/m]", telescope, &PartShapes::telescope_viscous},
+      {"--telescope-coulomb-N", "the same [N]", telescope, &PartShapes::telescope_coulomb},
+      {"--body-std", "assumed standard deviation of masses and moments as a share of the value, default 0.5", any,
        &PartShapes::body_std},
-      {"--friction-std", "of the friction, default 1", &PartShapes::friction_std},
+      {"--friction-std", "of the friction, default 1", any, &PartShapes::friction_std},
   };
 };
 

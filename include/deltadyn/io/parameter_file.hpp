@@ -35,6 +35,10 @@ struct ParameterTable {
 /// does not fit the name, a negative std, a data_share outside [0, 1].
 [[nodiscard]] ParameterTable read_parameters(const std::string& path);
 
+/// The same for a robot, in the numbers that one of its size can have: throws Error(bad_input) with the line for masses in grams,
+/// moments in kg mm^2, negative masses or friction (runtime/plausibility.hpp).
+[[nodiscard]] ParameterTable read_parameters(const std::string& path, const RobotDescription& robot);
+
 /// Writes the table; the columns std, prior and data_share appear if any row has them. Numbers read back exactly.
 /// Throws Error(bad_input) if the disk is full; then nothing is left behind.
 void write_parameters(const std::string& path, const ParameterTable& table);

@@ -1,0 +1,241 @@
+// Every door to the tools refuses numbers in other units; robots that hang or lean are taken as they are.
+
+#include <gtest/gtest.h>
+
+#include "deltadyn/io/parameter_file.hpp"
+
+#include "acceptance/bad_input.hpp"
+
+namespace deltadyn::acceptance {
+namespace {
+
+using W = Workshop;
+
+std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string shipped(const std::string& name) {
+  return read_text(installed("robots/" + name));
+}
+
+/// One shipped robot with a piece of text replaced everywhere.
+std::string spoilt(const W& w, const std::string& robot, const std::string& from, const std::string& to) {
+  const std::string text = shipped(robot), changed = replaced_all(text, from, to);
+  if (text == changed) throw std::runtime_error("no " + from);
+  return w.write("bad.urdf", changed);
+}
+
+/// delta4 with an `<inertial>` on each upper arm.
+std::string with_inertial(const W& w, const std::string& mass, const std::string& moment) {
+  std::string text = shipped("mujoco_delta4.urdf");
+  for (int i = 1; i <= 3; ++i)
+    text = replaced(text, fmt::format("<link name=\"upper_arm{}\">", i),
+                    fmt::format("<link name=\"upper_arm{}\"><inertial><origin xyz=\"0.2 0 0\"/><mass value=\"{}\"/>"
+                                "<inertia ixx=\"{}\" iyy=\"{}\" izz=\"{}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>",
+                                i, mass, moment, moment, moment));
+  return w.write("bad.urdf", text);
+}
+
+std::vector<Row> robot_files() {
+  const std::string limit = "lower=\"-0.9\" upper=\"1.6\"";
+  return {
+      {"LimbInMillimetres",
+       [](const W& w) { return w.info(spoilt(w, "delta3.urdf", "xyz=\"0.15 0 0\"", "xyz=\"150 0 0\"")); },
+       3,
+       {"bad\\.urdf: limb 1", "looks like millimetres", "mend: .*150 millimetres are 0\\.15 m"}},
+      {"LimbInMillimetresToIdentify",
+       [](const W& w) { return w.identify("", spoilt(w, "mujoco_delta4.urdf", "xyz=\"0.2 0 0\"", "xyz=\"200 0 0\"")); },
+       3,
+       {"bad\\.urdf: limb 1", "looks like millimetres", "mend:"}},
+      {"LimitsInDegrees",
+       [limit](const W& w) { return w.info(spoilt(w, "delta3.urdf", limit, "lower=\"-50\" upper=\"90\"")); },
+       3,
+       {"bad\\.urdf: drive 1", "looks like degrees", "mend:"}},
+      {"VelocityInDegrees",
+       [](const W& w) { return w.validate("", spoilt(w, "mujoco_delta4.urdf", "velocity=\"6\"", "velocity=\"344\"")); },
+       3,
+       {"bad\\.urdf: drive 1", "looks like degrees", "mend:"}},
+      {"RailInMillimetres",
+       [](const W& w) {
+         return Words{"delta-model", "prior", spoilt(w, "linear_delta3.urdf", "upper=\"0.9\"", "upper=\"900\""), "-o",
+                      w.path("p.csv")};
+       },
+       3,
+       {"bad\\.urdf: drive 1", "looks like millimetres", "mend:"}},
+      {"GravityInMillimetres",
+       [](const W& w) { return w.info(spoilt(w, "delta3.urdf", "0 0 -9.81", "0 0 -9810")); },
+       3,
+       {"bad\\.urdf: the size of gravity", "mend:"}},
+      {"NoGravity",
+       [](const W& w) { return w.info(spoilt(w, "delta3.urdf", "0 0 -9.81", "0 0 0")); },
+       3,
+       {"bad\\.urdf: the size of gravity", "mend:"}},
+      {"MassInGrams",
+       [](const W& w) { return w.info(with_inertial(w, "1500", "0.1")); },
+       3,
+       {"link upper_arm1: the mass", "looks like grams", "mend:"}},
+      {"NegativeMass",
+       [](const W& w) { return w.info(with_inertial(w, "-1.5", "0.1")); },
+       3,
+       {"link upper_arm1: the mass", "mend:"}},
+      {"InertiaInSquareMillimetres",
+       [](const W& w) { return w.info(with_inertial(w, "1.5", "100000")); },
+       3,
+       {"link upper_arm1: the inertia", "looks like kg mm", "mend:"}},
+  };
+}
+
+std::vector<Row> parameter_files() {
+  const auto with = [](const std::string& name, const std::string& value, bool identify) {
+    return [=](const W& w) {
+      const std::string file = w.prior_with("bad.csv", name, value);
+      return identify ? w.identify("", "", file) : w.validate("", "", file);
+    };
+  };
+  return {
+      {"PriorInGrams", with("platform.m", "1230", true), 3, {"bad\\.csv, line", "platform: the mass", "grams", "mend:"}},
+      {"ParametersInGrams", with("strut.m", "278", false), 3, {"bad\\.csv, line", "strut: the mass", "grams", "mend:"}},
+      {"NegativeMass", with("tool.m", "-0.4", true), 3, {"bad\\.csv, line", "tool: the mass", "mend:"}},
+      {"NegativeInertia", with("strut.Iyy", "-0.1", true), 3, {"bad\\.csv, line", "strut: the inertia", "mend:"}},
+      {"SquareMillimetres", with("upper_arm.Iyy", "189000", false), 3, {"bad\\.csv, line", "the inertia", "kg mm", "mend:"}},
+      {"NegativeFriction", with("drive1.viscous", "-1.5", true), 3, {"bad\\.csv, line", "drive1\\.viscous", "mend:"}},
+      {"NoNumber", with("drive1.viscous", "nan", true), 3, {"bad\\.csv, line", "mend:"}},
+  };
+}
+
+std::vector<Row> flags() {
+  const auto create = [](const Words& more) {
+    return [more](const W& w) { return create_delta3(w.path("x.urdf"), 0.15, 0.04, 0.3, 0.7) + more; };
+  };
+  const auto prior = [](const std::string& robot, const Words& more) {
+    return [robot, more](const W& w) {
+      return Words{"delta-model", "prior", installed("robots/" + robot), "-o", w.path("x.csv")} + more;
+    };
+  };
+  const auto excite = [](const std::string& robot, const Words& more) {
+    return [robot, more](const W& w) {
+      return Words{"delta-excite", installed("robots/" + robot), "-o", w.path("x.csv")} + more;
+    };
+  };
+  return {
+      {"CreateArmInMillimetres",
+       [](const W& w) { return create_delta3(w.path("x.urdf"), 0.15, 0.04, 300, 0.7); },
+       2,
+       {"--upper-arm is 300 m", "looks like millimetres", "mend:"}},
+      {"CreateStrutInCentimetres",
+       [](const W& w) { return create_delta3(w.path("x.urdf"), 0.15, 0.04, 0.3, 7); },
+       2,
+       {"an upper arm of 0\\.3 m does not go with struts of 7 m", "mend:"}},
+      {"CreateVelocityInDegrees", create({"--drive-velocity-rad-s", "500"}), 2, {"drive 1", "looks like degrees", "mend:"}},
+      {"CreateRangeInDegrees", create({"--drive-range-rad=-50,90"}), 2, {"drive 1", "looks like degrees", "mend:"}},
+      {"CreateGravityATenth", create({"--gravity-m-s2", "0.981"}), 2, {"--gravity-m-s2", "9\\.84", "mend:"}},
+      {"CreateGravityNotANumber", create({"--gravity-m-s2", "nan"}), 2, {"--gravity-m-s2", "mend:"}},
+      {"CreateNoGravity", create({"--gravity-m-s2", "0"}), 2, {"--gravity-m-s2", "mend:"}},
+      {"CreateByConfigInMillimetres",
+       [](const W& w) {
+         return Words{"delta-model",
+                      "--config",
+                      w.write("c.toml", "[create]\nbase-radius=150\nplatform-radius=40\nupper-arm=300\nstrut=700\n"),
+                      "create",
+                      "delta3",
+                      "-o",
+                      w.path("x.urdf")};
+       },
+       2,
+       {"looks like millimetres", "mend:"}},
+      {"PriorPlateOfHalfATon", prior("delta3.urdf", {"--platform-mass-kg", "500"}), 2, {"platform: the mass is 500 kg", "mend:"}},
+      {"PriorArmAsWideAsAHouse",
+       prior("delta3.urdf", {"--upper-arm-outer-diameter-m", "40"}),
+       2,
+       {"diameter of the upper arm is 40 m", "mend:"}},
+      {"PriorStrutInCentimetres",
+       prior("delta3.urdf", {"--strut-outer-diameter-m", "1.2"}),
+       2,
+       {"diameter of the strut", "mend:"}},
+      {"PriorDensityInGrams",
+       prior("delta3.urdf", {"--strut-density-kg-m3", "1.6"}),
+       2,
+       {"density of the strut", "g/cm", "mend:"}},
+      {"PriorTelescopeOfADelta3",
+       prior("delta3.urdf", {"--telescope-upper-length-m", "0.7"}),
+       2,
+       {"--telescope-upper-length-m does not belong to this delta3", "mend: leave it out"}},
+      {"PriorToolOfADelta3", prior("delta3.urdf", {"--tool-mass-kg", "0.7"}), 2, {"--tool-mass-kg does not belong", "mend:"}},
+      {"PriorCarriageOfADelta4", prior("mujoco_delta4.urdf", {"--carriage-mass-kg", "2"}), 2, {"has no carriage", "mend:"}},
+      {"PriorArmOfALinearDelta", prior("linear_delta3.urdf", {"--upper-arm-wall-m", "0.003"}), 2, {"has no upper arm", "mend:"}},
+      {"PriorStrutsOfAnAxis", prior("emps.urdf", {"--strut-wall-m", "0.001"}), 2, {"has no struts", "mend:"}},
+      {"ExciteInDegrees",
+       excite("delta3.urdf",
+              {"--drive-range-rad=-50,90", "--drive-velocity-rad-s", "500", "--drive-acceleration-rad-s2", "5000"}),
+       2,
+       {"drive 1", "looks like degrees", "mend:"}},
+      {"ExciteInDegreesByConfig",
+       [](const W& w) {
+         return Words{"delta-excite", installed("robots/delta3.urdf"),
+                      "-o",           w.path("x.csv"),
+                      "--config",     w.write("c.toml", "drive-velocity-rad-s=500\n")};
+       },
+       2,
+       {"drive 1", "looks like degrees", "mend:"}},
+      {"ExciteFarBeyondTheRobotFile",
+       excite("delta3.urdf", {"--drive-velocity-rad-s", "30"}),
+       2,
+       {"drive 1: the velocity limit asked for is 30 rad/s, but the robot file allows 10", "mend: ask for 10"}},
+      {"ExciteFarBeyondTheStops",
+       excite("delta3.urdf", {"--drive-range-rad=-3,1.6"}),
+       2,
+       {"lower position limit", "robot file allows -0\\.9", "mend:"}},
+      {"ExcitePlateInMillimetres", excite("delta3.urdf", {"--platform-velocity-m-s", "4000"}), 2, {"x: the velocity", "mend:"}},
+      {"ExciteYawInDegrees", excite("irb360_6_1600.urdf", {"--yaw-range-rad", "180"}), 2, {"psi", "looks like degrees", "mend:"}},
+      {"ExciteWorkspaceInMillimetres",
+       excite("delta3.urdf", {"--workspace", "ball", "--workspace-center-m", "0,0,-700", "--workspace-radius-m", "150"}),
+       2,
+       {"workspace", "looks like millimetres", "mend:"}},
+  };
+}
+
+class Doors : public ::testing::TestWithParam<Row> {};
+
+TEST_P(Doors, AreShutToOtherUnits) {
+  expect_refused(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(RobotFiles, Doors, ::testing::ValuesIn(robot_files()), name_of);
+INSTANTIATE_TEST_SUITE_P(ParameterFiles, Doors, ::testing::ValuesIn(parameter_files()), name_of);
+INSTANTIATE_TEST_SUITE_P(Flags, Doors, ::testing::ValuesIn(flags()), name_of);
+
+/// The robot hangs from a ceiling: identified with the file as the cell has it, and with the plain robot under turned gravity.
+TEST(Mounting, AHangingRobotIsIdentifiedAsTheSameRobotUnderTurnedGravity) {
+  const Workshop w;
+  const std::string plain = shipped("mujoco_delta4.urdf");
+  const std::string hung = replaced(plain, "<link name=\"base\">",
+                                    "<link name=\"cell\"/><link name=\"beam\"/>"
+                                    "<joint name=\"a\" type=\"fixed\"><parent link=\"cell\"/><child link=\"beam\"/>"
+                                    "<origin xyz=\"1 2 3\" rpy=\"0 1.5707963267948966 0\"/></joint>"
+                                    "<joint name=\"b\" type=\"fixed\"><parent link=\"beam\"/><child link=\"base\"/>"
+                                    "<origin xyz=\"0 0 0.2\" rpy=\"0 0.5 0\"/></joint><link name=\"base\">");
+  const std::string leaning = w.write("leaning.urdf", hung);
+  // Gravity in the base: turned back by pi/2 + 0.5 about y.
+  const double angle = 1.5707963267948966 + 0.5;
+  const std::string turned = w.write(
+      "turned.urdf", replaced(plain, "xyz_m_s2=\"0 0 -9.81\"",
+                              fmt::format("xyz_m_s2=\"{:.17g} 0 {:.17g}\"", 9.81 * std::sin(angle), -9.81 * std::cos(angle))));
+  for (const std::string& robot : {leaning, turned}) {
+    // The log was recorded upright, so the fit is poor: what counts is that both files say the same.
+    const ToolResult result = run(w.identify("", robot));
+    EXPECT_TRUE(result.code == 0 || result.code == 5) << result.err;
+    fs::rename(w.path("out.csv"), robot + ".csv");
+  }
+  const ParameterTable a = read_parameters(leaning + ".csv"), b = read_parameters(turned + ".csv");
+  ASSERT_EQ(a.entries.size(), b.entries.size());
+  for (std::size_t k = 0; k < a.entries.size(); ++k) {
+    EXPECT_EQ(a.entries[k].name, b.entries[k].name);
+    EXPECT_NEAR(a.entries[k].value, b.entries[k].value, 1e-6 * (1 + std::abs(b.entries[k].value))) << a.entries[k].name;
+  }
+}
+
+}  // namespace
+}  // namespace deltadyn::acceptance
