@@ -34,8 +34,8 @@ constexpr Rule kAnyTorque{0, 1e5, "N m", {"N mm", 1e-3}, "no single drive has th
 constexpr Rule kSlideForce{0, 1e5, "N", {"mN", 1e-3}, "no linear drive of such a robot has that much"};
 
 // Joint parameters: wide, for they differ by orders of magnitude between a needle bearing and a gear that is cold.
-constexpr Rule kViscous{0, 1e5, "N m s/rad or N s/m", {"N mm s/rad", 1e-3}, "friction takes energy, and less than this"};
-constexpr Rule kCoulomb{0, 1e4, "N m or N", {"N mm", 1e-3}, "friction takes energy, and less than this"};
+constexpr Rule kViscous{0, 1e5, "N m s/rad or N s/m", {"N mm s/rad", 1e-3}, "friction is not negative, and not that large"};
+constexpr Rule kCoulomb{0, 1e4, "N m or N", {"N mm", 1e-3}, "friction is not negative, and not that large"};
 constexpr Rule kRotor{-1e4, 1e4, "kg m^2 or kg", {"kg mm^2", 1e-6}, "no rotor is that heavy behind its gear"};
 constexpr Rule kTorqueOffset{-1e4, 1e4, "N m or N", {"N mm", 1e-3}, "no amplifier is off by that much"};
 
@@ -285,13 +285,12 @@ void require_body(const RobotDescription& robot, Body body, const InertialVector
   using namespace inertial;
   const double most = heaviest(robot, body);
   const double mass = p(kM);
-  if (!(mass <= most && mass >= 0)) {
-    const Rule rule{0, most, "kg", kGrams, ""};
-    const std::string why = mass < 0 ? std::string("a mass is not negative")
-                                     : fmt::format("this part of a robot of this size weighs {:.3g} kg at most", most);
-    if (!std::isfinite(mass)) require(rule, mass, what + ": the mass", where, code);
-    refuse(rule, mass, what + ": the mass", why, where, code);
-  }
+  const Rule rule{0, most, "kg", kGrams, "no part weighs that"};
+  if (mass < 0) throw Error(fmt::format("{}: the mass {:.6g} kg is negative", what, mass), where, "give a mass above 0 kg", code);
+  if (!std::isfinite(mass)) require(rule, mass, what + ": the mass", where, code);
+  if (mass > most)
+    refuse(rule, mass, what + ": the mass", fmt::format("this part of a robot of this size weighs {:.3g} kg at most", most),
+           where, code);
   for (int k = kIxx; k <= kIzz; ++k)
     if (!(p(k) >= 0))
       refuse({0, 1e6, "kg m^2", kNone, ""}, p(k), what + ": the inertia", "an inertia about an axis is not negative", where,
