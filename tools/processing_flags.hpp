@@ -35,6 +35,8 @@ class ProcessingFlags {
         ->capture_default_str();
     app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
         ->capture_default_str();
+    app.add_option("--map", map_, "column map (TOML) for logs of other tools, as of delta-log import --map-out")
+        ->type_name("FILE");
   }
 
   /// Options without the cut-off if that is automatic.
@@ -58,6 +60,7 @@ class ProcessingFlags {
     LogReadOptions options;
     options.need_derivatives = no_filter_;
     options.checks.motion = !no_filter_;
+    options.map = map_;
     std::vector<Log> logs;
     for (const std::string& path : paths) {
       logs.push_back(read_log(path, robot, options));
@@ -78,6 +81,7 @@ class ProcessingFlags {
   bool no_filter_ = false;
   std::string cutoff_ = "auto";
   std::string period_ = "auto";
+  std::string map_;
 };
 
 /// "N m" or "N", as the drive turns or slides.

@@ -3,19 +3,22 @@
 #include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fstream>
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "deltadyn/io/csv.hpp"
+#include "deltadyn/io/import_log.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
 namespace {
 
-enum class Quantity { q, qd, qdd, tau };
+enum class Block { q, qd, qdd, tau };
 
 struct Spelling {
   const char* suffix;
@@ -25,32 +28,32 @@ struct Spelling {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;
 
-const char* prefix_of(Quantity quantity) {
+const char* prefix_of(Block quantity) {
   switch (quantity) {
-    case Quantity::q: return "q";
-    case Quantity::qd: return "qd";
-    case Quantity::qdd: return "qdd";
-    case Quantity::tau: return "tau";
+    case Block::q: return "q";
+    case Block::qd: return "qd";
+    case Block::qdd: return "qdd";
+    case Block::tau: return "tau";
   }
   return "";
 }
 
 /// Accepted units, the SI one first.
-std::vector<Spelling> spellings(Quantity quantity, DriveKind kind) {
+std::vector<Spelling> spellings(Block quantity, DriveKind kind) {
   const bool turns = kind == DriveKind::revolute;
   switch (quantity) {
-    case Quantity::q: return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kDegree}} : std::vector<Spelling>{{"_m", 1.0}};
-    case Quantity::qd:
+    case Block::q: return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kDegree}} : std::vector<Spelling>{{"_m", 1.0}};
+    case Block::qd:
       return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kDegree}, {"_rpm", kRpm}}
                    : std::vector<Spelling>{{"_m_s", 1.0}};
-    case Quantity::qdd:
+    case Block::qdd:
       return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
-    case Quantity::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
+    case Block::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
   }
   return {};
 }
 
-std::string si_name(Quantity quantity, DriveKind kind, int drive) {
+std::string si_name(Block quantity, DriveKind kind, int drive) {
   return fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spellings(quantity, kind).front().suffix);
 }
 
@@ -59,7 +62,7 @@ struct Source {
   double factor;
 };
 
-std::optional<Source> find_source(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
+std::optional<Source> find_source(const CsvReader& reader, Block quantity, DriveKind kind, int drive) {
   for (const Spelling& spelling : spellings(quantity, kind)) {
     if (const auto column = reader.find(fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spelling.suffix))) {
       return Source{*column, spelling.factor};
@@ -91,7 +94,7 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   return found;
 }
 
-[[noreturn]] void refuse_missing(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
+[[noreturn]] void refuse_missing(const CsvReader& reader, Block quantity, DriveKind kind, int drive) {
   const std::string wanted = si_name(quantity, kind, drive);
   const std::string stem = fmt::format("{}{}", prefix_of(quantity), drive + 1);
   const auto similar = similar_columns(reader, stem);
@@ -116,7 +119,7 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
 }
 
 /// Sources of one quantity for all drives; empty if a drive lacks it and it is not needed.
-std::vector<Source> sources(const CsvReader& reader, const RobotDescription& robot, Quantity quantity, bool needed,
+std::vector<Source> sources(const CsvReader& reader, const RobotDescription& robot, Block quantity, bool needed,
                             std::vector<std::string>& notes) {
   std::vector<Source> result;
   std::string missing;
@@ -150,35 +153,99 @@ std::size_t time_column(const CsvReader& reader) {
               "add the time in seconds as column t_s");
 }
 
-}  // namespace
+/// The first line that is neither empty nor a comment, if the beginning of the file holds one.
+std::string first_line(const std::string& path) {
+  constexpr std::size_t kHead = 1 << 18;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(kHead, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  std::string_view rest = head;
+  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  while (!rest.empty()) {
+    const auto end = rest.find('\n');
+    const std::string_view line = rest.substr(0, end);
+    const auto begin = line.find_first_not_of(" \t\r");
+    if (begin != std::string_view::npos && line[begin] != '#') return std::string(line);
+    if (end == std::string_view::npos) break;
+    rest.remove_prefix(end + 1);
+  }
+  return "";
+}
 
-Log read_log(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+/// "q12_deg": a position of the contract, of any drive.
+bool is_position_name(std::string_view name) {
+  if (name.substr(0, 1) != "q") return false;
+  const auto end = name.find_first_not_of("0123456789", 1);
+  if (end == 1 || end == std::string_view::npos) return false;
+  const std::string_view unit = name.substr(end);
+  return unit == "_rad" || unit == "_deg" || unit == "_m";
+}
+
+/// Whether the header is one of these tools' logs: t_s and a position, separated by commas.
+bool is_contract_header(std::string_view line) {
+  bool time = false, position = false;
+  for (;;) {
+    const auto comma = line.find(',');
+    std::string_view name = line.substr(0, comma);
+    const auto begin = name.find_first_not_of(" \t\r");
+    if (begin != std::string_view::npos) name = name.substr(begin, name.find_last_not_of(" \t\r") - begin + 1);
+    time = time || name == "t_s";
+    position = position || is_position_name(name);
+    if (comma == std::string_view::npos) return time && position;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// Whether the columns that are needed have the names of the contract.
+bool is_complete(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  const CsvReader reader(path);
+  const auto has = [&](Block quantity, bool needed) {
+    for (int drive = 0; needed && drive < robot.drives(); ++drive) {
+      if (!find_source(reader, quantity, robot.kind_of_drive(drive), drive)) return false;
+    }
+    return true;
+  };
+  return has(Block::q, true) && has(Block::qd, options.need_derivatives) && has(Block::qdd, options.need_derivatives) &&
+         has(Block::tau, options.need_torque);
+}
+
+/// A log of another form, with what was taken for what as its first note.
+Log read_foreign(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  ImportOptions import;
+  import.map_file = options.map;
+  import.need_torque = options.need_torque;
+  import.need_derivatives = options.need_derivatives;
+  return LogImport({path}, robot, import).log().log;
+}
+
+Log read_contract(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
   CsvReader reader(path);
   Log log;
   log.file = path;
   const std::size_t time = time_column(reader);
-  struct Block {
+  struct Target {
     std::vector<Source> from;
     Eigen::MatrixXd* to;
   };
-  const Block blocks[] = {
-      {sources(reader, robot, Quantity::q, true, log.notes), &log.q},
-      {sources(reader, robot, Quantity::qd, options.need_derivatives, log.notes), &log.qd},
-      {sources(reader, robot, Quantity::qdd, options.need_derivatives, log.notes), &log.qdd},
-      {sources(reader, robot, Quantity::tau, options.need_torque, log.notes), &log.tau},
+  const Target blocks[] = {
+      {sources(reader, robot, Block::q, true, log.notes), &log.q},
+      {sources(reader, robot, Block::qd, options.need_derivatives, log.notes), &log.qd},
+      {sources(reader, robot, Block::qdd, options.need_derivatives, log.notes), &log.qdd},
+      {sources(reader, robot, Block::tau, options.need_torque, log.notes), &log.tau},
   };
-  if (const auto extra = find_source(reader, Quantity::q, DriveKind::revolute, robot.drives())) {
+  if (const auto extra = find_source(reader, Block::q, DriveKind::revolute, robot.drives())) {
     log.notes.push_back(fmt::format("{}: the robot {} has {} drives, the column {} is not used", path, robot.type, robot.drives(),
                                     reader.columns()[extra->column]));
   }
 
   std::vector<double> values;  // row after row
   std::size_t width = 1;
-  for (const Block& block : blocks) width += block.from.size();
+  for (const Target& block : blocks) width += block.from.size();
   while (reader.next_row()) {
     log.line.push_back(reader.line());
     values.push_back(reader.number_or_nan(time));
-    for (const Block& block : blocks) {
+    for (const Target& block : blocks) {
       for (const Source& source : block.from) values.push_back(reader.number_or_nan(source.column) * source.factor);
     }
   }
@@ -189,18 +256,35 @@ Log read_log(const std::string& path, const RobotDescription& robot, const LogRe
                                          static_cast<Eigen::Index>(width));
   log.t_s = table.col(0);
   Eigen::Index column = 1;
-  for (const Block& block : blocks) {
+  for (const Target& block : blocks) {
     const auto count = static_cast<Eigen::Index>(block.from.size());
     if (count > 0) *block.to = table.middleCols(column, count);
     column += count;
   }
+  return log;
+}
+
+Log read_any(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  if (!options.map.empty() || !is_contract_header(first_line(path))) return read_foreign(path, robot, options);
+  if (is_complete(path, robot, options)) return read_contract(path, robot, options);
+  try {
+    return read_foreign(path, robot, options);  // a column of another spelling
+  } catch (const Error&) {
+    return read_contract(path, robot, options);  // names the column of the contract that is missing
+  }
+}
+
+}  // namespace
+
+Log read_log(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  Log log = read_any(path, robot, options);
   if (options.check) check_and_repair(log, robot, options.checks);
   return log;
 }
 
 void write_log(const std::string& path, const Log& log, const RobotDescription& robot) {
-  const std::pair<Quantity, const Eigen::MatrixXd*> blocks[] = {
-      {Quantity::q, &log.q}, {Quantity::qd, &log.qd}, {Quantity::qdd, &log.qdd}, {Quantity::tau, &log.tau}};
+  const std::pair<Block, const Eigen::MatrixXd*> blocks[] = {
+      {Block::q, &log.q}, {Block::qd, &log.qd}, {Block::qdd, &log.qdd}, {Block::tau, &log.tau}};
   std::string text = "t_s";
   for (const auto& [quantity, block] : blocks) {
     for (int drive = 0; drive < block->cols(); ++drive) text += "," + si_name(quantity, robot.kind_of_drive(drive), drive);

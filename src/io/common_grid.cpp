@@ -1,0 +1,129 @@
+#include "common_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "deltadyn/signal/butterworth.hpp"
+#include "deltadyn/signal/resample.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// Below this share of the grid's step a channel is faster, and must not fold.
+constexpr double kFaster = 0.75;
+/// The grid holds frequencies up to half its rate; the filter is 3 dB down here and 30 dB at the first that folds back into the
+/// lower fifth of the rate, where motions live.
+constexpr double kLowPassShare = 0.4;
+constexpr double kLongestGap = 2.5;
+
+/// Values on an even grid of the channel's own, filtered without lag.
+Series low_passed(const Series& series, double step_s, double cutoff_hz) {
+  const double span = series.t_s(series.t_s.size() - 1) - series.t_s(0);
+  const auto samples = static_cast<Index>(std::floor(span / step_s + 0.5)) + 1;
+  Series even;
+  even.t_s = Eigen::VectorXd::LinSpaced(samples, series.t_s(0), series.t_s(0) + static_cast<double>(samples - 1) * step_s);
+  even.values = zero_phase_filter(resample(series.t_s, series.values, even.t_s), 1.0 / step_s, cutoff_hz);
+  return even;
+}
+
+}  // namespace
+
+double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
+  std::vector<double> steps;
+  for (Index i = 0; i + 1 < t_s.size(); ++i) {
+    if (t_s(i + 1) > t_s(i)) steps.push_back(t_s(i + 1) - t_s(i));
+  }
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+Eigen::VectorXd onto_grid(const Series& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how) {
+  how.step_s = usual_step_s(series.t_s);
+  const double grid_step = usual_step_s(grid_s);
+  const Index n = series.t_s.size();
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(grid_s.size(), kNan);
+  if (n < 4) return result;
+  const bool faster = how.step_s < kFaster * grid_step;
+  how.low_pass_hz = faster ? kLowPassShare / grid_step : 0.0;
+  const Series source = faster ? low_passed(series, how.step_s, how.low_pass_hz) : series;
+  // Rounding of stamps must not cost the first and last row.
+  const double slack = 1e-6 * how.step_s;
+  const double first = series.t_s(0), last = series.t_s(n - 1);
+  Index interval = 0;
+  std::vector<Index> rows;
+  for (Index k = 0; k < grid_s.size(); ++k) {
+    const double t = grid_s(k);
+    if (t < first - slack || t > last + slack) continue;
+    while (interval > 0 && series.t_s(interval) > t) --interval;
+    while (interval + 2 < n && series.t_s(interval + 1) <= t) ++interval;
+    const bool on_sample = std::abs(t - series.t_s(interval)) <= slack || std::abs(t - series.t_s(interval + 1)) <= slack;
+    if (on_sample || series.t_s(interval + 1) - series.t_s(interval) <= kLongestGap * how.step_s) rows.push_back(k);
+  }
+  Eigen::VectorXd times(static_cast<Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) times(static_cast<Index>(i)) = grid_s(rows[i]);
+  const Eigen::MatrixXd values = resample(source.t_s, source.values, times);
+  for (std::size_t i = 0; i < rows.size(); ++i) result(rows[i]) = values(static_cast<Index>(i), 0);
+  return result;
+}
+
+Index first_of_repeats(const Eigen::Ref<const Eigen::VectorXd>& values, Index factor) {
+  std::vector<Index> changes(static_cast<std::size_t>(factor), 0);
+  for (Index i = 1; i < values.size(); ++i) {
+    if (values(i) != values(i - 1)) ++changes[static_cast<std::size_t>(i % factor)];
+  }
+  return std::max_element(changes.begin(), changes.end()) - changes.begin();
+}
+
+Index unwrap(Eigen::Ref<Eigen::VectorXd> values, double wrap) {
+  Index jumps = 0;
+  double turns = 0.0, last = kNan;
+  for (Index i = 0; i < values.size(); ++i) {
+    const double value = values(i);
+    if (std::isnan(value)) continue;
+    const double around = std::isnan(last) ? 0.0 : std::round((value - last) / wrap);
+    if (around != 0.0) {
+      ++jumps;
+      turns -= around;
+    }
+    last = value;
+    values(i) = value + turns * wrap;
+  }
+  return jumps;
+}
+
+double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts) {
+  std::vector<double> steps;
+  for (Index i = 0; i + 1 < values.size(); ++i) {
+    const double step = std::abs(values(i + 1) - values(i));
+    if (!std::isnan(step)) steps.push_back(step);
+  }
+  if (steps.size() < 10) return 0.0;
+  const double largest = *std::max_element(steps.begin(), steps.end());
+  const auto most = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 98 / 100);
+  std::nth_element(steps.begin(), most, steps.end());
+  const double usual = *most;
+  // A number that begins again jumps by nearly its whole range, far more than it ever moves in a step.
+  if (!(largest > 20.0 * usual)) return 0.0;
+  std::vector<double> periods = {2.0 * std::numbers::pi, 360.0};
+  if (counts > 0) periods.push_back(counts);
+  for (int bits = 8; bits <= 32; ++bits) periods.push_back(std::ldexp(1.0, bits));
+  const double range = values.array().isNaN().select(-std::numeric_limits<double>::infinity(), values.array()).maxCoeff() -
+                       values.array().isNaN().select(std::numeric_limits<double>::infinity(), values.array()).minCoeff();
+  for (const double period : periods) {
+    if (range > period * (1.0 + 1e-9) || range < 0.9 * period) continue;
+    const bool all = std::all_of(steps.begin(), steps.end(),
+                                 [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
+    if (all) return period;
+  }
+  return 0.0;
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,42 @@
+#pragma once
+
+/// \file
+/// Channels of several sample rates on the time stamps of one of them, without phase error.
+
+#include <Eigen/Core>
+#include <string>
+
+namespace deltadyn {
+
+/// One channel with its own time stamps, strictly increasing.
+struct Series {
+  Eigen::VectorXd t_s, values;
+};
+
+/// How a channel came to the grid, for people.
+struct GridStep {
+  double step_s = 0.0;       ///< usual sample time of the channel
+  double low_pass_hz = 0.0;  ///< 0: none was needed
+  bool same = false;         ///< its stamps are those of the grid
+};
+
+/// Median step of stamps [s].
+[[nodiscard]] double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s);
+
+/// Values at the times of the grid. A faster channel first passes a zero-phase low pass at 0.4 of the grid's rate, so that nothing
+/// folds into its band; then the cubic through the four samples around each time is taken, which shifts no frequency in time.
+/// Where the channel has a gap of more than 2.5 of its steps, and outside of it, the value is NaN: nothing is made up.
+[[nodiscard]] Eigen::VectorXd onto_grid(const Series& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how);
+
+/// Sample indices of a channel whose slower recorder was filled up with repeats of the last value: of each `factor` rows the one
+/// where new values appear.
+[[nodiscard]] Eigen::Index first_of_repeats(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index factor);
+
+/// Takes the jumps out of a number that begins again after `wrap`. Returns how many there were.
+Eigen::Index unwrap(Eigen::Ref<Eigen::VectorXd> values, double wrap);
+
+/// The period at which a position begins again, if its jumps all agree with one (2 pi, 360, a power of two, `counts`); else 0.
+/// \param counts  counts per turn, 0: not known
+[[nodiscard]] double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts);
+
+}  // namespace deltadyn

@@ -1,0 +1,268 @@
+#include "guess_columns.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+#include <set>
+
+#include "deltadyn/signal/log_columns.hpp"
+
+#include "header_words.hpp"
+#include "recorded_time.hpp"
+
+namespace deltadyn {
+namespace {
+
+struct Candidate {
+  const RecordedChannel* channel;
+  HeaderWords words;
+};
+
+/// One column for each drive.
+struct Set {
+  std::vector<Candidate> of_drive;
+  Origin origin = Origin::unstated;
+  bool has_unit = false;
+};
+
+/// Units that a maker or a message states by custom, not in the header: ROS (REP 103) is SI, UR's RTDE is rad, A, N m.
+std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind) {
+  const bool turns = kind == DriveKind::revolute;
+  const auto begins = [&](const char* text) { return stem.rfind(text, 0) == 0; };
+  const bool ros = begins("/") || begins("field.");
+  const bool ur = begins("actual_q_") || begins("target_q_") || begins("actual_qd_") || begins("target_qd_") ||
+                  begins("target_qdd_") || begins("actual_current_") || begins("target_current_") || begins("target_moment_");
+  if (!ros && !ur) return "";
+  switch (quantity) {
+    case Quantity::position: return turns ? "rad" : "m";
+    case Quantity::velocity: return turns ? "rad/s" : "m/s";
+    case Quantity::acceleration: return turns ? "rad/s2" : "m/s2";
+    case Quantity::torque: return stem.find("current") != std::string::npos ? "A" : (turns ? "Nm" : "N");
+  }
+  return "";
+}
+
+std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::position: return defaults.position_unit;
+    case Quantity::velocity: return defaults.velocity_unit;
+    case Quantity::torque: return defaults.torque_unit;
+    default: return "";
+  }
+}
+
+/// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
+std::string unit_of(const Candidate& candidate, Quantity quantity, DriveKind kind, const MapDefaults& defaults) {
+  if (const std::string flag = flag_unit(defaults, quantity); !flag.empty()) return flag;
+  if (log_unit(candidate.words.unit)) return candidate.words.unit;
+  const std::string stem = candidate.channel->quantity.empty() ? candidate.words.stem : "/";
+  return customary_unit(stem, quantity, kind);
+}
+
+std::vector<Candidate> candidates_of(const Recording& recording, Quantity quantity, const ColumnMap& map) {
+  std::vector<Candidate> found;
+  for (const RecordedChannel& channel : recording.channels) {
+    if (channel.clock || channel.name == map.time_source) continue;
+    Candidate candidate{&channel, read_header_words(channel.name, channel.unit)};
+    if (!channel.quantity.empty()) {
+      candidate.words.quantity = quantity_of_word(channel.quantity);
+      candidate.words.excluded = false;
+    }
+    if (!candidate.words.excluded && candidate.words.quantity == quantity) found.push_back(std::move(candidate));
+  }
+  return found;
+}
+
+/// Drive of each member, from 1, by the one number in which the names differ (counted from 0 or 1), or by the place in the message.
+std::vector<long> places_of(const std::vector<Candidate>& members) {
+  const std::size_t slots = members.front().words.numbers.size();
+  const bool alike =
+      std::all_of(members.begin(), members.end(), [&](const Candidate& m) { return m.words.numbers.size() == slots; });
+  if (!alike) return {};
+  std::vector<long> places;
+  int differing = 0;
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    std::set<long> values;
+    std::vector<long> here;
+    for (const Candidate& member : members) {
+      values.insert(member.words.numbers[slot]);
+      here.push_back(member.words.numbers[slot]);
+    }
+    if (values.size() == 1) continue;
+    ++differing;
+    if (values.size() == members.size()) places = here;
+  }
+  if (differing != 1 || places.empty()) return {};
+  const long first = *std::min_element(places.begin(), places.end());
+  if (first == 0) {
+    for (long& place : places) ++place;
+  }
+  return places;
+}
+
+/// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six joints and four
+/// drives nobody but the user knows which are meant.
+std::optional<Set> set_of(const std::vector<Candidate>& members, const RobotDescription& robot, Quantity quantity,
+                          const MapDefaults& defaults) {
+  const auto drives = static_cast<std::size_t>(robot.drives());
+  if (members.size() != drives) return std::nullopt;
+  std::vector<long> places = drives == 1 ? std::vector<long>{1} : places_of(members);
+  if (places.empty() && std::all_of(members.begin(), members.end(), [](const Candidate& m) { return m.channel->place > 0; })) {
+    for (const Candidate& member : members) places.push_back(member.channel->place);
+  }
+  Set set;
+  set.of_drive.resize(drives, {nullptr, {}});
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] >= 1 && places[k] <= robot.drives()) set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
+  }
+  set.has_unit = true;
+  for (std::size_t drive = 0; drive < drives; ++drive) {
+    const Candidate& member = set.of_drive[drive];
+    if (member.channel == nullptr) return std::nullopt;
+    set.origin = member.words.origin;
+    set.has_unit = set.has_unit && !unit_of(member, quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults).empty();
+  }
+  return set;
+}
+
+/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units), all.
+std::vector<Set> sets_of(const std::vector<Candidate>& candidates, const RobotDescription& robot, Quantity quantity,
+                         const MapDefaults& defaults) {
+  std::vector<Set> sets;
+  for (const bool with_unit : {true, false}) {
+    std::map<std::string, std::vector<Candidate>> groups;
+    for (const Candidate& candidate : candidates) {
+      // The joints of one message belong together, whatever their names.
+      std::string key = candidate.channel->place > 0 ? "" : candidate.words.pattern;
+      if (with_unit) key += "|" + candidate.words.unit;
+      groups[key].push_back(candidate);
+    }
+    for (const auto& [key, members] : groups) {
+      if (auto set = set_of(members, robot, quantity, defaults)) sets.push_back(*std::move(set));
+    }
+    if (!sets.empty()) break;
+  }
+  return sets;
+}
+
+std::string names_of(const Set& set) {
+  std::vector<std::string> names;
+  for (const Candidate& member : set.of_drive) names.push_back("'" + member.channel->name + "'");
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string example(Quantity quantity, const std::string& source, const std::string& unit, int drive) {
+  ChannelMap channel;
+  channel.drive = drive;
+  channel.quantity = quantity;
+  channel.source = source;
+  channel.unit = unit;
+  std::string text = to_toml(channel);
+  text.pop_back();
+  for (auto at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 5)) text.replace(at, 1, "\n    ");
+  return "    " + text;
+}
+
+std::string si_unit(Quantity quantity, DriveKind kind) {
+  return customary_unit("/", quantity, kind);
+}
+
+std::string contract_name(const RobotDescription& robot, int drive, Quantity quantity) {
+  const DriveColumns columns = drive_columns(robot, drive);
+  switch (quantity) {
+    case Quantity::position: return columns.q;
+    case Quantity::velocity: return columns.qd;
+    case Quantity::acceleration: return columns.qdd;
+    case Quantity::torque: return columns.tau;
+  }
+  return columns.q;
+}
+
+OpenQuestion missing(const Recording& recording, const RobotDescription& robot, Quantity quantity,
+                     const std::vector<Candidate>& candidates) {
+  std::vector<std::string> looks;
+  for (const Candidate& candidate : candidates) looks.push_back("'" + candidate.channel->name + "'");
+  const std::string wanted = contract_name(robot, 0, quantity);
+  std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}", wanted,
+                                 word_of(quantity), list_channels(recording));
+  if (!looks.empty()) {
+    what = fmt::format("the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
+                       word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", fmt::join(looks, ", "),
+                       list_channels(recording));
+  }
+  return {quantity, what,
+          fmt::format("write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
+                      "each drive\n{}",
+                      example(quantity, "NAME", si_unit(quantity, robot.kind_of_drive(0)), 1))};
+}
+
+OpenQuestion without_unit(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults) {
+  int drive = 0;
+  while (!unit_of(set.of_drive[static_cast<std::size_t>(drive)], quantity, robot.kind_of_drive(drive), defaults).empty()) ++drive;
+  const std::string& name = set.of_drive[static_cast<std::size_t>(drive)].channel->name;
+  const std::string si = si_unit(quantity, robot.kind_of_drive(drive));
+  std::string named = contract_name(robot, drive, quantity);
+  if (quantity == Quantity::position && robot.kind_of_drive(drive) == DriveKind::revolute) {
+    named += fmt::format(" or q{}_deg", drive + 1);
+  }
+  return {quantity,
+          fmt::format("the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
+                      contract_name(robot, drive, quantity), name, word_of(quantity), drive + 1),
+          fmt::format("name the column {}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}",
+                      named, word_of(quantity), units_of(quantity), example(quantity, name, si, drive + 1))};
+}
+
+/// On a robot of one drive its number is not asked for, but position and torque of one drive do not carry different ones.
+bool contradicts(const Set& set, const ColumnMap& map, int drives) {
+  const ChannelMap* position = map.find(Quantity::position, 1);
+  if (drives != 1 || position == nullptr) return false;
+  const std::vector<long> theirs = read_header_words(position->source, "").numbers;
+  const std::vector<long>& ours = set.of_drive[0].words.numbers;
+  const auto shared = [&](long number) { return std::find(theirs.begin(), theirs.end(), number) != theirs.end(); };
+  return !theirs.empty() && !ours.empty() && std::none_of(ours.begin(), ours.end(), shared);
+}
+
+void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults, ColumnMap& map) {
+  for (std::size_t drive = 0; drive < set.of_drive.size(); ++drive) {
+    ChannelMap channel;
+    channel.drive = static_cast<int>(drive) + 1;
+    channel.quantity = quantity;
+    channel.source = set.of_drive[drive].channel->name;
+    channel.unit = unit_of(set.of_drive[drive], quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults);
+    map.channels.push_back(std::move(channel));
+  }
+}
+
+}  // namespace
+
+std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
+                                         const MapDefaults& defaults, ColumnMap& map) {
+  const std::vector<Candidate> candidates = candidates_of(recording, quantity, map);
+  std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
+  sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const Set& set) { return contradicts(set, map, robot.drives()); }),
+             sets.end());
+  if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
+  // Measured before unstated before commanded; among alike, those that state a unit.
+  const auto rank = [](const Set& set) { return std::pair(static_cast<int>(set.origin), set.has_unit); };
+  std::stable_sort(sets.begin(), sets.end(), [&](const Set& a, const Set& b) { return rank(a) > rank(b); });
+  const Set& best = sets.front();
+  if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
+    return {{quantity,
+             fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity), names_of(best), names_of(sets[1])),
+             fmt::format("say which in a column map (delta-log import --map-out map.toml begins one)\n{}",
+                         example(quantity, best.of_drive[0].channel->name,
+                                 unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
+  }
+  if (best.origin == Origin::commanded && quantity != Quantity::torque) {
+    return {{quantity, fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best)),
+             fmt::format("record the measured one; to take the command all the same, say so in a column map\n{}",
+                         example(quantity, best.of_drive[0].channel->name,
+                                 unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
+  }
+  if (!best.has_unit) return {without_unit(best, robot, quantity, defaults)};
+  add_set(best, robot, quantity, defaults, map);
+  return {};
+}
+
+}  // namespace deltadyn

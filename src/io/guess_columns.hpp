@@ -1,0 +1,25 @@
+#pragma once
+
+/// \file
+/// Which columns of a recording are the drives' positions and torques, from their names.
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/io/column_map.hpp"
+#include "deltadyn/io/recording.hpp"
+
+namespace deltadyn {
+
+/// What a guess could not decide, and how the user can.
+struct OpenQuestion {
+  Quantity quantity;
+  std::string what, mend;
+};
+
+/// Adds the channels of one quantity to `map`, for every drive or for none. Never chooses between equals: where two sets of
+/// columns fit alike, a unit is not stated, or only commanded positions are there, nothing is added and the question returned.
+[[nodiscard]] std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot,
+                                                       Quantity quantity, const MapDefaults& defaults, ColumnMap& map);
+
+}  // namespace deltadyn

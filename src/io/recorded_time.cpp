@@ -1,0 +1,227 @@
+#include "recorded_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "deltadyn/io/csv.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+#include "header_words.hpp"
+
+namespace deltadyn {
+namespace {
+
+constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
+
+struct TimeUnit {
+  double seconds;
+  std::int64_t origin_ns;  ///< of the channel's origin
+  std::string name;
+};
+
+std::string simplified(const std::string& name) {
+  std::string plain;
+  for (const char c : name) {
+    if (c != ' ' && c != '\t' && c != '"') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return plain;
+}
+
+/// How much a name looks like the time of the rows; 0 not at all.
+int time_rank(const RecordedChannel& channel) {
+  const NameAndUnit parts = split_unit(channel.name);
+  const std::vector<std::string> words = words_of(parts.stem);
+  const auto has = [&](std::initializer_list<const char*> any) {
+    return std::any_of(any.begin(), any.end(),
+                       [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); });
+  };
+  if (has({"header"}) && has({"stamp"})) return 5;  // ROS: when it was measured, not when it was written down
+  if (channel.name == "t_s") return 5;
+  const bool named = has({"time", "timestamp", "stamp", "zeit", "zeitstempel", "uhrzeit", "clock", "elapsed", "datetime",
+                          "seconds", "secs", "tick", "ticks"});
+  const bool letter = words.size() == 1 && has({"t", "sec"});
+  const bool unit = !channel.unit.empty() && !log_unit(channel.unit) && time_unit_s(channel.unit);
+  if (named || letter) return unit || channel.clock ? 4 : 3;
+  if (channel.clock) return 2;
+  return unit ? 1 : 0;
+}
+
+/// A time goes on; a few repeated or swapped stamps are faults of the recorder, which the check names.
+bool goes_on(const Eigen::VectorXd& values) {
+  const Eigen::Index n = values.size();
+  if (n < 2) return false;
+  Eigen::Index back = 0, known = 0;
+  double first = std::nan(""), last = first;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (std::isnan(values(i))) continue;
+    if (known > 0 && values(i) < last) ++back;
+    if (known++ == 0) first = values(i);
+    last = values(i);
+  }
+  return known > 1 && last > first && 50 * back <= n;
+}
+
+double usual_step(const Eigen::VectorXd& values) {
+  std::vector<double> steps;
+  for (Eigen::Index i = 0; i + 1 < std::min<Eigen::Index>(values.size(), 20000); ++i) {
+    if (values(i + 1) > values(i)) steps.push_back(values(i + 1) - values(i));
+  }
+  if (steps.empty()) return 0.0;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return steps[steps.size() / 2];
+}
+
+/// Seconds since 1970 are about 1.7e9 now; the same in ms, us and ns, and the ticks of 1601, have their own decades.
+std::optional<TimeUnit> unit_of_epoch(double start) {
+  const double years = start / (365.25 * 86400.0);
+  for (const auto& [seconds, name] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "us"), std::pair(1e-9, "ns")}) {
+    if (years * seconds > 25.0 && years * seconds < 100.0) return TimeUnit{seconds, 0, name};
+  }
+  if (years * 1e-7 > 395.0 && years * 1e-7 < 470.0) return TimeUnit{1e-7, 0, "filetime"};
+  return std::nullopt;
+}
+
+/// From the unit stated, or from the size of the numbers; nothing if both leave it open.
+std::optional<TimeUnit> unit_of(const RecordedChannel& channel, const ColumnMap& map) {
+  if (channel.clock) return TimeUnit{1.0, 0, "date"};
+  if (map.tick_s) return TimeUnit{*map.tick_s, 0, "ticks"};
+  const std::string stated = map.time_unit.empty() ? channel.unit : map.time_unit;
+  if (const auto seconds = time_unit_s(stated)) return TimeUnit{*seconds, 0, stated};
+  Eigen::Index first = 0;
+  while (first + 1 < channel.values.size() && std::isnan(channel.values(first))) ++first;
+  if (auto epoch = unit_of_epoch(static_cast<double>(channel.origin) + channel.values(first))) return epoch;
+  // Drives record at 7 Hz to 100 kHz: such steps are seconds. A step of 1 may be a ms or a count, so it stays open.
+  const double step = usual_step(channel.values);
+  if (step >= 1e-5 && step < 0.15) return TimeUnit{1.0, 0, "s"};
+  return std::nullopt;
+}
+
+/// Without names, a first column of even steps can be nothing else.
+bool is_even(const Eigen::VectorXd& values) {
+  const double step = usual_step(values);
+  if (!(step > 0)) return false;
+  for (Eigen::Index i = 0; i + 1 < values.size(); ++i) {
+    if (!(std::abs(values(i + 1) - values(i) - step) < 1e-2 * step)) return false;
+  }
+  return true;
+}
+
+const RecordedChannel* guess_time(const Recording& recording) {
+  const RecordedChannel* best = nullptr;
+  int best_rank = 0;
+  for (const RecordedChannel& channel : recording.channels) {
+    const int rank = time_rank(channel);
+    if (rank > best_rank && channel.text_line == 0 && goes_on(channel.values)) {
+      best = &channel;
+      best_rank = rank;
+    }
+  }
+  if (best == nullptr && recording.headerless && !recording.channels.empty() && is_even(recording.channels[0].values))
+    return &recording.channels[0];
+  return best;
+}
+
+void take_rate(Timeline& timeline, double rate_hz) {
+  const auto last = static_cast<double>(timeline.rows() - 1);
+  timeline.name = "rate_hz";
+  timeline.unit = "Hz";
+  timeline.origin_ns = 0;
+  timeline.t_s = Eigen::VectorXd::LinSpaced(timeline.rows(), 0.0, last / rate_hz);
+}
+
+void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap& map) {
+  const auto unit = unit_of(channel, map);
+  if (!unit) {
+    throw Error(fmt::format("the unit of the time column '{}' is not known; its usual step is {:.6g}", channel.name,
+                            usual_step(channel.values)),
+                recording.file,
+                "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts rows; or "
+                "unit or rate_hz below "
+                "[time] in a column map (--map)");
+  }
+  Timeline& timeline = recording.timelines[channel.timeline];
+  timeline.name = channel.name;
+  timeline.unit = unit->name;
+  timeline.t_s = unit->seconds * channel.values;
+  const bool filetime = unit->name == "filetime" && channel.origin > kFileTimeToUnixTicks;
+  const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
+  timeline.origin_ns = channel.clock ? channel.origin : static_cast<std::int64_t>(std::llround(unit->seconds * 1e9)) * origin;
+  map.time_source = channel.name;
+  if (!channel.clock && !map.tick_s) map.time_unit = unit->name;
+}
+
+[[noreturn]] void refuse_no_time(const Recording& recording) {
+  throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
+                          list_channels(recording)),
+              recording.file,
+              "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is none; "
+              "or source or rate_hz "
+              "below [time] in a column map (--map)");
+}
+
+}  // namespace
+
+std::string list_channels(const Recording& recording) {
+  constexpr std::size_t kMost = 30;
+  std::vector<std::string> names;
+  for (const RecordedChannel& channel : recording.channels) {
+    if (names.size() < kMost) names.push_back(channel.name);
+  }
+  const std::size_t more = recording.channels.size() - names.size();
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+const RecordedChannel& find_channel(const Recording& recording, const std::string& source, const std::string& where) {
+  const auto unique = [&](auto fits) -> const RecordedChannel* {
+    const RecordedChannel* found = nullptr;
+    for (const RecordedChannel& channel : recording.channels) {
+      if (!fits(channel)) continue;
+      if (found != nullptr) return nullptr;
+      found = &channel;
+    }
+    return found;
+  };
+  const std::string plain = simplified(source);
+  for (const auto* found :
+       {unique([&](const RecordedChannel& c) { return c.name == source; }), unique([&](const RecordedChannel& c) {
+          return std::find(c.aliases.begin(), c.aliases.end(), source) != c.aliases.end();
+        }),
+        unique([&](const RecordedChannel& c) { return simplified(c.name) == plain; }),
+        unique([&](const RecordedChannel& c) { return simplified(split_unit(c.name).stem) == plain; })}) {
+    if (found != nullptr) return *found;
+  }
+  throw Error(fmt::format("there is no column '{}' in {}; it has {}", source, recording.file, list_channels(recording)), where,
+              "correct source: one of these names, or the number of the column from 1");
+}
+
+void resolve_time(Recording& recording, ColumnMap& map) {
+  const bool open =
+      std::any_of(recording.timelines.begin(), recording.timelines.end(), [](const Timeline& t) { return t.t_s.size() == 0; });
+  for (const Timeline& timeline : recording.timelines) {
+    if (timeline.rows() < 2)
+      throw Error("the file holds a header but no data rows", recording.file, "check that the recording is complete");
+  }
+  if (map.rate_hz) {
+    for (Timeline& timeline : recording.timelines) {
+      if (timeline.t_s.size() == 0) take_rate(timeline, *map.rate_hz);
+    }
+    return;
+  }
+  if (!map.time_source.empty()) {
+    const RecordedChannel& channel = find_channel(recording, map.time_source, map.file.empty() ? "--time-column" : map.file);
+    if (channel.text_line > 0) {
+      throw Error(fmt::format("'{}' is neither a number nor a date", channel.text),
+                  place(recording.file, channel.text_line, channel.name), "give another time column, or the rate with --rate-hz");
+    }
+    take_column(recording, channel, map);
+    return;
+  }
+  if (!open) return;
+  const RecordedChannel* channel = guess_time(recording);
+  if (channel == nullptr) refuse_no_time(recording);
+  take_column(recording, *channel, map);
+}
+
+}  // namespace deltadyn
