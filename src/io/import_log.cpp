@@ -223,8 +223,10 @@ class Builder {
       const double wrap = one.map->wrap ? *one.map->wrap : find_wrap(values, counts);
       const Index jumps = wrap > 0 ? unwrap(values, wrap) : 0;
       if (jumps > 0) {
-        notes.push_back(fmt::format("{}: '{}' begins again after {:.10g}; {} jumps were taken out", recording_.file,
-                                    one.channel->name, wrap, jumps));
+        notes.push_back(
+            fmt::format("{}: '{}' begins again after {:.10g}; {} jumps were taken out, and the first value taken as it is "
+                        "(offset in the column map if that is another turn)",
+                        recording_.file, one.channel->name, wrap, jumps));
       }
     }
     if (same) {

@@ -42,18 +42,20 @@ struct RowShape {
   std::size_t fields = 0;
   double numbers = 0;  ///< fields that hold a number or a date
   bool row = false;    ///< looks like data: most of what is there are numbers
+  bool last_is_empty = false;
 };
 
 struct Candidate {
   char separator, decimal;
   std::size_t first = 0;  ///< index of the first row in the sample
   std::size_t fields = 0;
+  bool last_is_empty = false;  ///< the first row ends with a separator
   double score = 0;
 };
 
 RowShape shape_of(std::string_view line, char separator, char decimal, std::vector<std::string_view>& fields) {
   split_fields(line, separator, fields);
-  RowShape shape{fields.size(), 0, false};
+  RowShape shape{fields.size(), 0, false, fields.back().empty()};
   std::size_t filled = 0;
   for (const std::string_view field : fields) {
     double value = 0;
@@ -90,7 +92,7 @@ std::optional<Candidate> try_marks(const std::vector<Line>& lines, char separato
       continue;
     }
     // Numbers, times their share: marks that tear numbers apart give more fields, but fewer that are numbers.
-    Candidate candidate{separator, decimal, i, shapes[i].fields, 0};
+    Candidate candidate{separator, decimal, i, shapes[i].fields, shapes[i].last_is_empty, 0};
     double rows = 0;
     for (std::size_t k = i; k < shapes.size(); ++k) {
       if (is_comment(lines[k].text)) continue;
@@ -148,10 +150,10 @@ std::vector<std::string> split_names(std::string_view text, char separator, std:
 }
 
 /// A separator at the end of every line, or only of the rows, or only of the names, makes no column.
-bool fits(std::vector<std::string>& names, std::size_t wanted) {
-  if (names.size() == wanted + 1 && names.back().empty()) names.pop_back();
-  if (names.size() + 1 == wanted) names.emplace_back();
-  return names.size() == wanted;
+bool fits(std::vector<std::string>& names, const Candidate& marks) {
+  if (names.size() == marks.fields + 1 && names.back().empty()) names.pop_back();
+  if (names.size() + 1 == marks.fields && marks.last_is_empty) names.emplace_back();
+  return names.size() == marks.fields;
 }
 
 bool is_unit_row(const std::vector<std::string>& fields) {
@@ -172,22 +174,38 @@ std::string without_brackets(std::string_view unit) {
   return unit == "-" ? "" : std::string(unit);
 }
 
+/// The line above the rows that holds the names: comments in between (halscope's display settings) are passed over, and if no other
+/// line fits, one of them may be it ("# t q1 tau1"). Returns the number of lines if there is none.
+std::size_t header_above(const std::vector<Line>& lines, const Candidate& marks) {
+  const auto fitting = [&](std::size_t at) {
+    std::vector<std::string> names = split_names(without_mark(lines[at].text), marks.separator, marks.fields);
+    return fits(names, marks);
+  };
+  std::size_t commented = lines.size();
+  for (std::size_t at = marks.first; at-- > 0;) {
+    const bool comment = is_comment(lines[at].text);
+    if (!comment) return fitting(at) || commented == lines.size() ? at : commented;
+    if (commented == lines.size() && fitting(at)) commented = at;
+  }
+  return commented;
+}
+
 /// Names, and units, in the lines above the rows.
 void find_header(const std::vector<Line>& lines, const Candidate& marks, const std::string& path, Layout& layout) {
-  if (marks.first == 0) return;
-  std::size_t at = marks.first - 1;
+  std::size_t at = header_above(lines, marks);
+  if (at == lines.size()) return;
   std::vector<std::string> names = split_names(without_mark(lines[at].text), marks.separator, marks.fields);
   const std::vector<std::string> as_found = names;
-  // A table's name row stands right above its rows; what is farther away or of another kind is a preamble.
-  if (!fits(names, marks.fields)) {
-    if (is_comment(lines[at].text) || as_found.size() < 2 || lines[at].number + 1 != lines[marks.first].number) return;
+  if (!fits(names, marks)) {
+    // A table's name row stands right above its rows; what is farther away or of another kind is a preamble.
+    if (as_found.size() < 2 || lines[at].number + 1 != lines[marks.first].number) return;
     throw Error(fmt::format("the header has {} names but the rows have {} fields", as_found.size(), marks.fields),
                 fmt::format("{}, line {}", path, lines[at].number),
                 "name every column once, with the same separator as in the rows");
   }
   if (at > 0 && is_unit_row(names)) {
     std::vector<std::string> above = split_names(without_mark(lines[at - 1].text), marks.separator, marks.fields);
-    if (fits(above, marks.fields)) {
+    if (fits(above, marks)) {
       for (const std::string& unit : names) layout.units.push_back(without_brackets(unit));
       names = above;
       --at;

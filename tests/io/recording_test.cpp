@@ -1,0 +1,253 @@
+#include "deltadyn/io/recording.hpp"
+
+#include <cstring>
+#include <gmock/gmock.h>
+#include <memory>
+#include <sqlite3.h>
+
+#include "deltadyn/runtime/error.hpp"
+
+#include "io/recorded_motion.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace deltadyn {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace testing;
+
+const RecordedChannel& channel(const Recording& recording, const std::string& name) {
+  for (const RecordedChannel& one : recording.channels) {
+    if (one.name == name) return one;
+  }
+  throw std::runtime_error("no channel " + name);
+}
+
+std::string error_of(const std::string& path, const RecordingOptions& options = {}) {
+  try {
+    (void)read_recording(path, options);
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.mend().empty()) << error.what();
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A small export of TwinCAT Scope: two groups, the slow one ends early, decimal comma in the header, point in the rows.
+std::string twincat(char separator, char decimal, bool quoted) {
+  const auto join = [&](std::initializer_list<const char*> fields) {
+    std::string line;
+    for (const char* field : fields) {
+      const std::string text = quoted && *field != '\0' ? "\"" + std::string(field) + "\"" : field;
+      line += (line.empty() ? "" : std::string(1, separator)) + text;
+    }
+    return line + "\n";
+  };
+  std::string text = join({"Name", "Scope Project"}) + join({"File", "x.csv"});
+  text += join({"Starttime of export", "132959733843760000", "Montag, 2. Mai 2022", "15:56:24.376"});
+  text += join({"Endtime of export", "132959733853750000", "Montag, 2. Mai 2022", "15:56:25.375"}) + "\n\n";
+  text += join({"Name", "ActPos", "Set Pos", "Name", "ActTorque"});
+  text += join({"Data-Type", "REAL64", "REAL64", "Data-Type", "REAL64"});
+  text += join({"SampleTime[ms]", "0,5", "0,5", "SampleTime[ms]", "2"});
+  text += join({"SymbolName", "MAIN.p", "MAIN.s", "SymbolName", "MAIN.t"});
+  text += join({"Unit", "deg (Angle)", "(None)", "Unit", "(None)"}) + "\n";
+  for (int k = 0; k < 40; ++k) {
+    std::string line = fmt::format("{}|{}|{}|", 0.5 * k, 0.25 * k, -k);
+    line += k < 10 ? fmt::format("{}|{}", 2 * k, 100 * k) : (decimal == ',' ? " | " : "|");
+    for (char& c : line) c = c == '|' ? separator : (c == '.' ? decimal : c);
+    text += line + "\n";
+  }
+  return text + "EOF\n";
+}
+
+TEST(Recording, TwinCatGroupsOfTheirOwnRates) {
+  const TemporaryFolder folder;
+  for (const auto& [separator, decimal, quoted] :
+       {std::tuple('\t', '.', false), std::tuple('\t', ',', false), std::tuple(';', ',', false), std::tuple(',', '.', true)}) {
+    const Recording recording = read_recording(folder.write("scope.csv", twincat(separator, decimal, quoted)));
+    SCOPED_TRACE(recording.form);
+    EXPECT_THAT(recording.form, HasSubstr("TwinCAT"));
+    ASSERT_EQ(recording.timelines.size(), 2U);
+    ASSERT_EQ(recording.channels.size(), 3U);
+    EXPECT_EQ(channel(recording, "ActPos").unit, "deg");
+    EXPECT_EQ(channel(recording, "Set Pos").unit, "");
+    EXPECT_EQ(recording.timelines[0].rows(), 40);
+    EXPECT_EQ(recording.timelines[1].rows(), 10);
+    EXPECT_NEAR(recording.timelines[0].t_s(39), 0.0195, 1e-12);
+    EXPECT_NEAR(recording.timelines[1].t_s(9), 0.018, 1e-12);
+    EXPECT_EQ(channel(recording, "ActPos").values(39), 9.75);
+    EXPECT_EQ(channel(recording, "ActTorque").values(9), 900);
+  }
+}
+
+TEST(Recording, BinaryFormsAreNamedWithTheWayOut) {
+  const TemporaryFolder folder;
+  for (const auto& [bytes, words] :
+       {std::pair("PK\x03\x04xxxx", "save it as CSV"), std::pair("#ROSBAG V2.0\n", "rostopic echo"),
+        std::pair("\x89MCAP0\r\nxx", "ros2 bag convert"), std::pair("MATLAB 5.0 MAT-file, x", "writetable"),
+        std::pair("\x89HDF\r\n\x1a\n", "HDF5"), std::pair("<?xml version='1.0'?>", "CSV")}) {
+    EXPECT_THAT(error_of(folder.write("log.bin", bytes)), HasSubstr(words));
+  }
+  EXPECT_THAT(error_of(folder.write("zero.bin", std::string("abc\0def", 7))), HasSubstr("not a text file"));
+  EXPECT_THAT(error_of(folder.write("words.txt", "one\ntwo three\nfour\nfive\n")), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(error_of(folder.write("empty.csv", "")), HasSubstr("the file is empty"));
+  EXPECT_THAT(error_of(folder.path("")), HasSubstr("folder"));
+  EXPECT_THAT(error_of(folder.path("no.csv")), HasSubstr("cannot open"));
+}
+
+TEST(Recording, LinesThatDoNotFit) {
+  const TemporaryFolder folder;
+  const auto row = [](int k, double) { return fmt::format("{},{},{}\n", k, 2 * k, 3 * k); };
+  const std::string good = recorded("a,b,c\n", row, 50);
+  EXPECT_THAT(error_of(folder.write("x.csv", good + "1,2\n" + good.substr(6))), HasSubstr("line 52"));
+  EXPECT_THAT(error_of(folder.write("x.csv", "a,b\n" + good.substr(6))),
+              HasSubstr("the header has 2 names but the rows have 3 fields"));
+  const Recording cut = read_recording(folder.write("x.csv", good + "50,10"));
+  EXPECT_EQ(cut.timelines[0].rows(), 50);
+  ASSERT_EQ(cut.notes.size(), 1U);
+  EXPECT_THAT(cut.notes[0], HasSubstr("line 52: the last line is cut off"));
+  const Recording twice = read_recording(folder.write("x.csv", "a,b,a\n" + good.substr(6)));
+  EXPECT_EQ(twice.channels[2].name, "a (2)");
+}
+
+TEST(Recording, MissingNumbersInTheSpellingsOfTheWorld) {
+  const TemporaryFolder folder;
+  std::string text = "t;x;y\n";
+  for (const char* word : {"1", "", "n/a", "NaN", "-", "#N/A", "1.#QNAN", "null", "7", "8", "9"})
+    text += fmt::format("0;{};RUN\n", word);
+  const Recording recording = read_recording(folder.write("x.csv", text));
+  EXPECT_EQ(channel(recording, "x").values.array().isNaN().count(), 7);
+  EXPECT_EQ(channel(recording, "x").text_line, 0);
+  EXPECT_EQ(channel(recording, "y").text_line, 2);
+  EXPECT_EQ(channel(recording, "y").text, "RUN");
+}
+
+// --- rosbag2 ------------------------------------------------------------------------------------------------------------------
+
+/// Writes CDR, either order of bytes.
+class CdrWriter {
+ public:
+  explicit CdrWriter(bool little) : little_(little) { bytes_ = {'\0', little ? '\1' : '\0', '\0', '\0'}; }
+  template <class T>
+  void put(T value) {
+    while ((bytes_.size() - 4) % sizeof(T) != 0) bytes_ += '\0';
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    for (std::size_t k = 0; k < sizeof(T); ++k) bytes_ += raw[little_ ? k : sizeof(T) - 1 - k];
+  }
+  void put_text(const std::string& text) {
+    put(static_cast<std::uint32_t>(text.size() + 1));
+    bytes_ += text + '\0';
+  }
+  void put_doubles(const std::vector<double>& values) {
+    put(static_cast<std::uint32_t>(values.size()));
+    for (const double value : values) put(value);
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  bool little_;
+};
+
+std::string joint_state(std::int64_t stamp_ns, const std::vector<std::string>& names, const std::vector<double>& q,
+                        const std::vector<double>& tau, bool little = true) {
+  CdrWriter cdr(little);
+  cdr.put(static_cast<std::int32_t>(stamp_ns / 1000000000));
+  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1000000000));
+  cdr.put_text("base");
+  cdr.put(static_cast<std::uint32_t>(names.size()));
+  for (const auto& name : names) cdr.put_text(name);
+  cdr.put_doubles(q);
+  cdr.put_doubles({});
+  cdr.put_doubles(tau);
+  return cdr.bytes();
+}
+
+/// A bag under construction.
+class Bag {
+ public:
+  explicit Bag(const std::string& path) {
+    sqlite3* raw = nullptr;
+    if (sqlite3_open(path.c_str(), &raw) != SQLITE_OK) throw std::runtime_error("no database");
+    database_.reset(raw);
+    run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, offered_qos_profiles "
+        "TEXT)");
+    run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)");
+    run("BEGIN");
+  }
+  ~Bag() { run("COMMIT"); }
+  Bag(const Bag&) = delete;
+  Bag& operator=(const Bag&) = delete;
+  void topic(int id, const std::string& name, const std::string& type) {
+    run(fmt::format("INSERT INTO topics VALUES({}, '{}', '{}', 'cdr', '')", id, name, type));
+  }
+  void message(int topic, std::int64_t received_ns, const std::string& data) {
+    sqlite3_stmt* statement = nullptr;
+    sqlite3_prepare_v2(database_.get(), "INSERT INTO messages(topic_id, timestamp, data) VALUES(?1, ?2, ?3)", -1, &statement,
+                       nullptr);
+    sqlite3_bind_int(statement, 1, topic);
+    sqlite3_bind_int64(statement, 2, received_ns);
+    sqlite3_bind_blob(statement, 3, data.data(), static_cast<int>(data.size()), SQLITE_TRANSIENT);
+    sqlite3_step(statement);
+    sqlite3_finalize(statement);
+  }
+
+ private:
+  void run(const std::string& sql) { sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr); }
+  std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_{nullptr, &sqlite3_close};
+};
+
+TEST(Rosbag2, JointsByNameInWhateverOrderTheMessagesHaveThem) {
+  const TemporaryFolder folder;
+  constexpr std::int64_t kStart = 1650000000123456789;
+  for (const bool little : {true, false}) {
+    const std::string path = folder.path(little ? "little.db3" : "big.db3");
+    {
+      Bag bag(path);
+      bag.topic(1, "/tf", "tf2_msgs/msg/TFMessage");
+      bag.topic(2, "/joint_states", "sensor_msgs/msg/JointState");
+      for (int k = 0; k < 30; ++k) {
+        const std::int64_t stamp = kStart + 2000000LL * k;
+        bag.message(1, stamp, "what we do not read");
+        bag.message(2, stamp + 70000 * (k % 3),
+                    k % 2 == 0 ? joint_state(stamp, {"arm", "yaw"}, {0.1 * k, -0.2 * k}, {1.0 * k, 2.0 * k}, little)
+                               : joint_state(stamp, {"yaw", "arm"}, {-0.2 * k, 0.1 * k}, {2.0 * k, 1.0 * k}, little));
+      }
+    }
+    const Recording recording = read_recording(path);
+    ASSERT_EQ(recording.timelines.size(), 1U);
+    EXPECT_EQ(recording.timelines[0].origin_ns, kStart);
+    EXPECT_NEAR(recording.timelines[0].t_s(29), 0.058, 1e-12);  // the publisher's stamps, not those of receipt
+    ASSERT_EQ(recording.channels.size(), 4U);
+    const RecordedChannel& yaw = channel(recording, "/joint_states/yaw/effort");
+    EXPECT_EQ(yaw.values(7), 14.0);
+    EXPECT_EQ(yaw.quantity, "torque");
+    EXPECT_EQ(yaw.place, 2);
+    EXPECT_EQ(channel(recording, "/joint_states/arm/position").values(7), 0.1 * 7);
+  }
+}
+
+TEST(Rosbag2, SaysWhichTopicsThereAre) {
+  const TemporaryFolder folder;
+  {
+    Bag bag(folder.path("two.db3"));
+    bag.topic(1, "/a", "sensor_msgs/msg/JointState");
+    bag.topic(2, "/b", "sensor_msgs/msg/JointState");
+    for (int k = 0; k < 30; ++k) bag.message(2, k, joint_state(1000 + k, {"x"}, {1.0 * k}, {}));
+    Bag other(folder.path("none.db3"));
+    other.topic(1, "/camera", "sensor_msgs/msg/Image");
+    Bag cut(folder.path("cut.db3"));
+    cut.topic(1, "/a", "sensor_msgs/msg/JointState");
+    cut.message(1, 1, joint_state(5, {"x"}, {1}, {2}).substr(0, 50));
+  }
+  EXPECT_THAT(error_of(folder.path("two.db3")), HasSubstr("--topic /a"));
+  EXPECT_EQ(read_recording(folder.path("two.db3"), {"/b"}).channels.size(), 1U);
+  EXPECT_THAT(error_of(folder.path("none.db3")), HasSubstr("/camera (sensor_msgs/msg/Image)"));
+  EXPECT_THAT(error_of(folder.path("cut.db3")), HasSubstr("message 1 of /a"));
+  EXPECT_THAT(error_of(folder.write("broken.db3", std::string("SQLite format 3\0", 16) + "xxxxxxxxxxxxxxxx")),
+              HasSubstr("cannot read the database"));
+}
+
+}  // namespace
+}  // namespace deltadyn
