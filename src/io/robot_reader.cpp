@@ -461,14 +461,18 @@ RobotDescription robot_from_urdf(const std::string& text, const std::string& whe
   return Reader(tree).run();
 }
 
-RobotDescription read_robot_file(const std::string& path) {
+std::string read_robot_text(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw Error("this is a folder", path, "give a URDF robot file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(fmt::format("cannot open the robot file ({})", std::strerror(errno)), path, "check the path");
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) throw Error("cannot read the robot file", path, "give a URDF file, not a folder");
-  return robot_from_urdf(text.str(), path);
+  return text.str();
+}
+
+RobotDescription read_robot_file(const std::string& path) {
+  return robot_from_urdf(read_robot_text(path), path);
 }
 
 }  // namespace deltadyn

@@ -1,5 +1,6 @@
 #include "urdf_tree.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <console_bridge/console.h>
@@ -119,6 +120,54 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
   return facts;
 }
 
+/// Links that hang below each link, itself included.
+int size_below(const std::string& link, const std::map<std::string, std::vector<std::string>>& children, int depth = 0) {
+  int size = 1;
+  const auto found = children.find(link);
+  if (found == children.end() || depth > 1000) return size;
+  for (const std::string& child : found->second) size += size_below(child, children, depth + 1);
+  return size;
+}
+
+/// What urdfdom asks for and CAD programs leave out: limits of joints, and one root.
+std::string completed(tinyxml2::XMLDocument& document, XMLElement* robot, XmlFacts& facts) {
+  std::map<std::string, std::vector<std::string>> children;
+  std::set<std::string> hung;
+  for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr; joint = joint->NextSiblingElement("joint")) {
+    const std::string child = joint->FirstChildElement("child")->Attribute("link");
+    children[joint->FirstChildElement("parent")->Attribute("link")].push_back(child);
+    hung.insert(child);
+    const char* type = joint->Attribute("type");
+    const bool limited = type != nullptr && (std::string(type) == "revolute" || std::string(type) == "prismatic");
+    if (!limited || joint->FirstChildElement("limit") != nullptr) continue;
+    XMLElement* limit = joint->InsertNewChildElement("limit");
+    limit->SetAttribute("lower", -kUnlimited);
+    limit->SetAttribute("upper", kUnlimited);
+    limit->SetAttribute("effort", kUnlimited);
+    limit->SetAttribute("velocity", kUnlimited);
+  }
+  std::vector<std::string> roots;
+  for (const auto& [link, line] : facts.link_lines)
+    if (hung.count(link) == 0) roots.push_back(link);
+  if (!roots.empty()) {
+    const auto size = [&](const std::string& link) { return size_below(link, children); };
+    std::swap(roots.front(),
+              *std::max_element(roots.begin(), roots.end(), [&](const auto& a, const auto& b) { return size(a) < size(b); }));
+  }
+  for (std::size_t k = 1; k < roots.size(); ++k) {
+    XMLElement* joint = robot->InsertNewChildElement("joint");
+    const std::string name = "loose_" + roots[k];
+    joint->SetAttribute("name", name.c_str());
+    joint->SetAttribute("type", "floating");
+    joint->InsertNewChildElement("parent")->SetAttribute("link", roots.front().c_str());
+    joint->InsertNewChildElement("child")->SetAttribute("link", roots[k].c_str());
+    facts.joint_lines.emplace(name, facts.link_lines.at(roots[k]));
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
 /// urdfdom reports through console_bridge; this keeps its words for our message and off the terminal.
 class CapturedMessages : public console_bridge::OutputHandler {
  public:
@@ -190,7 +239,7 @@ void read_inertial(const urdf::Link& link, UrdfTree& tree) {
 }
 
 /// Walks down from a link whose place is known.
-void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree) {
+void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dialect, UrdfTree& tree) {
   const LinkPlace here = tree.links.at(link.name);
   read_inertial(link, tree);
   for (const auto& joint : link.child_joints) {
@@ -207,11 +256,13 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree)
     } else {
       const int line = facts.joint_lines.at(joint->name);
       const bool prismatic = joint->type == urdf::Joint::PRISMATIC;
-      if (!prismatic && joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS)
+      const bool floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR;
+      if (!(floating && dialect == UrdfDialect::cad) && !prismatic && joint->type != urdf::Joint::REVOLUTE &&
+          joint->type != urdf::Joint::CONTINUOUS)
         refuse("the joint is neither revolute, continuous, prismatic nor fixed",
                fmt::format("{}, line {}, joint {}", tree.where, line, joint->name), "a Delta's tree has no other joints");
       const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
-      if (!(axis.norm() > 1e-9))
+      if (!floating && !(axis.norm() > 1e-9))
         refuse("the axis has no direction", fmt::format("{}, line {}, joint {}", tree.where, line, joint->name),
                "write a unit vector");
       const int body = static_cast<int>(tree.bodies.size());
@@ -227,12 +278,13 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfTree& tree)
       // A unit vector stays as written, to the last digit.
       moving.axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized());
       moving.mimic = joint->mimic != nullptr;
+      moving.floating = floating;
       moving.limits = limits_of(*joint);
       tree.joints.push_back(moving);
       tree.bodies.push_back({child->name, {}, {child->name}});
       tree.links[child->name] = {body, Pose::Identity(), {}};
     }
-    add_children(*child, facts, tree);
+    add_children(*child, facts, dialect, tree);
   }
 }
 
@@ -257,7 +309,7 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
   }
 }
 
-void read_loops(const XMLElement* robot, UrdfTree& tree) {
+void read_loops(const XMLElement* robot, UrdfDialect dialect, UrdfTree& tree) {
   for (auto* element = robot->FirstChildElement("loop"); element != nullptr; element = element->NextSiblingElement("loop")) {
     const std::string place = at(tree.where, element);
     Loop loop;
@@ -273,7 +325,7 @@ void read_loops(const XMLElement* robot, UrdfTree& tree) {
       loop.axis = parse_vector(attribute(axis, "xyz", place), place, "xyz").normalized();
     tree.loops.push_back(std::move(loop));
   }
-  if (auto* coupling = robot->FirstChildElement("coupling"))
+  if (auto* coupling = robot->FirstChildElement("coupling"); coupling != nullptr && dialect == UrdfDialect::robot_file)
     refuse("a <coupling> ties two joints, which no robot of a known type has", at(tree.where, coupling),
            "remove the coupling, the loops hold the plate already");
 }
@@ -302,19 +354,20 @@ double parse_number(const std::string& text, const std::string& where, const std
   return value;
 }
 
-UrdfTree parse_urdf_tree(const std::string& text, const std::string& where) {
+UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, UrdfDialect dialect) {
   tinyxml2::XMLDocument document;
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     refuse("the file is empty", where, "give a URDF robot file, e.g. one of delta-model create");
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     refuse(fmt::format("not well-formed XML ({})", document.ErrorName()),
            fmt::format("{}, line {}", where, document.ErrorLineNum()), "give a URDF robot file, e.g. one of delta-model create");
-  const XMLElement* robot = document.RootElement();
+  XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::string(robot->Name()) != "robot")
     refuse(fmt::format("the root element is <{}>, but a URDF starts with <robot>", robot == nullptr ? "" : robot->Name()), where,
            "give a URDF robot file, e.g. one of delta-model create");
-  const XmlFacts facts = check_xml(robot, where);
-  const urdf::ModelInterfaceSharedPtr model = parse_model(text, where);
+  XmlFacts facts = check_xml(robot, where);
+  const bool cad = dialect == UrdfDialect::cad;
+  const urdf::ModelInterfaceSharedPtr model = parse_model(cad ? completed(document, robot, facts) : text, where);
 
   UrdfTree tree;
   tree.name = model->getName();
@@ -322,8 +375,8 @@ UrdfTree parse_urdf_tree(const std::string& text, const std::string& where) {
   const auto root = model->getRoot();
   tree.bodies.push_back({root->name, {}, {root->name}});
   tree.links[root->name] = {0, Pose::Identity(), {}};
-  add_children(*root, facts, tree);
-  read_loops(robot, tree);
+  add_children(*root, facts, dialect, tree);
+  read_loops(robot, dialect, tree);
   read_extension(robot, tree);
   return tree;
 }

@@ -25,6 +25,7 @@ struct Joint {
   Pose X_PJ = Pose::Identity();  ///< joint frame in the parent body's frame, at joint position 0 also the child body's frame
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the joint frame
   bool mimic = false;
+  bool floating = false;  ///< six (or, planar, three) degrees of freedom: holds nothing; CAD trees only
   DriveLimits limits;
 };
 
@@ -81,8 +82,13 @@ struct UrdfTree {
   std::vector<DriveNote> drives;
 };
 
+/// robot_file: what the tools take. cad: any tree of a CAD program; joints may float or lack limits, and there may be several trees,
+/// whose roots are then joined to the largest one by floating joints, in the place that the file's origin gives them.
+enum class UrdfDialect { robot_file, cad };
+
 /// Throws deltadyn::Error with the line if the file is not well-formed URDF or URDF+.
-[[nodiscard]] UrdfTree parse_urdf_tree(const std::string& text, const std::string& where);
+[[nodiscard]] UrdfTree parse_urdf_tree(const std::string& text, const std::string& where,
+                                       UrdfDialect dialect = UrdfDialect::robot_file);
 
 /// Turns the tree from the frame of its root link to that of the robot's base W: gravity and the places of the drives. A base that
 /// hangs, leans or is turned is a link that fixed joints hold against the root ("world"). W is the frame of the last link that

@@ -124,15 +124,6 @@ Ten body_of(const std::string& name, const RobotDescription& robot, const PartSh
                s.telescope_lower_inner_diameter, Vec::Zero(), Vec(0, 0, s.telescope_lower_length), "telescope's lower part");
 }
 
-/// Standard deviations of the ten parameters for the same relative error of every moment of the mass distribution.
-Ten std_of(const Ten& p, double share) {
-  const PseudoInertia<double> M = to_pseudo_inertia(p);
-  PseudoInertia<double> scale;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) scale(i, j) = share * std::sqrt(M(i, i) * M(j, j));
-  return from_pseudo_inertia<double>(scale).cwiseAbs();
-}
-
 Body kind_of(const std::string& name) {
   for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper})
     if (name.rfind(deltadyn::name(body), 0) == 0) return body;
@@ -193,6 +184,14 @@ PartShapes::PartShapes(const RobotDescription& robot) {
   telescope_coulomb = 4;
 }
 
+InertialVector<double> inertial_std(const InertialVector<double>& p, double share) {
+  const PseudoInertia<double> M = to_pseudo_inertia(p);
+  PseudoInertia<double> scale;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) scale(i, j) = share * std::sqrt(M(i, i) * M(j, j));
+  return from_pseudo_inertia<double>(scale).cwiseAbs();
+}
+
 NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shapes) {
   require_positive(shapes.body_std, "the relative standard deviation of the bodies");
   require_positive(shapes.friction_std, "the relative standard deviation of the friction");
@@ -215,7 +214,7 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
         refuse(fmt::format("the shapes of {} make no physically consistent body", body), "give every part a thickness");
       plausibility::require_body(robot.description(), kind_of(body), p, body, "", ExitCode::usage);
       nominal.value.segment<kInertialParameters>(column) = p.array() + 0.0;  // no -0 in a file that people read
-      nominal.std.segment<kInertialParameters>(column) = std_of(p, shapes.body_std);
+      nominal.std.segment<kInertialParameters>(column) = inertial_std(p, shapes.body_std);
       k += kInertialParameters;
       continue;
     }

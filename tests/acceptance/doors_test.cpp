@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
 
 #include "acceptance/bad_input.hpp"
+#include "support/cad_file.hpp"
 
 namespace deltadyn::acceptance {
 namespace {
@@ -236,6 +238,88 @@ TEST(Mounting, AHangingRobotIsIdentifiedAsTheSameRobotUnderTurnedGravity) {
     EXPECT_NEAR(a.entries[k].value, b.entries[k].value, 1e-6 * (1 + std::abs(b.entries[k].value))) << a.entries[k].name;
   }
 }
+
+// --- robots from CAD programs -------------------------------------------------------------------
+
+/// A file of a CAD program for the robot that the logs were recorded with, with the masses of its truth.
+std::string cad_of(const W& w, unsigned seed, const Eigen::Vector3d& plate) {
+  const RobotDescription robot = read_robot_file(w.path("robot.urdf"));
+  NamedValues masses;
+  for (const ParameterEntry& entry : read_parameters(w.path("prior.csv")).entries) masses[entry.name] = entry.value;
+  testing_support::CadOptions options;
+  options.seed = seed;
+  options.plate = plate;
+  return w.write("cad.urdf", testing_support::CadFile(robot, masses, options).text());
+}
+
+TEST(Adopt, GivesARobotThatIdentifiesAsTheOriginal) {
+  const Workshop w;
+  const std::string cad = cad_of(w, 3, Eigen::Vector3d(0.1, 0.05, -0.95));
+  const std::string robot = w.path("adopted.urdf"), prior = w.path("cad_prior.csv");
+  const ToolResult result =
+      succeed({"delta-model", "adopt", cad, "-o", robot, "--prior-out", prior, "--summary", w.path("s.csv")});
+  EXPECT_NE(result.out.find("drive 4: joint spindle_"), std::string::npos) << result.out;
+  EXPECT_EQ(read_summary(w.path("s.csv")).at("type"), "delta4");
+  // Lengths and workspace as of the original, from the first line of the geometry to the gravity.
+  const auto geometry = [](const std::string& text) {
+    const auto from = text.find("geometry"), to = text.find("drives");
+    return text.substr(from, to - from);
+  };
+  EXPECT_EQ(geometry(succeed({"delta-model", "info", robot}).out),
+            geometry(succeed({"delta-model", "info", w.path("robot.urdf")}).out));
+  const ParameterTable truth = read_parameters(w.path("prior.csv")), found = read_parameters(prior);
+  for (const ParameterEntry& entry : truth.entries) {
+    const bool friction = entry.unit.find("kg") == std::string::npos;
+    ASSERT_NE(found.find(entry.name), nullptr) << entry.name;
+    if (friction) continue;  // of which a CAD knows nothing
+    EXPECT_NEAR(found.find(entry.name)->value, entry.value, 1e-5) << entry.name;
+    EXPECT_GT(found.find(entry.name)->std, 0) << entry.name;
+  }
+  succeed(w.validate("", robot));
+  const auto adopted = read_summary(w.path("summary.csv"));
+  succeed(w.validate());
+  const auto original = read_summary(w.path("summary.csv"));
+  for (int j = 1; j <= 4; ++j) {
+    const std::string key = fmt::format("rms_residual_drive{}", j);
+    EXPECT_NEAR(number(adopted, key), number(original, key), 1e-4) << key;
+  }
+}
+
+std::vector<Row> adoptions() {
+  const auto adopt = [](const W& w, const std::string& text, const Words& more = {}) {
+    return Words{"delta-model", "adopt", w.write("c.urdf", text), "-o", w.path("x.urdf"), "--prior-out", w.path("x.csv")} + more;
+  };
+  return {
+      {"AdoptMillimetres",
+       [=](const W& w) {
+         const RobotDescription robot = read_robot_file(w.path("robot.urdf"));
+         testing_support::CadOptions options;
+         options.unit = 1000;
+         return adopt(w, testing_support::CadFile(robot, {}, options).text());
+       },
+       3,
+       {"c\\.urdf, line .*joint", "looks like millimetres", "mend: .*--length-unit mm"}},
+      {"AdoptOneLinkALimb",
+       [=](const W& w) {
+         const RobotDescription robot = read_robot_file(w.path("robot.urdf"));
+         testing_support::CadOptions options;
+         options.one_link_a_limb = true;
+         return adopt(w, testing_support::CadFile(robot, {}, options).text());
+       },
+       2,
+       {"their distance cannot be found", "mend: give --strut-spacing"}},
+      {"AdoptALog", [=](const W& w) { return adopt(w, "t_s,q1_rad\n0,1\n"); }, 3, {"c\\.urdf", "XML", "mend:"}},
+      {"AdoptASerialArm", [=](const W& w) { return adopt(w, shipped("emps.urdf")); }, 3, {"no base with three drives", "mend:"}},
+      {"AdoptOntoItself",
+       [](const W& w) {
+         return Words{"delta-model", "adopt", w.path("robot.urdf"), "-o", w.path("robot.urdf")};
+       },
+       2,
+       {"would overwrite the input", "mend:"}},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Adoptions, Doors, ::testing::ValuesIn(adoptions()), name_of);
 
 }  // namespace
 }  // namespace deltadyn::acceptance

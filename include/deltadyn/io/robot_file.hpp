@@ -42,6 +42,9 @@ void write_robot_file(const std::string& path, const RobotDescription& robot, co
 /// Lengths are compared to 1e-6 m and directions to 1e-6 rad, so that files written with few digits can be read.
 [[nodiscard]] RobotDescription read_robot_file(const std::string& path);
 
+/// The text of a robot file. Throws deltadyn::Error if it cannot be read.
+[[nodiscard]] std::string read_robot_text(const std::string& path);
+
 /// The same from text; `where` names the source in messages.
 [[nodiscard]] RobotDescription robot_from_urdf(const std::string& text, const std::string& where);
 

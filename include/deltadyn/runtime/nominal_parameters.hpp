@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn {
@@ -52,5 +53,8 @@ struct NominalParameters {
 /// Every body is physically consistent. Throws deltadyn::Error(usage) if a shape is not possible (wall thicker than the tube,
 /// mass not positive) and names it.
 [[nodiscard]] NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shapes);
+
+/// Standard deviations of a body's ten parameters for the same relative error `share` of every moment of its mass distribution.
+[[nodiscard]] InertialVector<double> inertial_std(const InertialVector<double>& p, double share);
 
 }  // namespace deltadyn
