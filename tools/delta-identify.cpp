@@ -269,7 +269,7 @@ class Identify {
     fmt::print("smallest eigenvalue of the mass matrix over {} poses: {:.4g}\n", survey.states, survey.min_eigenvalue);
     fmt::print("wrote {}{}{}\n", output_, base_file_.empty() ? "" : ", " + base_file_,
                report_file_.empty() ? "" : ", " + report_file_);
-    if (!result.fit.converged) {
+    if (!result.fit.converged && !result.fit.agrees_with_least_squares()) {
       throw Error("the consistent fit did not converge: " + result.fit.message, "",
                   "look at the report; try --regularization with a larger value", ExitCode::no_convergence);
     }

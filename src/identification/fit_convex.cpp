@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "fit_metric.hpp"
 
@@ -38,7 +39,7 @@ ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, con
     if (block.split >= 0) centring_(block.split) = -gradient(block.fitted());
   }
   // Normal equations of a problem with far more digits in some directions than in others lose the weak ones. In the singular
-  // directions the data term is diagonal, and Jacobi scaling makes the Newton matrix well conditioned.
+  // directions the data term is diagonal, and nothing blurs.
   const int n = layout.fitted;
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(n);
@@ -115,42 +116,46 @@ bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barr
   return true;
 }
 
-ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const {
+Eigen::VectorXd ConvexProblem::residual_at(const Eigen::VectorXd& scaled) const {
+  return singular_.cwiseProduct(V_.transpose() * scaled.head(layout_.fitted)) - target_;
+}
+
+ConvexProblem::Newton ConvexProblem::newton_step(const Terms& terms, const Eigen::VectorXd& residual) const {
   const int n = layout_.convex, fitted = layout_.fitted;
+  // in (V^T y, splits)
+  Eigen::VectorXd gradient = terms.gradient;
+  gradient.head(fitted) = V_.transpose() * terms.gradient.head(fitted) + 2 * singular_.cwiseProduct(residual);
+  // The Newton matrix is stacked^T stacked. Where a body nears the boundary it spreads over more than the digits there are, and
+  // its Cholesky factor would need a ridge that hides what descent is left; a QR of the stack needs half the digits.
+  Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(n + fitted, n);
+  stacked.topRows(n) = terms.factor.transpose();
+  stacked.topLeftCorner(n, fitted) = terms.factor.topRows(fitted).transpose() * V_;
+  stacked.bottomLeftCorner(fitted, fitted).diagonal() = std::sqrt(2.0) * singular_;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
+  const auto R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  Newton newton;
+  newton.step = -R.solve(R.transpose().solve(gradient).eval());
+  newton.decrement = -gradient.dot(newton.step);
+  newton.step.head(fitted) = (V_ * newton.step.head(fitted)).eval();
+  return newton;
+}
+
+ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const {
   Result result;
   Eigen::VectorXd x = start.cwiseQuotient(scale_);  // scaled from here on
   auto unscaled = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return v.cwiseProduct(scale_); };
-  auto data_residual = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
-    return singular_.cwiseProduct(V_.transpose() * v.head(fitted)) - target_;
-  };
+  auto data_residual = [&](const Eigen::VectorXd& v) { return residual_at(v); };
   Eigen::VectorXd residual = data_residual(x);
   double barrier = kFirstBarrier;
   Terms terms;
-  Eigen::MatrixXd H(n, n), rotated(n, n);
   while (result.iterations < kMaxNewton) {
     ++result.iterations;
     if (!separable_terms(metric, lambda, barrier, unscaled(x), terms, true)) return result;
     const double value = residual.squaredNorm() + terms.value;
-    // in (V^T y, splits)
-    Eigen::VectorXd gradient = terms.gradient;
-    gradient.head(fitted) = V_.transpose() * terms.gradient.head(fitted) + 2 * singular_.cwiseProduct(residual);
-    rotated = terms.factor;
-    rotated.topRows(fitted).noalias() = V_.transpose() * terms.factor.topRows(fitted);
-    H.setZero();
-    H.selfadjointView<Eigen::Lower>().rankUpdate(rotated);
-    H.diagonal().head(fitted) += 2 * singular_.cwiseAbs2();
-    const Eigen::VectorXd jacobi = H.diagonal().cwiseSqrt().cwiseInverse();
-    H = jacobi.asDiagonal() * H * jacobi.asDiagonal();
-    // Near the boundary the barrier's own spread can exceed the digits; a ridge then bends the step, never its descent.
-    Eigen::LLT<Eigen::MatrixXd> factor(H.selfadjointView<Eigen::Lower>());
-    for (double ridge = 1e-14; factor.info() != Eigen::Success && ridge < 1e-6; ridge *= 100) {
-      H.diagonal().array() += ridge;
-      factor.compute(H.selfadjointView<Eigen::Lower>());
-    }
-    if (factor.info() != Eigen::Success) return result;
-    Eigen::VectorXd step = -jacobi.cwiseProduct(factor.solve(jacobi.cwiseProduct(gradient)));
-    const double decrement = -gradient.dot(step);
-    step.head(fitted) = (V_ * step.head(fitted)).eval();
+    const Newton newton = newton_step(terms, residual);
+    if (!newton.step.allFinite()) return result;
+    const Eigen::VectorXd& step = newton.step;
+    const double decrement = newton.decrement;
 
     double length = 1;
     bool accepted = false;
@@ -223,49 +228,82 @@ Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
 
 }  // namespace
 
-OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, const Eigen::VectorXd& y) const {
+/// Near the central path: the slope of the barrier after one more Newton step. It lies in the dual cone where that step stays in the
+/// barrier's Dikin ellipsoid, and what it leaves of J's slope, the step times J's Hessian, is as small as the step.
+std::optional<Eigen::VectorXd> ConvexProblem::barrier_dual(FitMetric metric, double lambda, const Eigen::VectorXd& x) const {
+  Terms terms;
+  if (!separable_terms(metric, lambda, kFinalBarrier, x, terms, true)) return std::nullopt;
+  const Eigen::VectorXd step = newton_step(terms, residual_at(x.cwiseQuotient(scale_))).step.cwiseProduct(scale_);
+  if (!step.allFinite()) return std::nullopt;
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(layout_.fitted);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  for (const Block& block : layout_.blocks) {
+    double value = 0;
+    if (block.cone.size == 0) continue;
+    if (!log_det_barrier(block.cone, block.gather(x), value, &gradient, &hessian)) return std::nullopt;
+    z.segment(block.y, block.fitted()) = -kFinalBarrier * (gradient + hessian * block.gather(step)).head(block.fitted());
+  }
+  return z;
+}
+
+OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, const Eigen::VectorXd& x) const {
   OptimalityCertificate certificate;
   if (metric == FitMetric::riemannian) return certificate;
   const int n = layout_.fitted;
+  const Eigen::VectorXd y = x.head(n), scale = scale_.head(n);
+  const std::optional<Eigen::VectorXd> dual = x.size() == layout_.convex ? barrier_dual(metric, lambda, x) : std::nullopt;
   // J(y') >= J(y) + g.(y'-y) + ||A (y'-y)||^2 + lambda (D's own growth). For any z in the dual cone, z.y' >= z.floor, so that
   //   gap <= z.(y - floor) + max over steps of -(g - z).step - growth(step),
-  // where growth is a quadratic form H (relative), or a self-concordant function with Hessian H (bregman).
-  Eigen::VectorXd g = 2 * A_.transpose() * (A_ * y - b_);
-  Eigen::MatrixXd stacked(A_.rows() + n, n);  // R^T R = half the Hessian of J
-  stacked.setZero();
-  stacked.topRows(A_.rows()) = A_;
-  Eigen::VectorXd z(n);
-  double at_y = 0;
-  certificate.min_dual_eigenvalue = std::numeric_limits<double>::infinity();
+  // where growth is a quadratic form H (relative), or a self-concordant function with Hessian H (bregman). Slopes and H stand in
+  // the singular directions of the data, in which sharp and weak ones do not blur each other.
+  Eigen::VectorXd of_metric(n);                               // lambda D'
+  Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(2 * n, n);  // R^T R = half the Hessian of J
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
   for (const Block& block : layout_.blocks) {
     const int count = block.fitted();
     double value = 0;
     if (!metric_terms(block, layout_, metric, y.segment(block.y, count), value, &gradient, &hessian)) return certificate;
-    g.segment(block.y, count) += lambda * gradient;
-    stacked.block(A_.rows() + block.y, block.y, count, count) =
-        Eigen::LLT<Eigen::MatrixXd>(0.5 * lambda * hessian).matrixU().toDenseMatrix();
-    const Eigen::VectorXd own = g.segment(block.y, count);
+    of_metric.segment(block.y, count) = lambda * gradient;
+    stacked.block(n + block.y, block.y, count, count) =
+        Eigen::LLT<Eigen::MatrixXd>(0.5 * lambda * hessian).matrixU().toDenseMatrix() *
+        scale.segment(block.y, count).asDiagonal();
+  }
+  stacked.bottomRows(n) = (stacked.bottomRows(n) * V_).eval();
+  stacked.topRows(n) = singular_.asDiagonal();
+  const Eigen::VectorXd whole = 2 * singular_.cwiseProduct(residual_at(x.cwiseQuotient(scale_.head(x.size())))) +
+                                V_.transpose() * scale.cwiseProduct(of_metric);
+  const Eigen::VectorXd z = dual ? *dual : Eigen::VectorXd((V_ * whole).cwiseQuotient(scale));
+
+  double at_y = 0;
+  certificate.min_dual_eigenvalue = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd shifted = Eigen::VectorXd::Zero(n);
+  for (const Block& block : layout_.blocks) {
+    const int count = block.fitted();
+    const Eigen::VectorXd own = z.segment(block.y, count);
     if (block.shape == Shape::free) {
-      z(block.y) = 0;
+      shifted.segment(block.y, count) = -own;
       continue;
     }
-    const Dual dual = dual_of(block, own);
-    if (dual.min_eigenvalue < certificate.min_dual_eigenvalue) {
-      certificate.min_dual_eigenvalue = dual.min_eigenvalue;
+    const Dual cone = dual_of(block, own);
+    if (cone.min_eigenvalue < certificate.min_dual_eigenvalue) {
+      certificate.min_dual_eigenvalue = cone.min_eigenvalue;
       certificate.min_dual_name = block.name;
     }
     Eigen::VectorXd above = y.segment(block.y, count);
     above(0) -= block.mass_floor;
     certificate.complementarity += own.dot(above);
-    z.segment(block.y, count) = own + std::max(0.0, -dual.min_eigenvalue) * dual.identity;
-    at_y += z.segment(block.y, count).dot(above);
+    shifted.segment(block.y, count) = std::max(0.0, -cone.min_eigenvalue) * cone.identity;
+    at_y += (own + shifted.segment(block.y, count)).dot(above);
   }
+  const Eigen::VectorXd slope =
+      (dual ? Eigen::VectorXd(whole - V_.transpose() * scale.cwiseProduct(z)) : Eigen::VectorXd::Zero(n)) -
+      V_.transpose() * scale.cwiseProduct(shifted);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
   const auto R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  auto growth_bound = [&](const Eigen::VectorXd& slope) {
-    const double quarter = 0.25 * R.transpose().solve(slope).squaredNorm();
+  auto growth_bound = [&](const Eigen::VectorXd& left) {
+    const double quarter = 0.25 * R.transpose().solve(left).squaredNorm();
     if (!std::isfinite(quarter)) return std::numeric_limits<double>::infinity();
     if (metric == FitMetric::relative) return quarter;
     const double decrement = std::sqrt(2 * quarter / lambda);  // of J / lambda, which is self-concordant
@@ -273,7 +311,7 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
     return lambda * (-decrement - std::log1p(-decrement));
   };
   // z = 0 is a dual point too, and the better one where the optimum is inside the cones
-  certificate.gap = std::min(std::max(at_y, 0.0) + growth_bound(g - z), growth_bound(g));
+  certificate.gap = std::min(std::max(at_y, 0.0) + growth_bound(slope), growth_bound(whole));
   certificate.available = true;
   certificate.relative_gap = certificate.gap / std::max(1.0, cost(metric, lambda, y));
   return certificate;

@@ -4,6 +4,7 @@
 /// The fit as a convex problem in p: an interior-point solver in p and the certificate of global optimality.
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "fit_blocks.hpp"
 
@@ -24,8 +25,9 @@ class ConvexProblem {
   /// With `riemannian` the problem is not convex and the result is a local minimum.
   [[nodiscard]] Result minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const;
 
-  /// Evidence at y, valid for any y of the consistent set.
-  [[nodiscard]] OptimalityCertificate certify(FitMetric metric, double lambda, const Eigen::VectorXd& y) const;
+  /// Evidence at a point, valid for any of the consistent set.
+  /// \param x  y alone, or the whole result of minimise(): then the barrier there gives the dual point
+  [[nodiscard]] OptimalityCertificate certify(FitMetric metric, double lambda, const Eigen::VectorXd& x) const;
 
   [[nodiscard]] double data_cost(const Eigen::VectorXd& y) const { return (A_ * y - b_).squaredNorm(); }
   [[nodiscard]] double regularization_cost(FitMetric metric, const Eigen::VectorXd& y) const;
@@ -42,6 +44,13 @@ class ConvexProblem {
   };
   bool separable_terms(FitMetric metric, double lambda, double barrier, const Eigen::VectorXd& x, Terms& terms,
                        bool derivatives) const;
+  struct Newton {
+    Eigen::VectorXd step;  // of x, scaled
+    double decrement = 0;  // what the gradient promises for it, twice what it gains
+  };
+  [[nodiscard]] Newton newton_step(const Terms& terms, const Eigen::VectorXd& residual) const;
+  [[nodiscard]] Eigen::VectorXd residual_at(const Eigen::VectorXd& scaled) const;  // in the singular directions
+  [[nodiscard]] std::optional<Eigen::VectorXd> barrier_dual(FitMetric metric, double lambda, const Eigen::VectorXd& x) const;
 
   const Layout& layout_;
   Eigen::MatrixXd A_;

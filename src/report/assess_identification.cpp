@@ -23,12 +23,25 @@ std::vector<DriveFigures> figures_of(const Identification& identification) {
   return out;
 }
 
+/// A solver that stopped early or left a gap unproven may still have found what there is: the data then cannot tell its parameters
+/// from the base parameters, which need no search.
+void judge_unproven(const ConsistentFitSummary& fit, Check& check) {
+  if (fit.agrees_with_least_squares()) {
+    check.figure += ", but as good as the base parameters";
+    check.meaning += fmt::format(" χ² is above that of the base parameters by {}, which is no more than noise makes of it.",
+                                 format_number(std::max(fit.data_cost - fit.data_cost_free, 0.0), 2));
+    return;
+  }
+  const bool slight = fit.converged && fit.certificate.gap < kNoiseInChiSquare;
+  check.verdict = slight ? Verdict::caution : Verdict::bad;
+}
+
 Check check_solver(const ConsistentFitSummary& fit) {
   Check check{"Best possible fit", "", Verdict::good, ""};
   if (!fit.converged) {
-    check.verdict = Verdict::bad;
     check.figure = "not converged";
     check.meaning = "The solver stopped before it was done: " + fit.message + ". Allow more iterations, or check the prior.";
+    judge_unproven(fit, check);
   } else if (!fit.certificate.available) {
     check.figure = "converged, no proof";
     check.meaning =
@@ -40,11 +53,11 @@ Check check_solver(const ConsistentFitSummary& fit) {
         "noise).",
         format_number(std::max(fit.certificate.gap, 0.0), 2));
   } else {
-    check.verdict = fit.certificate.gap < kNoiseInChiSquare ? Verdict::caution : Verdict::bad;
     check.figure = "not proven";
     check.meaning = fmt::format(
         "Parameters that fit better by up to {} in χ² may exist (weakest at {}). Try the full parameter set or another prior.",
         format_number(fit.certificate.gap, 2), fit.certificate.min_dual_name);
+    judge_unproven(fit, check);
   }
   return check;
 }

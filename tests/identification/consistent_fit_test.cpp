@@ -154,6 +154,33 @@ TEST(ConsistentFit, NoFeasiblePointIsLower) {
   }
 }
 
+TEST(ConsistentFit, IsProvenHoweverSharpTheDataAndHoweverThinTheBodiesEnd) {
+  for (const ParameterSet set : {ParameterSet::reduced, ParameterSet::full}) {
+    for (const double precision : {20.0, 1e4, 1e6, 1e9}) {  // the last ones as logs without noise give them
+      for (const int rank : {20, kRank, 60}) {
+        const ConsistentFitProblem problem = random_problem(101, rank, precision, 0.7, set == ParameterSet::reduced);
+        const ConsistentFitSummary summary = fit_consistent_parameters(problem, make_options(set, FitMetric::relative));
+        EXPECT_TRUE(summary.converged && summary.certificate.passed) << "precision " << precision << ", rank " << rank << "\n"
+                                                                     << summary.full_report();
+      }
+    }
+  }
+}
+
+TEST(ConsistentFit, LeastSquaresIsTheFloorOfChiSquare) {
+  const ConsistentFitProblem problem = random_problem(33, kRank, 1e3, 0.8, false);
+  ConsistentFitOptions options = make_options(ParameterSet::full, FitMetric::relative);
+  const ConsistentFitSummary summary = fit_consistent_parameters(problem, options);
+  const Eigen::VectorXd plain =
+      Eigen::BDCSVD<Eigen::MatrixXd>(problem.A, Eigen::ComputeThinU | Eigen::ComputeThinV).setThreshold(1e-10).solve(problem.b);
+  EXPECT_EQ(summary.data_rank, kRank);
+  EXPECT_NEAR(summary.data_cost_free, (problem.A * plain - problem.b).squaredNorm(), 1e-6);
+  EXPECT_LE(summary.data_cost_free, summary.data_cost + 1e-9);
+  EXPECT_TRUE(summary.agrees_with_least_squares());
+  options.regularization = 1e9;
+  EXPECT_FALSE(fit_consistent_parameters(problem, options).agrees_with_least_squares());
+}
+
 TEST(ConsistentFit, VariableCounts) {
   const ConsistentFitProblem problem = random_problem(40, kRank, 1e3, 1.1, true);
   EXPECT_EQ(fit_consistent_parameters(problem, make_options(ParameterSet::reduced, FitMetric::relative)).variables, 36);

@@ -95,12 +95,25 @@ TEST(IdentificationAssessment, AMassMatrixThatIsNotPositiveForbidsUse) {
 
 TEST(IdentificationAssessment, TheSolverMustBeDoneAndProvenRight) {
   SyntheticRun run = copy_of(good_run());
+  // The data tell it from the base parameters.
+  run.identification.fit.data_cost_free = run.identification.fit.data_cost - 1000;
   run.identification.fit.certificate.passed = false;
   EXPECT_EQ(assess(run).verdict, Verdict::caution);
   run.identification.fit.certificate.available = false;
   EXPECT_EQ(assess(run).verdict, Verdict::good);
   run.identification.fit.converged = false;
   EXPECT_EQ(assess(run).verdict, Verdict::bad);
+}
+
+TEST(IdentificationAssessment, AFitAsGoodAsTheBaseParametersNeedsNoProof) {
+  SyntheticRun run = copy_of(good_run());
+  run.identification.fit.data_cost_free = run.identification.fit.data_cost - 1;
+  run.identification.fit.certificate.passed = false;
+  run.identification.fit.certificate.gap = 5;
+  EXPECT_EQ(assess(run).verdict, Verdict::good);
+  EXPECT_THAT(all_text(assess(run)), HasSubstr("can be trusted"));
+  run.identification.fit.converged = false;
+  EXPECT_EQ(assess(run).verdict, Verdict::good);
 }
 
 TEST(IdentificationAssessment, ConsistencyThatCostsMuchIsTold) {

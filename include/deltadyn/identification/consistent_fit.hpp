@@ -83,6 +83,8 @@ struct ConsistentFitSummary {
   Eigen::VectorXd data_share;      ///< P: 1 the data decided, 0 the prior decided (1 - variance / prior variance)
   std::vector<bool> fitted;        ///< P: the parameter enters data and regularisation; false for those that section VI drops
   double data_cost = 0;            ///< ||A p - b||^2
+  double data_cost_free = 0;       ///< the smallest that any p has, consistent or not: that of the base parameters
+  int data_rank = 0;               ///< of A: number of base parameters
   double data_cost_min = 0;        ///< smallest value on the consistent set; only when lambda was chosen, else equal to data_cost
   double regularization_cost = 0;  ///< D(p, p_reg), without lambda
   double lambda = 0;
@@ -94,10 +96,14 @@ struct ConsistentFitSummary {
   double initial_data_cost = 0;  ///< chi^2 of the prior, made consistent where it was on the boundary
   double solve_time_s = 0;       ///< one solve at the final lambda
   double total_time_s = 0;       ///< with the choice of lambda and the uncertainties
-  bool converged = false;
-  std::string message;  ///< of Ceres
+  bool converged = false;        ///< Ceres found no descent any more, or the certificate says that none is left
+  std::string message;           ///< of Ceres
   OptimalityCertificate certificate;
   std::vector<std::string> notes;  ///< what was done about the prior, in plain words
+
+  /// True if chi^2 is above that of the base parameters by no more than the true parameters' would be (three standard deviations
+  /// of a chi-square with data_rank degrees of freedom): the data then cannot tell the fit from the base parameters.
+  [[nodiscard]] bool agrees_with_least_squares() const;
 
   [[nodiscard]] std::string brief_report() const;  ///< one line
   [[nodiscard]] std::string full_report() const;   ///< with a line a parameter
