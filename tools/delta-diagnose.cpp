@@ -20,6 +20,7 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "log_gate.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -49,6 +50,7 @@ class Diagnose {
     app.add_option("--max-effects", options_.max_effects, "most effects named together")->capture_default_str();
     app.add_option("--null-runs", options_.null_runs, "simulated clean logs")->capture_default_str();
     app.add_flag("--list-effects", list_, "print the catalogue of effects and end");
+    gate_.add_to(app);
     processing_.add_to(app);
     run.on(app, [this, &run] { return execute(run); });
   }
@@ -85,7 +87,15 @@ class Diagnose {
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     const std::vector<Effect> known = effect_file_.empty() ? std::vector<Effect>() : read_effects(effect_file_, description);
-    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    // A delay stays: it is one of the effects that the diagnosis weighs.
+    const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
+                                      !processing_.options().filter, run.summary, true);
+    const std::vector<LogFinding> findings = tools::all_findings(gate);
+    if (gate.stop()) {
+      tools::LogGate::refuse(gate);
+      return ExitCode::not_trusted;
+    }
+    const std::vector<Log>& logs = gate.logs;
     std::optional<Log> holdout;
     if (!holdout_file_.empty()) holdout = processing_.read_logs({holdout_file_}, description).front();
 
@@ -108,6 +118,7 @@ class Diagnose {
       context.log_files = log_files_;
       context.parameter_file = parameter_file_;
       context.command_line = command_line_;
+      context.findings = findings;
       write_file(report_file_, diagnosis_report(*robot, result, context));
     }
     tell(result, description, run);
@@ -260,6 +271,7 @@ class Diagnose {
   DiagnosisOptions options_;
   bool list_ = false;
   tools::ProcessingFlags processing_;
+  tools::LogGate gate_;
 };
 
 }  // namespace

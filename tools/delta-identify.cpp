@@ -16,10 +16,13 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/identification_report.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "log_gate.hpp"
+#include "prior_reading.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -65,6 +68,7 @@ class Identify {
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
         ->capture_default_str();
     app.add_flag("--robust", robust_, "Huber weights against single bad samples");
+    gate_.add_to(app);
     processing_.add_to(app);
     run.on(app, [this, &run] { return execute(run); });
   }
@@ -80,15 +84,18 @@ class Identify {
     const RobotDescription description = read_robot_file(robot_file_);
     const auto robot = make_robot(description, parameter_options(description));
     const IdentificationOptions options = identification_options(run);
-    Eigen::VectorXd prior, prior_std;
-    read_prior(*robot, prior, prior_std);
-    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    const tools::Prior prior = tools::read_prior(*robot, prior_file_);
+    const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
+                                      !prior_file_.empty(), !options.processing.filter, run.summary);
+    const std::vector<LogFinding> findings = tools::all_findings(gate);
+    if (gate.stop()) return refuse(*robot, gate, findings);
+    const std::vector<Log>& logs = gate.logs;
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
-    const Identification result = identify_from(*robot, logs, prior, prior_std, with_progress, effects);
+    const Identification result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
     if (!effects.empty()) tell_effects(description, effects);
     if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
@@ -98,16 +105,29 @@ class Identify {
     const Validation training =
         validate(*robot, without_effects(*robot, logs, result.fit.p, effects, result.processing.cutoff_hz), result.fit.p,
                  result.processing);
-    const Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
+    Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
+    weigh_findings(findings, assessment);
     if (!report_file_.empty()) {
-      ReportContext context;
-      context.robot_file = robot_file_;
-      context.log_files = log_files_;
-      context.parameter_file = prior_file_;
-      context.command_line = command_line_;
-      write_file(report_file_, identification_report(*robot, result, training, survey, context));
+      write_file(report_file_, identification_report(*robot, result, training, survey, report_context(findings)));
     }
     return tell(*robot, result, survey, assessment, run);
+  }
+
+  [[nodiscard]] ReportContext report_context(const std::vector<LogFinding>& findings) const {
+    ReportContext context;
+    context.robot_file = robot_file_;
+    context.log_files = log_files_;
+    context.parameter_file = prior_file_;
+    context.command_line = command_line_;
+    context.findings = findings;
+    return context;
+  }
+
+  /// Logs with such a fault hold nothing that a fit could make sense of: the report, if one was asked for, is that of the check.
+  ExitCode refuse(const Robot& robot, const GateResult& gate, const std::vector<LogFinding>& findings) const {
+    if (!report_file_.empty()) write_file(report_file_, log_report(robot, gate.logs, report_context(findings)));
+    tools::LogGate::refuse(gate);
+    return ExitCode::not_trusted;
   }
 
   /// The fit knows that a prior is impossible, but not the file that it came from.
@@ -169,30 +189,6 @@ class Identify {
       }
     }
     return options;
-  }
-
-  void read_prior(const Robot& robot, Eigen::VectorXd& prior, Eigen::VectorXd& prior_std) const {
-    const NominalParameters nominal = nominal_parameters(robot, PartShapes(robot.description()));
-    prior = nominal.value;
-    prior_std = nominal.std;
-    if (prior_file_.empty()) {
-      fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
-      return;
-    }
-    const ParameterMatch match = match_parameters(read_parameters(prior_file_, robot.description()), robot.parameter_names(), robot.parameter_units());
-    prior = match.value;
-    for (Eigen::Index k = 0; k < prior.size(); ++k) {
-      const double std = match.std(k);
-      const double share = nominal.value(k) != 0 ? nominal.std(k) / std::abs(nominal.value(k)) : 0.0;
-      // The file's own trust in its values; without it the nominal one, carried over as a share of the value.
-      prior_std(k) =
-          std::isfinite(std) && std > 0 ? std : (share > 0 && prior(k) != 0 ? share * std::abs(prior(k)) : nominal.std(k));
-    }
-    for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-    if (!match.missing.empty()) {
-      fmt::print("note: {}: {} parameters are not in the file and count as 0: {}\n", prior_file_, match.missing.size(),
-                 fmt::join(match.missing, " "));
-    }
   }
 
   static ParameterTable parameter_table(const Robot& robot, const Identification& result) {
@@ -286,6 +282,7 @@ class Identify {
   CLI::Option* offset_flag_ = nullptr;
   std::vector<int> rotor_inertia_;
   tools::ProcessingFlags processing_;
+  tools::LogGate gate_;
 };
 
 }  // namespace

@@ -14,11 +14,13 @@
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/report/validation_report.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log_columns.hpp"
 
+#include "log_gate.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -39,12 +41,13 @@ class Validate {
     app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")
         ->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
+    gate_.add_to(app);
     processing_.add_to(app);
-    run.on(app, [this, &run] { execute(run); });
+    run.on(app, [this, &run] { return execute(run); });
   }
 
  private:
-  void execute(ToolRun& run) {
+  ExitCode execute(ToolRun& run) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> inputs = log_files_;
     inputs.insert(inputs.end(), {robot_file_, parameter_file_, effect_file_});
@@ -57,7 +60,16 @@ class Validate {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-    const std::vector<Log> logs = processing_.read_logs(log_files_, description);
+    // The model under test is no prior: a wrong one must show in the residual, not in the check of the logs.
+    const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
+                                      !processing_.options().filter, run.summary);
+    const std::vector<LogFinding> findings = tools::all_findings(gate);
+    if (gate.stop()) {
+      if (!report_file_.empty()) write_file(report_file_, log_report(*robot, gate.logs, report_context(findings)));
+      tools::LogGate::refuse(gate);
+      return ExitCode::not_trusted;
+    }
+    const std::vector<Log>& logs = gate.logs;
     ProcessingOptions options = processing_.options();
     tools::ProgressBar bar("validating");
     if (options.filter && processing_.automatic_cutoff()) {
@@ -73,18 +85,25 @@ class Validate {
     if (!effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, result);
     if (!report_file_.empty()) {
-      ReportContext context;
-      context.robot_file = robot_file_;
-      context.log_files = log_files_;
-      context.parameter_file = parameter_file_;
-      context.command_line = command_line_;
-      write_file(report_file_, validation_report(*robot, result, match.value, context));
+      write_file(report_file_, validation_report(*robot, result, match.value, report_context(findings)));
     }
-    const Assessment assessment = assess_validation(*robot, result, residual_structure(result));
+    Assessment assessment = assess_validation(*robot, result, residual_structure(result));
+    weigh_findings(findings, assessment);
     tell(description, result, run);
     run.summary.add("verdict", tools::verdict_word(assessment.verdict));
     run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
     tools::print_assessment(assessment);
+    return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
+  }
+
+  [[nodiscard]] ReportContext report_context(const std::vector<LogFinding>& findings) const {
+    ReportContext context;
+    context.robot_file = robot_file_;
+    context.log_files = log_files_;
+    context.parameter_file = parameter_file_;
+    context.command_line = command_line_;
+    context.findings = findings;
+    return context;
   }
 
   /// The effects' torque was taken off the measured one for the residual: give it back to both, so that the tables show the torque as
@@ -162,6 +181,7 @@ class Validate {
   std::string command_line_, robot_file_, output_, report_file_, parameter_file_, effect_file_;
   std::vector<std::string> log_files_;
   tools::ProcessingFlags processing_;
+  tools::LogGate gate_;
 };
 
 }  // namespace

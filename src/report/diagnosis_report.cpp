@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "deltadyn/report/format.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/report/html_report.hpp"
 
 namespace deltadyn {
@@ -329,6 +330,7 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   std::vector<std::string> lines = d.lines;
   for (const std::string& next : d.next) lines.push_back("Next: " + next);
   report.verdict(tone_of(d), d.headline, lines);
+  add_log_check(report, context.findings);
   std::vector<KeyFigure> figures = {{"verdict", verdict_name(d.verdict)}};
   if (!d.named.empty()) {
     figures.push_back({"effect", d.named.front().name, "at " + d.named.front().joint});

@@ -4,6 +4,7 @@
 
 #include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/format.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "assessment_limits.hpp"
@@ -88,13 +89,15 @@ std::string identification_report(const Robot& robot, const Identification& iden
                 "make them with the same robot", ExitCode::usage);
   }
   const IdentificationEvidence evidence = gather_evidence(robot, identification, training);
-  const Assessment assessment = assess_identification(robot, identification, survey, evidence);
+  Assessment assessment = assess_identification(robot, identification, survey, evidence);
+  weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
   HtmlReport report(
       "Identification of " + description.name,
       fmt::format("{}, {} {}, {} {}", description.type, description.drives(), description.drives() == 1 ? "drive" : "drives",
                   training.logs.size(), training.logs.size() == 1 ? "log" : "logs"));
   report.verdict(assessment.verdict, assessment.headline, assessment.lines);
+  add_log_check(report, context.findings);
   report.key_figures(key_figures(robot, identification, survey));
 
   report.heading("Checks");

@@ -4,6 +4,7 @@
 
 #include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/format.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "assessment_parts.hpp"
@@ -61,12 +62,14 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
                 "validate with the same robot file", ExitCode::usage);
   }
   const std::vector<ResidualStructure> residual = residual_structure(validation);
-  const Assessment assessment = assess_validation(robot, validation, residual);
+  Assessment assessment = assess_validation(robot, validation, residual);
+  weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
   HtmlReport report("Validation of " + description.name,
                     fmt::format("{}, {} drives, {} {}", description.type, description.drives(), validation.logs.size(),
                                 validation.logs.size() == 1 ? "log" : "logs"));
   report.verdict(assessment.verdict, assessment.headline, assessment.lines);
+  add_log_check(report, context.findings);
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];

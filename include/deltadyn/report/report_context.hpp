@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/signal/log_finding.hpp"
+
 namespace deltadyn {
 
 /// Where the figures of a report come from, so that they can be made again.
@@ -11,6 +13,7 @@ struct ReportContext {
   std::vector<std::string> log_files;
   std::string parameter_file;  ///< prior of an identification, model of a validation; empty: nominal values of simple shapes
   std::string command_line;
+  std::vector<LogFinding> findings;  ///< of the check of the logs; they stand first
 };
 
 }  // namespace deltadyn

@@ -1,0 +1,356 @@
+#include "judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace deltadyn::gate {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kSoundResidual =
+    0.02;                            // of the torque: friction of another law, load and noise leave less; wrong signs leave more
+constexpr double kSoundRatio = 1.5;  // all drives together over each drive by itself: one machine explains all torques
+constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
+constexpr double kSoundWinner = 0.15;   // ... down to that of a fit that may have other, smaller faults
+constexpr double kAlike = 1.3;          // residuals within this ratio do not tell explanations apart
+constexpr double kOutOfReach = 0.01;    // share of poses that a recording of this robot cannot have
+constexpr Index kCoarsePoints = 150;    // for searches over a factor or a zero
+constexpr int kBestStarts = 2;          // of a search, refined
+constexpr double kWorthRefining = 2.0;  // times the smallest residual of all searches
+constexpr double kScaleWorth = 0.25;    // a factor of one torque nearer to 1 is a matter for the fit and the diagnosis
+constexpr int kFewestRowsPerParameter = 2;
+
+/// What can be said of one reading of the positions.
+class Judge {
+ public:
+  Judge(const Robot& robot, const BaseParameters& base, const Points& points) : robot_(robot), base_(base), points_(points) {}
+
+  Judgement run() {
+    const int n = robot_.drives();
+    Judgement out;
+    if (points_.q.rows() * n < kFewestRowsPerParameter * base_.count())
+      return out;  // too short to judge: sound until shown otherwise
+    const Reading given = Reading::as_given(n);
+    std::optional<Explanation> as_given = plain(given);
+    if (as_given) out.as_given = *as_given;
+    out.as_given.unreachable = unreachable_;
+    out.sound = as_given && unreachable_ <= kOutOfReach && as_given->residual < kSoundResidual &&
+                as_given->residual < kSoundRatio * alone_ + 0.005;
+    const double residual = as_given ? as_given->residual : 1.0;
+    collect_discrete(given, nullptr);
+    out.winners = winners(residual);
+    if (out.sound || (!out.winners.empty() && out.winners.front().residual < kSoundResidual)) return out;
+    collect_families(given, nullptr);
+    out.winners = winners(residual);
+    if (out.winners.empty()) {  // two faults at once: again from the best single one of the positions
+      const std::optional<Explanation> first = best_of_positions();
+      if (!first) return out;
+      collect_discrete(first->reading, &*first);
+      collect_families(first->reading, &*first);
+      out.winners = winners(residual);
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Eigen::MatrixXd> torques(const Rows& rows, const Points& points) const {
+    std::vector<Eigen::MatrixXd> tau;
+    for (const DriveRows& drive : rows.drives) {
+      Eigen::MatrixXd one(drive.count(), points.tau.cols());
+      for (Index k = 0; k < drive.count(); ++k) one.row(k) = points.tau.row(drive.at[static_cast<std::size_t>(k)].point);
+      tau.push_back(std::move(one));
+    }
+    return tau;
+  }
+
+  [[nodiscard]] bool enough(const Rows& rows) const {
+    Index total = 0;
+    for (const DriveRows& drive : rows.drives) {
+      if (drive.count() < 10) return false;
+      total += drive.count();
+    }
+    return total >= kFewestRowsPerParameter * (base_.count() + robot_.drives());
+  }
+
+  /// A reading with the torques as they are. Sets unreachable_ and alone_, the residual of each drive by itself.
+  std::optional<Explanation> plain(const Reading& reading) {
+    const Rows rows = rows_of_points(robot_, base_, points_, reading);
+    unreachable_ = rows.unreachable;
+    if (!enough(rows)) return std::nullopt;
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
+    const int n = robot_.drives();
+    Explanation out;
+    out.reading = reading;
+    for (int j = 0; j < n; ++j) out.assignment.push_back(j);
+    out.factor.setOnes(n);
+    out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
+    out.unreachable = rows.unreachable;
+    alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(n));
+    return out;
+  }
+
+  /// Adds every explanation over `start`, itself the reading of `before` or the log as given.
+  void collect_discrete(const Reading& start, const Explanation* before) {
+    PositionHypothesis as_is;
+    as_is.reading = Reading::as_given(robot_.drives());
+    add_torque_readings(as_is, start, before);
+    for (const PositionHypothesis& h : position_hypotheses(robot_.description())) add_torque_readings(h, start, before);
+  }
+  /// A value of a family that a search over few points found.
+  struct Start {
+    double residual, value;
+    const PositionFamily* family;
+  };
+
+  /// Factors and zeros: all families over few points first, the promising ones refined.
+  void collect_families(const Reading& start, const Explanation* before) {
+    const std::vector<PositionFamily> families = position_families(robot_.description());
+    const Points few = thinned(kCoarsePoints);
+    std::vector<Start> found;
+    double least = std::numeric_limits<double>::infinity();
+    for (const PositionFamily& family : families) {
+      std::vector<double> residual(family.start.size());
+#pragma omp parallel for schedule(dynamic)
+      for (std::size_t k = 0; k < residual.size(); ++k) {
+        residual[k] = best_signs(compose(member(family, robot_.description(), family.start[k], 0).reading, start), few);
+      }
+      std::vector<Start> own;
+      for (std::size_t k = 0; k < residual.size(); ++k) {
+        if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
+      }
+      std::sort(own.begin(), own.end(), [](const Start& a, const Start& b) { return a.residual < b.residual; });
+      if (own.size() > kBestStarts) own.resize(kBestStarts);
+      for (const Start& one : own) least = std::min(least, one.residual);
+      found.insert(found.end(), own.begin(), own.end());
+    }
+    for (const Start& one : found) {
+      if (one.residual > kWorthRefining * least) continue;
+      const PositionFamily& family = *one.family;
+      const double value = refine(family, start, one.value);
+      const bool nothing = family.geometric ? std::abs(value - 1) < 0.1 : (std::abs(value) < 0.1 && family.sign.front() > 0);
+      if (!nothing) add_torque_readings(member(family, robot_.description(), value, 0.01), start, before);
+    }
+  }
+
+  [[nodiscard]] std::optional<Explanation> best_of_positions() const {
+    std::optional<Explanation> best;
+    for (const Explanation& e : all_) {
+      const bool torques_as_given = std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
+      if (torques_as_given && (!best || e.residual < best->residual)) best = e;
+    }
+    return best;
+  }
+
+  /// One reading of the positions with the best order, signs and factors of the torques.
+  void add_torque_readings(const PositionHypothesis& h, const Reading& start, const Explanation* before) {
+    const Reading reading = compose(h.reading, start);
+    const Rows rows = rows_of_points(robot_, base_, points_, reading);
+    if (rows.unreachable > kOutOfReach || !enough(rows)) return;
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
+    std::vector<int> order(blocks.size());
+    std::iota(order.begin(), order.end(), 0);
+    do {
+      add_signs_and_factors(h, reading, before, blocks, order);
+      // Both columns in another order is the robot numbered in another way: no further hypothesis.
+    } while (h.key != "position_order" && std::next_permutation(order.begin(), order.end()));
+  }
+
+  void add_signs_and_factors(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
+                             const std::vector<TorqueBlock>& blocks, const std::vector<int>& order) {
+    const int n = robot_.drives();
+    const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
+    Eigen::VectorXd s(n);
+    // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is taken.
+    for (int set = 0; set < (1 << (n - 1)); ++set) {
+      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
+      if (2 * (s.array() < 0).count() > n) s = -s;
+      add(h, reading, before, order, s, relative_residual(form, s), -1, {});
+    }
+    if (!h.words.empty() || n == 1) return;  // another unit of one torque beside a wrong position is two faults
+    for (int j = 0; j < n; ++j) {
+      const Factor factor = best_factor(blocks, order, j);
+      if (std::abs(std::abs(factor.value) - 1) < kScaleWorth || std::abs(factor.value) < 5 * factor.std) continue;
+      s.setOnes();
+      s(j) = factor.value;
+      const Eigen::MatrixXd again = residual_form(blocks, order, s.cwiseAbs());
+      add(h, reading, before, order, s, relative_residual(again, s.cwiseSign()), j, factor);
+    }
+  }
+
+  void add(const PositionHypothesis& h, const Reading& reading, const Explanation* before, const std::vector<int>& order,
+           const Eigen::VectorXd& factor, double residual, int scaled_drive, const Factor& scale) {
+    Explanation e;
+    e.reading = reading;
+    e.assignment = order;
+    e.factor = factor;
+    e.residual = residual;
+    e.changes = h.changes + (before != nullptr ? before->changes : 0.0);
+    e.drive = h.drive;
+    if (before != nullptr && !before->words.empty()) {
+      e.words = before->words;
+      e.key = before->key;
+      e.mend = before->mend;
+      e.drive = before->drive;
+    }
+    const auto say = [&e](const std::string& key, const std::string& words, const std::string& mend) {
+      e.words += (e.words.empty() ? "" : ", and ") + words;
+      if (e.key.empty()) e.key = key;
+      if (e.mend.empty()) e.mend = mend;
+    };
+    if (!h.words.empty()) say(h.key, h.words, h.mend);
+    tell_order(order, e, say);
+    tell_signs(factor, scaled_drive, e, say);
+    if (scaled_drive >= 0) tell_factor(factor, scaled_drive, scale, e, say);
+    if (!e.words.empty()) all_.push_back(std::move(e));
+  }
+
+  template <class Say>
+  void tell_order(const std::vector<int>& order, Explanation& e, const Say& say) const {
+    std::vector<int> moved;
+    std::string columns;
+    for (std::size_t j = 0; j < order.size(); ++j) {
+      if (order[j] != static_cast<int>(j)) moved.push_back(static_cast<int>(j));
+      columns += fmt::format("{}{}", columns.empty() ? "" : ", ", order[j] + 1);
+    }
+    if (moved.empty()) return;
+    e.changes += static_cast<double>(moved.size()) - 0.1;  // one column moved back is less than one turned
+    const std::string words =
+        moved.size() == 2
+            ? fmt::format("the torques of drives {} and {} are swapped against their positions", moved[0] + 1, moved[1] + 1)
+            : fmt::format("the torques are in another order than the positions: drives 1 to {} have the torque columns {}",
+                          order.size(), columns);
+    say("torque_order", words, "bring positions and torques of each drive together (delta-log import: source in the map)");
+  }
+
+  template <class Say>
+  void tell_signs(const Eigen::VectorXd& factor, int scaled_drive, Explanation& e, const Say& say) const {
+    std::vector<int> turned;
+    for (int j = 0; j < factor.size(); ++j) {
+      if (factor(j) < 0 && j != scaled_drive) turned.push_back(j);
+    }
+    if (turned.empty()) return;
+    e.changes += static_cast<double>(turned.size());
+    if (e.drive < 0 && turned.size() == 1) e.drive = turned.front();
+    say("torque_sign", fmt::format("the torque of {} has the wrong sign", drives_in_words(turned, robot_.drives())),
+        "turn the sign of the torque column (delta-log import: sign = -1 in the map)");
+  }
+
+  template <class Say>
+  void tell_factor(const Eigen::VectorXd& factor, int drive, const Factor& scale, Explanation& e, const Say& say) const {
+    // The form's factor turns the column into the torque; what the user sees is its inverse.
+    e.changes += factor(drive) < 0 ? 2.5 : 1.5;
+    e.value = 1 / factor(drive);
+    e.std = scale.std / (factor(drive) * factor(drive));
+    e.drive = drive;
+    say("torque_scale_drive",
+        fmt::format(
+            "the torque of drive {} is {:.4g} ({:.2g}) times what the other drives need: unit, torque constant or gear ratio?",
+            drive + 1, e.value, e.std),
+        "give the torque of every drive in N m at the joint (N for a carriage)");
+  }
+
+  [[nodiscard]] double refine(const PositionFamily& family, const Reading& start, double value) const {
+    double step = family.step;
+    const auto at = [&](double x) {
+      return best_signs(compose(member(family, robot_.description(), x, 0).reading, start), points_);
+    };
+    double best = at(value);
+    for (int pass = 0; pass < 14; ++pass) {
+      step *= 0.5;
+      for (const double sign : {-1.0, 1.0}) {
+        const double there = family.geometric ? value * (1 + sign * step) : value + sign * step;
+        const double residual = at(there);
+        if (residual < best) {
+          best = residual;
+          value = there;
+          break;
+        }
+      }
+    }
+    return value;
+  }
+
+  /// Smallest residual over the signs of the torques; not finite where the poses are out of reach.
+  [[nodiscard]] double best_signs(const Reading& reading, const Points& points) const {
+    const Rows rows = rows_of_points(robot_, base_, points, reading);
+    if (rows.unreachable > kOutOfReach || !enough(rows)) return std::numeric_limits<double>::infinity();
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points));
+    const int n = robot_.drives();
+    std::vector<int> order(blocks.size());
+    std::iota(order.begin(), order.end(), 0);
+    const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
+    double best = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd s(n);
+    for (int set = 0; set < (1 << (n - 1)); ++set) {
+      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
+      best = std::min(best, relative_residual(form, s));
+    }
+    return best;
+  }
+
+  [[nodiscard]] Points thinned(Index count) const {
+    Points few;
+    const Index N = points_.q.rows(), step = std::max<Index>(1, N / count);
+    for (Index k = 0; k < N; k += step) few.at.push_back(points_.at[static_cast<std::size_t>(k)]);
+    const auto pick = [&](const Eigen::MatrixXd& all) {
+      Eigen::MatrixXd some(static_cast<Index>(few.at.size()), all.cols());
+      for (Index k = 0; k < some.rows(); ++k) some.row(k) = all.row(k * step);
+      return some;
+    };
+    few.q = pick(points_.q);
+    few.qd = pick(points_.qd);
+    few.qdd = pick(points_.qdd);
+    few.tau = pick(points_.tau);
+    return few;
+  }
+
+  /// Those that explain the log clearly better than as it is, the one with the fewest changes first.
+  [[nodiscard]] std::vector<Explanation> winners(double as_given) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Explanation& e : all_) least = std::min(least, e.residual);
+    std::vector<Explanation> out;
+    if (least > kWins * as_given || least > kSoundWinner) return out;
+    for (const Explanation& e : all_) {
+      if (e.residual < kAlike * least + 0.002) out.push_back(e);
+    }
+    std::sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {
+      return a.changes != b.changes ? a.changes < b.changes : a.residual < b.residual;
+    });
+    // Searches end near one another: of the same words the best.
+    std::vector<Explanation> distinct;
+    for (const Explanation& e : out) {
+      if (std::none_of(distinct.begin(), distinct.end(), [&](const Explanation& d) {
+            return d.words == e.words || (d.key == e.key && d.drive == e.drive && is_search(d.key));
+          }))
+        distinct.push_back(e);
+    }
+    out = std::move(distinct);
+    const double fewest = out.front().changes;
+    out.erase(std::remove_if(out.begin(), out.end(), [&](const Explanation& e) { return e.changes > fewest + 0.5; }), out.end());
+    return out;
+  }
+
+  static bool is_search(const std::string& key) {
+    return key == "position_scale" || key == "position_zero";
+  }
+
+  const Robot& robot_;
+  const BaseParameters& base_;
+  const Points& points_;
+  double unreachable_ = 0, alone_ = 0;
+  std::vector<Explanation> all_;
+};
+
+}  // namespace
+
+Judgement judge(const Robot& robot, const BaseParameters& base, const Points& points) {
+  return Judge(robot, base, points).run();
+}
+
+}  // namespace deltadyn::gate

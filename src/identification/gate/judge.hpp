@@ -1,0 +1,36 @@
+#pragma once
+
+/// \file
+/// All hypotheses about signs, order, units and zeros of positions and torques, judged together: the one whose residual falls most,
+/// and to that of a sound fit, wins; others that explain as much are said beside it.
+
+#include <string>
+#include <vector>
+
+#include "readings.hpp"
+#include "torque_form.hpp"
+
+namespace deltadyn::gate {
+
+/// One way to read the log: positions by `reading`, torque of drive j is factor_j times column assignment[j].
+struct Explanation {
+  Reading reading;
+  std::vector<int> assignment;
+  Eigen::VectorXd factor;
+  double residual = 1;     ///< relative, over all drives
+  double unreachable = 0;  ///< share of the poses
+  double changes = 0;
+  std::string key, words, mend;
+  int drive = -1;
+  double value = 0, std = 0;  ///< of a scale
+};
+
+struct Judgement {
+  Explanation as_given;
+  bool sound = true;                 ///< as given
+  std::vector<Explanation> winners;  ///< empty: nothing explains the log clearly better than as it is
+};
+
+[[nodiscard]] Judgement judge(const Robot& robot, const BaseParameters& base, const Points& points);
+
+}  // namespace deltadyn::gate

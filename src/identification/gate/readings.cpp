@@ -1,0 +1,184 @@
+#include "readings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <numeric>
+
+namespace deltadyn::gate {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<int> limbs_of(const RobotDescription& robot) {
+  std::vector<int> limbs(robot.limbs.size());
+  std::iota(limbs.begin(), limbs.end(), 0);
+  return limbs;
+}
+
+/// Wrong signs of single positions, of several limbs, of all of them, of the yaw.
+void add_signs(const RobotDescription& robot, std::vector<PositionHypothesis>& out) {
+  const int n = robot.drives();
+  for (int set = 1; set < (1 << n); ++set) {
+    PositionHypothesis h;
+    h.reading = Reading::as_given(n);
+    std::vector<int> drives;
+    for (int j = 0; j < n; ++j) {
+      if ((set >> j & 1) == 0) continue;
+      h.reading.factor(j) = -1;
+      drives.push_back(j);
+    }
+    h.key = "position_sign";
+    h.words = fmt::format("the position of {} has the wrong sign", drives_in_words(drives, n));
+    h.mend = "turn the sign of the column (delta-log import: sign = -1 in the map), or the direction of counting in the drive";
+    h.drive = drives.size() == 1 ? drives.front() : -1;
+    // All limbs alike is one convention, not several faults.
+    const bool all_limbs = drives.size() == robot.limbs.size() && drives.back() < static_cast<int>(robot.limbs.size());
+    h.changes = drives.size() == static_cast<std::size_t>(n) || all_limbs ? 1.0 : static_cast<double>(drives.size());
+    out.push_back(std::move(h));
+  }
+}
+
+/// Position columns of other drives.
+void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& out) {
+  const int n = robot.drives();
+  std::vector<int> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  while (std::next_permutation(order.begin(), order.end())) {
+    PositionHypothesis h;
+    h.reading = Reading::as_given(n);
+    h.reading.source = order;
+    int moved = 0;
+    for (int j = 0; j < n; ++j) moved += order[static_cast<std::size_t>(j)] != j ? 1 : 0;
+    h.key = "position_order";
+    std::string columns;
+    for (const int j : order) columns += fmt::format("{}{}", columns.empty() ? "" : ", ", j + 1);
+    h.words = fmt::format("the positions are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
+    h.mend = "put the position columns in the order of the limbs, counter-clockwise from above (limb 1 on +x)";
+    h.changes = moved;
+    out.push_back(std::move(h));
+  }
+}
+
+std::string unit_in_words(const RobotDescription& robot, int drive, double factor, double tolerance) {
+  struct Unit {
+    double factor;
+    const char* words;
+  };
+  static const std::vector<Unit> angles = {{kPi / 180, "degrees"}, {2 * kPi, "turns"},
+                                           {1e-3, "mrad"},         {180 / kPi, "rad converted twice"},
+                                           {kPi / 200, "gon"},     {1.0 / 60 * kPi / 180, "minutes of arc"}};
+  static const std::vector<Unit> lengths = {
+      {1e-3, "millimetres"}, {1e-2, "centimetres"}, {1e-6, "micrometres"}, {0.0254, "inches"}, {1e3, "kilometres"}};
+  const bool turns = robot.kind_of_drive(drive) == DriveKind::revolute;
+  for (const Unit& unit : turns ? angles : lengths) {
+    if (std::abs(factor / unit.factor - 1) < std::max(tolerance, 0.01)) return unit.words;
+  }
+  return "";
+}
+
+PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& robot, double value, double tolerance) {
+  PositionHypothesis h;
+  h.reading = Reading::as_given(robot.drives());
+  for (const int j : family.drives) h.reading.factor(j) = value;
+  h.key = family.key;
+  h.changes = family.changes;
+  h.drive = family.drives.size() == 1 ? family.drives.front() : -1;
+  const std::string who = drives_in_words(family.drives, robot.drives());
+  const std::string unit = unit_in_words(robot, family.drives.front(), value, tolerance);
+  if (!unit.empty()) {
+    h.words = fmt::format("the position of {} looks like {}", who, unit);
+    h.mend = robot.kind_of_drive(family.drives.front()) == DriveKind::revolute
+                 ? "name the columns with their unit (q1_deg ...), or convert them to rad"
+                 : "convert the columns to m";
+    return h;
+  }
+  const double ratio = 1 / value;
+  const double whole = std::round(ratio);
+  const bool gear = ratio > 1.5 && std::abs(ratio / whole - 1) < std::max(tolerance, 0.01);
+  h.words = fmt::format("the position of {} is {:.4g} times the joint's: motor side of a gear{}?", who, gear ? whole : ratio,
+                        gear ? "" : ", or another unit");
+  h.mend = "divide the positions by the gear ratio and multiply the torque by it (delta-log import: gear_ratio in the map)";
+  return h;
+}
+
+}  // namespace
+
+std::string drives_in_words(const std::vector<int>& drives, int all) {
+  if (static_cast<int>(drives.size()) == all && all > 1) return "all drives";
+  std::string text = drives.size() == 1 ? "drive " : "drives ";
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    text += fmt::format("{}{}", k == 0 ? "" : (k + 1 == drives.size() ? " and " : ", "), drives[k] + 1);
+  }
+  return text;
+}
+
+Reading compose(const Reading& outer, const Reading& inner) {
+  Reading out = outer;
+  for (std::size_t j = 0; j < outer.source.size(); ++j) {
+    const auto from = static_cast<std::size_t>(outer.source[j]);
+    const auto at = static_cast<Eigen::Index>(j), source = static_cast<Eigen::Index>(from);
+    out.source[j] = inner.source[from];
+    out.factor(at) = outer.factor(at) * inner.factor(source);
+    out.offset(at) = outer.factor(at) * inner.offset(source) + outer.offset(at);
+  }
+  return out;
+}
+
+std::vector<PositionHypothesis> position_hypotheses(const RobotDescription& robot) {
+  std::vector<PositionHypothesis> out;
+  add_signs(robot, out);
+  if (!robot.parts.empty()) add_orders(robot, out);
+  return out;
+}
+
+std::vector<PositionFamily> position_families(const RobotDescription& robot) {
+  std::vector<PositionFamily> out;
+  if (robot.parts.empty()) return out;
+  const std::vector<int> limbs = limbs_of(robot);
+  std::vector<double> factors;
+  for (double f = 1.0 / 400; f < 400; f *= 1.05) {
+    if (f < 0.8 || f > 1.25) factors.push_back(f);
+  }
+  out.push_back({"position_scale", limbs, factors, true, 0.05, {}, 1});
+  for (const int limb : limbs) out.push_back({"position_scale", {limb}, factors, true, 0.05, {}, 1.5});
+  if (robot.drive_kind != DriveKind::revolute) return out;
+  std::vector<double> angles;
+  for (int degrees = -180; degrees < 180; degrees += 10) angles.push_back(degrees * kPi / 180);
+  out.push_back({"position_zero", limbs, angles, false, 10 * kPi / 180, {1}, 1.2});
+  out.push_back({"position_zero", limbs, angles, false, 10 * kPi / 180, {-1}, 1.3});
+  for (const int limb : limbs) out.push_back({"position_zero", {limb}, angles, false, 10 * kPi / 180, {1}, 1.6});
+  return out;
+}
+
+PositionHypothesis member(const PositionFamily& family, const RobotDescription& robot, double value, double tolerance) {
+  if (family.geometric) return scaled(family, robot, value, tolerance);
+  PositionHypothesis h;
+  h.reading = Reading::as_given(robot.drives());
+  const double sign = family.sign.front();
+  for (const int j : family.drives) {
+    h.reading.factor(j) = sign;
+    h.reading.offset(j) = value;
+  }
+  h.key = family.key;
+  h.changes = family.changes;
+  h.drive = family.drives.size() == 1 ? family.drives.front() : -1;
+  double degrees = value * 180 / kPi;
+  const double quarter = std::round(degrees / 90) * 90;
+  const bool right_angle = std::abs(degrees - quarter) < std::max(1.0, tolerance * 180 / kPi);
+  if (right_angle) degrees = quarter;
+  const std::string who = drives_in_words(family.drives, robot.drives());
+  h.words =
+      sign > 0
+          ? fmt::format("the zero of the angle of {} is off: {:+.1f} deg must be added", who, degrees)
+          : fmt::format(
+                "the angle of {} counts upwards{}", who,
+                degrees == 0 ? "" : fmt::format(" from another zero ({:.1f} deg minus the recorded angle is right)", degrees));
+  h.mend = fmt::format("arm angles count from horizontal outwards, positive down: use {} {} q",
+                       fmt::format("{:.4g} rad", right_angle ? degrees * kPi / 180 : value), sign > 0 ? "+" : "-");
+  return h;
+}
+
+}  // namespace deltadyn::gate

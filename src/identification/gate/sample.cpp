@@ -1,0 +1,156 @@
+#include "sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "deltadyn/signal/differentiate_log.hpp"
+#include "deltadyn/signal/reversal_mask.hpp"
+
+namespace deltadyn::gate {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kMargin = 1.8;     // periods of the band that either end of a stretch loses to the filters
+constexpr double kSearch_s = 0.06;  // further margin: delays are looked for so far
+constexpr double kPerPeriod = 13;   // grid points a period of the band
+// The motion's own filter ends well above the Gaussian that torque and regressor share: what it takes off the regressor alone would
+// look like a lag.
+constexpr double kMotionRatio = 2.0;
+constexpr Index kFewestSamples = 60;  // of a stretch
+constexpr Index kHarmlessRun = 3;     // filled samples in a row that a cubic bridges well enough for a hypothesis
+
+/// Rows [from, from + count) of a log, without derivatives.
+Log piece_of(const Log& log, Index from, Index count) {
+  Log piece;
+  piece.file = log.file;
+  piece.t_s = log.t_s.segment(from, count);
+  piece.q = log.q.middleRows(from, count);
+  piece.tau = log.tau.middleRows(from, count);
+  if (!log.filled.empty()) piece.filled.assign(log.filled.begin() + from, log.filled.begin() + from + count);
+  return piece;
+}
+
+/// Marks the runs of filled samples that are too long to be harmless.
+std::vector<char> spoilt_samples(const Log& piece) {
+  std::vector<char> spoilt(static_cast<std::size_t>(piece.samples()), 0);
+  for (Index begin = 0; begin < piece.samples();) {
+    Index end = begin;
+    while (end < piece.samples() && piece.is_filled(end)) ++end;
+    if (end - begin >= kHarmlessRun) std::fill(spoilt.begin() + begin, spoilt.begin() + end, 1);
+    begin = end + 1;
+  }
+  return spoilt;
+}
+
+/// Every `factor`-th row of a Gaussian mean over about one step of the coarse grid.
+Eigen::MatrixXd thin(const Eigen::MatrixXd& columns, Index factor) {
+  if (factor == 1) return columns;
+  const double sigma = 0.6 * static_cast<double>(factor);
+  const auto reach = static_cast<Index>(std::ceil(4 * sigma));
+  Eigen::VectorXd weight(2 * reach + 1);
+  for (Index k = -reach; k <= reach; ++k) weight(k + reach) = std::exp(-0.5 * std::pow(static_cast<double>(k) / sigma, 2));
+  weight /= weight.sum();
+  Eigen::MatrixXd out((columns.rows() + factor - 1) / factor, columns.cols());
+  for (Index row = 0; row < out.rows(); ++row) {
+    out.row(row).setZero();
+    for (Index k = -reach; k <= reach; ++k) {
+      const Index at = std::clamp<Index>(row * factor + k, 0, columns.rows() - 1);
+      out.row(row) += weight(k + reach) * columns.row(at);
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd every(const Eigen::MatrixXd& columns, Index factor) {
+  Eigen::MatrixXd out((columns.rows() + factor - 1) / factor, columns.cols());
+  for (Index row = 0; row < out.rows(); ++row) out.row(row) = columns.row(row * factor);
+  return out;
+}
+
+Stretch stretch_of(const Log& piece, int log, double band_hz) {
+  const double rate_hz = 1.0 / piece.sample_time_s();
+  const double cutoff_hz = std::min(kMotionRatio * band_hz, 0.4 * rate_hz);
+  const DriveMotion motion = differentiate_log(piece, cutoff_hz, 4, kMargin / band_hz);
+  const Index factor = std::max<Index>(1, static_cast<Index>(rate_hz / (kPerPeriod * band_hz)));
+  Stretch out;
+  out.log = log;
+  out.step_s = static_cast<double>(factor) / rate_hz;
+  out.q = every(motion.q, factor);
+  out.qd = every(motion.qd, factor);
+  out.qdd = every(motion.qdd, factor);
+  out.tau = thin(piece.tau, factor);
+  out.first = (motion.first + factor - 1) / factor;
+  out.last = std::min<Index>(out.points(), motion.last / factor);
+  const std::vector<char> spoilt = spoilt_samples(piece);
+  out.spoilt.assign(static_cast<std::size_t>(out.points()), 0);
+  for (Index k = 0; k < piece.samples(); ++k) {
+    if (spoilt[static_cast<std::size_t>(k)] != 0)
+      out.spoilt[static_cast<std::size_t>(std::min(k / factor, out.points() - 1))] = 1;
+  }
+  return out;
+}
+
+}  // namespace
+
+double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options) {
+  double rate_hz = 1e300;
+  for (const Log& piece : pieces) rate_hz = std::min(rate_hz, 1.0 / piece.sample_time_s());
+  const double highest = std::min(options.highest_band_hz, 0.15 * rate_hz);
+  const double lowest = std::min(highest, options.lowest_band_hz);
+  const Index drives = pieces.front().drives();
+  // Strongest acceleration of each drive, seen through the lowest filter, and the noise beside it.
+  Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(drives), noise = acceleration;
+  for (const Log& piece : pieces) {
+    const DriveMotion motion = differentiate_log(piece, lowest, 4, 0.0);
+    for (Index j = 0; j < drives; ++j) {
+      const double rms = std::sqrt(motion.qdd.col(j).squaredNorm() / static_cast<double>(motion.qdd.rows()));
+      acceleration(j) = std::max(acceleration(j), rms);
+      noise(j) = std::max(noise(j), position_noise(piece.q.col(j)));
+    }
+  }
+  double cutoff = highest;
+  const auto too_noisy = [&](double hz) {
+    for (Index j = 0; j < drives; ++j) {
+      if (derivative_noise(noise(j), rate_hz, hz, 4, 2) > options.acceleration_noise * acceleration(j)) return true;
+    }
+    return false;
+  };
+  while (cutoff > lowest && too_noisy(cutoff)) cutoff = std::max(lowest, cutoff / 1.26);
+  return cutoff;
+}
+
+Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
+  std::vector<Log> pieces;
+  std::vector<int> owner;
+  const double margin_s = kMargin / options.highest_band_hz + kSearch_s;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const Log& log = logs[l];
+    if (log.samples() < kFewestSamples) continue;
+    const double rate_hz = 1.0 / log.sample_time_s();
+    const double grid_hz = std::min(rate_hz, kPerPeriod * options.highest_band_hz);
+    const double share_s = static_cast<double>(options.points) / static_cast<double>(logs.size()) / grid_hz;
+    const double length_s = static_cast<double>(log.samples()) / rate_hz;
+    const int count = length_s <= 1.5 * share_s ? 1 : options.stretches;
+    const auto samples = count == 1 ? log.samples() : static_cast<Index>((share_s / count + 2 * margin_s) * rate_hz);
+    for (int k = 0; k < count; ++k) {
+      const Index from = count == 1 ? 0 : k * (log.samples() - samples) / (count - 1);
+      pieces.push_back(piece_of(log, from, samples));
+      owner.push_back(static_cast<int>(l));
+    }
+  }
+  Sample out;
+  if (pieces.empty()) return out;
+  out.band_hz = noise_limited_band_hz(pieces, options);
+  out.sigma_s = std::sqrt(2 * std::numbers::ln2) / (2 * std::numbers::pi * out.band_hz);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const double length_s = static_cast<double>(pieces[k].samples()) * pieces[k].sample_time_s();
+    if (length_s < 2 * (kMargin / out.band_hz + kSearch_s) + 10 / out.band_hz) continue;
+    out.stretches.push_back(stretch_of(pieces[k], owner[k], out.band_hz));
+  }
+  return out;
+}
+
+}  // namespace deltadyn::gate

@@ -1,0 +1,48 @@
+#pragma once
+
+/// \file
+/// A small part of the logs, ready for the hypotheses of the gate: whatever their length, some ten seconds of motion are enough to
+/// see a wrong sign, a delay or a unit.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/signal/log.hpp"
+
+namespace deltadyn::gate {
+
+/// Consecutive samples of one log on a grid of their own, some 13 points a period of the band.
+struct Stretch {
+  int log = 0;                       ///< place of the log in the list
+  double step_s = 0;                 ///< of the grid
+  Eigen::MatrixXd q, qd, qdd;        ///< N x drives, low-passed at twice Sample::band_hz
+  Eigen::MatrixXd tau;               ///< N x drives; a mean over the grid's step where the log is sampled finer
+  std::vector<char> spoilt;          ///< 1: in a run of samples that the reader filled in or marked
+  Eigen::Index first = 0, last = 0;  ///< [first, last): not disturbed by the ends of the filter
+
+  [[nodiscard]] Eigen::Index points() const { return q.rows(); }
+};
+
+struct Sample {
+  std::vector<Stretch> stretches;
+  double band_hz = 0;  ///< -6 dB point of the Gaussian low pass that regressor and torque share
+  double sigma_s = 0;  ///< of that Gaussian
+};
+
+struct SampleOptions {
+  Eigen::Index points = 16000;  ///< of all stretches together, about
+  int stretches = 12;           ///< a log that is longer than its share
+  double highest_band_hz = 40;
+  double lowest_band_hz = 8;
+  double acceleration_noise = 0.1;  ///< the band falls until the noise of the acceleration is below this share of its rms
+};
+
+/// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the log with
+/// the strongest motion. No torque takes part, so that a fault of the torque cannot move it.
+[[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options);
+
+/// Logs too short for a stretch are left out; the result may be empty.
+[[nodiscard]] Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options = {});
+
+}  // namespace deltadyn::gate

@@ -1,0 +1,107 @@
+#include "torque_form.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace deltadyn::gate {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kRidge = 1e-11;  // of the scaled normal equations: directions that the motion does not show stay finite
+
+/// Columns scaled to norm 1, so that the ridge means the same for all.
+Eigen::LDLT<Eigen::MatrixXd> factorise(const Eigen::MatrixXd& A, Eigen::VectorXd& scale) {
+  scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  for (Index k = 0; k < scale.size(); ++k) {
+    if (A(k, k) <= 0) scale(k) = 0;
+  }
+  Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  return scaled.ldlt();
+}
+
+}  // namespace
+
+std::vector<TorqueBlock> fold_torques(const Rows& rows, const std::vector<Eigen::MatrixXd>& tau) {
+  std::vector<TorqueBlock> blocks;
+  for (std::size_t j = 0; j < rows.drives.size(); ++j) {
+    Eigen::MatrixXd Y = rows.drives[j].Y, t = tau[j];
+    if (Y.rows() > 0) {
+      Y.rowwise() -= Eigen::RowVectorXd(Y.colwise().mean());
+      t.rowwise() -= Eigen::RowVectorXd(t.colwise().mean());
+    }
+    TorqueBlock block;
+    block.YtY = Y.transpose() * Y;
+    block.Ytau = Y.transpose() * t;
+    block.tau2 = t.colwise().squaredNorm().transpose();
+    block.rows = Y.rows();
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+Eigen::MatrixXd residual_form(const std::vector<TorqueBlock>& blocks, const std::vector<int>& assignment,
+                              const Eigen::VectorXd& factor) {
+  const auto n = static_cast<Index>(blocks.size());
+  const Index B = blocks.front().YtY.cols();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(B, B), rhs(B, n), form = Eigen::MatrixXd::Zero(n, n);
+  for (Index j = 0; j < n; ++j) {
+    const TorqueBlock& block = blocks[static_cast<std::size_t>(j)];
+    const int column = assignment[static_cast<std::size_t>(j)];
+    const double w2 = 1.0 / std::max(block.tau2(column), 1e-300);
+    A += w2 / (factor(j) * factor(j)) * block.YtY;
+    rhs.col(j) = w2 / factor(j) * block.Ytau.col(column);
+    form(j, j) = 1.0;
+  }
+  Eigen::VectorXd scale;
+  const auto solver = factorise(A, scale);
+  rhs = scale.asDiagonal() * rhs;
+  const Eigen::MatrixXd solution = solver.solve(rhs);
+  form.noalias() -= rhs.transpose() * solution;
+  return form;
+}
+
+double relative_residual(const Eigen::MatrixXd& form, const Eigen::VectorXd& s) {
+  return std::sqrt(std::max(0.0, s.dot(form * s)) / std::max(s.squaredNorm(), 1e-300));
+}
+
+Eigen::VectorXd own_residuals(const std::vector<TorqueBlock>& blocks) {
+  Eigen::VectorXd out(static_cast<Index>(blocks.size()));
+  for (Index j = 0; j < out.size(); ++j) {
+    const TorqueBlock& block = blocks[static_cast<std::size_t>(j)];
+    Eigen::VectorXd scale;
+    const auto solver = factorise(block.YtY, scale);
+    const Eigen::VectorXd rhs = scale.asDiagonal() * block.Ytau.col(j);
+    const double left = block.tau2(j) - rhs.dot(Eigen::VectorXd(solver.solve(rhs)));
+    out(j) = std::sqrt(std::max(0.0, left) / std::max(block.tau2(j), 1e-300));
+  }
+  return out;
+}
+
+Factor best_factor(const std::vector<TorqueBlock>& blocks, const std::vector<int>& assignment, int drive) {
+  const auto n = static_cast<Index>(blocks.size());
+  Eigen::VectorXd factor = Eigen::VectorXd::Ones(n), s = factor;
+  Factor out;
+  // A drive counts against its own torque: with every new factor the weights follow.
+  for (int pass = 0; pass < 8; ++pass) {
+    const Eigen::MatrixXd form = residual_form(blocks, assignment, factor.cwiseAbs());
+    const double diagonal = std::max(form(drive, drive), 1e-12);
+    s(drive) = 0;
+    const double step = -form.row(drive).dot(s) / diagonal;
+    s(drive) = step;
+    const double before = factor(drive);
+    factor(drive) = std::abs(before) * step;
+    out.value = factor(drive);
+    // Every drive's rows weigh 1 / rows in the form, so one row's noise has this share of the residual.
+    const double rows = static_cast<double>(std::max<Index>(1, blocks[static_cast<std::size_t>(drive)].rows));
+    out.std = std::abs(before) * std::sqrt(std::max(0.0, s.dot(form * s)) / static_cast<double>(n) / rows / diagonal);
+    s(drive) = step < 0 ? -1 : 1;
+    if (std::abs(factor(drive)) < 1e-9 || std::abs(out.value - before) < 1e-6 * std::abs(before)) break;
+  }
+  return out;
+}
+
+}  // namespace deltadyn::gate

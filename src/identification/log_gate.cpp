@@ -1,0 +1,261 @@
+#include "deltadyn/identification/log_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/torque_timing_mend.hpp"
+
+#include "gate/given_derivatives.hpp"
+#include "gate/judge.hpp"
+#include "gate/plausibility.hpp"
+#include "gate/torque_timing.hpp"
+
+namespace deltadyn {
+
+namespace {
+
+using namespace gate;
+using Eigen::Index;
+
+constexpr Index kPoints = 500;         // of all logs, for signs, orders and units
+constexpr double kLeastDelay = 0.05;   // of a sample: less is no matter
+constexpr double kSoundFit = 0.05;     // relative residual below which a delay is certain enough to be removed
+constexpr double kOutOfReach = 0.01;   // share of poses
+constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
+
+/// The gate at work on one set of logs.
+class Gate {
+ public:
+  Gate(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
+       const GateOptions& options)
+      : robot_(robot), prior_(prior), prior_std_(prior_std), options_(options) {
+    out_.logs = std::move(logs);
+  }
+
+  GateResult run() {
+    for (const Log& log : out_.logs) {
+      if (log.q.cols() != robot_.drives() || log.tau.cols() != robot_.drives())
+        return std::move(out_);  // others refuse it better
+      add(examine_derivatives(robot_.description(), log, options_.given_derivatives));
+    }
+    add(limit_findings(robot_.description(), out_.logs));
+    base_ = find_base_parameters(robot_);
+    if (options_.given_derivatives) {
+      judge_positions(points_as_given());
+      if (!out_.stop()) judge_scale(points_as_given());
+      return std::move(out_);
+    }
+    const Sample sample = take_sample(out_.logs);
+    if (sample.stretches.empty()) return std::move(out_);
+    const Points points = pick_points(sample, kPoints);
+    judge_positions(points);
+    if (out_.stop()) return std::move(out_);
+    judge_timing(sample);
+    judge_scale(pick_points(take_sample(out_.logs), kPoints));
+    return std::move(out_);
+  }
+
+ private:
+  void add(std::vector<LogFinding> more) {
+    out_.findings.insert(out_.findings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+
+  /// Rows of the logs as they are, evenly thinned.
+  [[nodiscard]] Points points_as_given() const {
+    Points out;
+    Index all = 0;
+    for (const Log& log : out_.logs) all += log.qd.size() > 0 && log.qdd.size() > 0 ? log.samples() : 0;
+    const Index step = std::max<Index>(1, all / (2 * kPoints));
+    std::vector<std::pair<const Log*, Index>> rows;
+    for (const Log& log : out_.logs) {
+      if (log.qd.size() == 0 || log.qdd.size() == 0) continue;
+      for (Index k = 0; k < log.samples(); k += step) rows.emplace_back(&log, k);
+    }
+    const auto N = static_cast<Index>(rows.size());
+    for (Eigen::MatrixXd* m : {&out.q, &out.qd, &out.qdd, &out.tau}) m->resize(N, robot_.drives());
+    for (Index k = 0; k < N; ++k) {
+      const auto& [log, row] = rows[static_cast<std::size_t>(k)];
+      out.q.row(k) = log->q.row(row);
+      out.qd.row(k) = log->qd.row(row);
+      out.qdd.row(k) = log->qdd.row(row);
+      out.tau.row(k) = log->tau.row(row);
+      out.at.push_back({0, k});
+    }
+    return out;
+  }
+
+  void judge_positions(const Points& points) {
+    const Judgement judgement = judge(robot_, base_, points);
+    LogFinding f;
+    f.level = FindingLevel::fault;
+    f.value = judgement.as_given.residual;
+    if (judgement.winners.empty()) {
+      tell_unexplained(judgement);
+      return;
+    }
+    const Explanation& first = judgement.winners.front();
+    f.key = first.key;
+    f.drive = first.drive;
+    if (first.value != 0) {
+      f.value = first.value;
+      f.std = first.std;
+    }
+    f.text =
+        fmt::format("{}: residual {} as given, {:.2g} % so", first.words, as_given_in_words(judgement), 100 * first.residual);
+    for (std::size_t k = 1; k < std::min<std::size_t>(3, judgement.winners.size()); ++k) {
+      f.text += fmt::format("{}{}", k == 1 ? "; as well explained: " : "; or: ", judgement.winners[k].words);
+    }
+    f.mend = first.mend;
+    out_.findings.push_back(std::move(f));
+  }
+
+  static std::string as_given_in_words(const Judgement& judgement) {
+    std::string text = fmt::format("{:.2g} %", 100 * judgement.as_given.residual);
+    if (judgement.as_given.unreachable > kOutOfReach)
+      text += fmt::format(" and {:.2g} % of the poses out of reach", 100 * judgement.as_given.unreachable);
+    return text;
+  }
+
+  /// No hypothesis of the list explains the log, but it is not that of this robot either.
+  void tell_unexplained(const Judgement& judgement) {
+    LogFinding f;
+    f.value = judgement.as_given.residual;
+    if (judgement.as_given.unreachable > kOutOfReach) {
+      f.level = FindingLevel::fault;
+      f.key = "pose";
+      f.value = judgement.as_given.unreachable;
+      f.text = fmt::format(
+          "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives explains it",
+          100 * judgement.as_given.unreachable);
+      f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
+    } else if (judgement.as_given.residual > kUnexplained) {
+      f.level = FindingLevel::warning;
+      f.key = "unexplained";
+      f.text = fmt::format(
+          "{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, order, unit or zero of the drives",
+          100 * judgement.as_given.residual);
+      f.mend = "check that the robot file belongs to this machine, and look at the raw signals";
+    } else {
+      return;
+    }
+    out_.findings.push_back(std::move(f));
+  }
+
+  void judge_timing(const Sample& sample) {
+    const Rows rows = low_passed_rows(robot_, base_, sample, Reading::as_given(robot_.drives()));
+    std::vector<double> least;
+    for (const Log& log : out_.logs) least.push_back(kLeastDelay * log.sample_time_s());
+    const Timing timing = estimate_timing(sample, rows, least);
+    if (!timing.significant) {
+      LogFinding f;
+      f.key = "delay";
+      f.value = 0;
+      f.std = timing.delay_std.maxCoeff();
+      f.unit = "s";
+      f.text = fmt::format("no delay between torque and position ({:.2g} ms)", 1e3 * f.std);
+      if (f.std > 0) out_.findings.push_back(std::move(f));
+      return;
+    }
+    const bool certain = timing.rms_after < kSoundFit || timing.rms_after < 0.5 * timing.rms_before;
+    if (!certain) return;
+    const bool remove = !options_.keep_delay;
+    tell_timing(timing.delay_s, timing.delay_std, timing, "delay", remove);
+    tell_timing(timing.lag_s, timing.lag_std, timing, "lag", remove);
+    if (remove) mend(timing);
+  }
+
+  /// One finding for all drives and logs alike, else one for each that differs.
+  void tell_timing(const Eigen::MatrixXd& value, const Eigen::MatrixXd& std, const Timing& timing, const std::string& key,
+                   bool removed) {
+    const bool same_drives = (value.array().colwise() - value.col(0).array()).abs().maxCoeff() < 1e-9;
+    const bool same_logs = (value.array().rowwise() - value.row(0).array()).abs().maxCoeff() < 1e-9;
+    const Index L = same_logs ? 1 : value.rows(), n = same_drives ? 1 : value.cols();
+    for (Index l = 0; l < L; ++l) {
+      for (Index j = 0; j < n; ++j) {
+        if (value(l, j) == 0) continue;
+        LogFinding f;
+        f.level = removed ? FindingLevel::mended : FindingLevel::warning;
+        f.key = key;
+        if (!same_logs) f.file = out_.logs[static_cast<std::size_t>(l)].file;
+        if (!same_drives) f.drive = static_cast<int>(j);
+        f.value = value(l, j);
+        f.std = std(l, j);
+        f.unit = "s";
+        const std::string who = same_drives ? "torque" : fmt::format("torque of drive {}", j + 1);
+        f.text = fmt::format("{} ({:.2g} ms): {} (residual {:.2g} % with it, {:.2g} % without)",
+                             words_of_timing(key, who, value(l, j)), 1e3 * std(l, j), removed ? "removed" : "left in place",
+                             100 * timing.rms_before, 100 * timing.rms_after);
+        if (!removed) f.mend = "leave out --keep-delay, or mend the delay where the log is made";
+        out_.findings.push_back(std::move(f));
+      }
+    }
+  }
+
+  static std::string words_of_timing(const std::string& key, const std::string& who, double value) {
+    const double ms = 1e3 * std::abs(value);
+    if (key == "delay") return fmt::format("{} is {:.2f} ms {}", who, ms, value > 0 ? "late" : "early");
+    return value > 0 ? fmt::format("{} is behind a low pass of {:.2f} ms", who, ms)
+                     : fmt::format("{} is a command, which the motor follows with a lag of {:.2f} ms", who, ms);
+  }
+
+  void mend(const Timing& timing) {
+    for (std::size_t l = 0; l < out_.logs.size(); ++l) {
+      Log& log = out_.logs[l];
+      const double step = log.sample_time_s();
+      const auto row = static_cast<Index>(l);
+      double farthest = 0;
+      for (Index j = 0; j < log.drives(); ++j) {
+        const double delay = timing.delay_s(row, j), lag = timing.lag_s(row, j);
+        if (delay == 0 && lag == 0) continue;
+        log.tau.col(j) = mend_timing(log.tau.col(j), step, delay, lag);
+        farthest = std::abs(delay) > std::abs(farthest) ? delay : farthest;
+      }
+      // Where the moved torque reaches beyond the record, there is none.
+      const auto lost = std::min<Index>(log.samples(), static_cast<Index>(std::ceil(std::abs(farthest) / step)));
+      if (lost == 0) continue;
+      if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), 0);
+      if (farthest > 0) {
+        std::fill(log.filled.end() - lost, log.filled.end(), 1);
+      } else {
+        std::fill(log.filled.begin(), log.filled.begin() + lost, 1);
+      }
+    }
+  }
+
+  void judge_scale(const Points& points) {
+    if (prior_.size() != robot_.parameters() || prior_std_.size() != robot_.parameters()) return;
+    // An axis without a prior of its own has no masses to compare with: its simple shape is a stub.
+    if (robot_.description().parts.empty() && !options_.prior_given) return;
+    add(scale_findings(robot_.description(), estimate_scale(robot_, base_, points, prior_, prior_std_)));
+  }
+
+  const Robot& robot_;
+  const Eigen::VectorXd& prior_;
+  const Eigen::VectorXd& prior_std_;
+  GateOptions options_;
+  BaseParameters base_;
+  GateResult out_;
+};
+
+}  // namespace
+
+bool GateResult::fault() const {
+  return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) { return f.level == FindingLevel::fault; });
+}
+
+bool GateResult::stop() const {
+  return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
+    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort";
+  });
+}
+
+GateResult examine_logs(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
+                        const GateOptions& options) {
+  return Gate(robot, std::move(logs), prior, prior_std, options).run();
+}
+
+}  // namespace deltadyn

@@ -1,0 +1,113 @@
+#include "deltadyn/report/log_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/report/format.hpp"
+
+#include "drive_figures.hpp"
+
+namespace deltadyn {
+namespace {
+
+struct LevelWords {
+  const char* word;
+  Tone tone;
+};
+
+LevelWords words_of(FindingLevel level) {
+  switch (level) {
+    case FindingLevel::fine: return {"fine", Tone::plain};
+    case FindingLevel::mended: return {"mended", Tone::good};
+    case FindingLevel::warning: return {"warning", Tone::caution};
+    case FindingLevel::fault: return {"fault", Tone::bad};
+  }
+  return {"", Tone::plain};
+}
+
+std::string figure_of(const LogFinding& f) {
+  if (!std::isfinite(f.value)) return "–";
+  const std::string value = format_number(f.value, f.unit, 4);
+  return std::isfinite(f.std) ? fmt::format("{} ± {}", value, format_number(f.std, f.unit, 2)) : value;
+}
+
+}  // namespace
+
+Verdict verdict_of(const std::vector<LogFinding>& findings) {
+  Verdict verdict = Verdict::good;
+  for (const LogFinding& f : findings) {
+    if (f.level == FindingLevel::fault) return Verdict::bad;
+    if (f.level == FindingLevel::warning) verdict = Verdict::caution;
+  }
+  return verdict;
+}
+
+void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
+  Table table(
+      {{"", Align::left}, {"finding", Align::left}, {"figure"}, {"drive"}, {"log", Align::left}, {"what to do", Align::left}});
+  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
+    if (level == FindingLevel::fine && !with_fine) continue;
+    for (const LogFinding& f : findings) {
+      if (f.level != level) continue;
+      table.row({words_of(level).word, f.text, figure_of(f), f.drive < 0 ? "" : std::to_string(f.drive + 1),
+                 f.file.empty() ? "" : short_name(f.file), f.mend},
+                words_of(level).tone);
+    }
+  }
+  if (!table.empty()) report.table(table, "What the check of the logs found.");
+}
+
+void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings) {
+  if (std::all_of(findings.begin(), findings.end(), [](const LogFinding& f) { return f.level == FindingLevel::fine; })) return;
+  report.heading("Check of the logs");
+  add_finding_table(report, findings, false);
+}
+
+void weigh_findings(const std::vector<LogFinding>& findings, Assessment& assessment) {
+  for (const LogFinding& f : findings) {
+    if (f.level != FindingLevel::fault) continue;
+    assessment.verdict = Verdict::bad;
+    assessment.headline = "Do not use this result: the check of the logs found a fault (" + f.text + ").";
+    return;
+  }
+  for (const LogFinding& f : findings) {
+    // Derivatives in the file that nobody used are no matter to the result.
+    if (f.level != FindingLevel::warning || f.key == "rate" || f.key == "acceleration") continue;
+    if (assessment.verdict == Verdict::bad) return;
+    if (assessment.verdict == Verdict::good)
+      assessment.headline = "To be used with care: the check of the logs warns (" + f.text + ").";
+    assessment.verdict = Verdict::caution;
+    return;
+  }
+}
+
+std::string log_report(const Robot& robot, const std::vector<Log>& logs, const ReportContext& context) {
+  const RobotDescription& description = robot.description();
+  HtmlReport report("Check of logs of " + description.name,
+                    fmt::format("{}, {} {}, {} {}", description.type, description.drives(),
+                                description.drives() == 1 ? "drive" : "drives", logs.size(), logs.size() == 1 ? "log" : "logs"));
+  const Verdict verdict = verdict_of(context.findings);
+  std::vector<std::string> lines;
+  for (const LogFinding& f : context.findings) {
+    if (f.level == FindingLevel::fault || f.level == FindingLevel::warning) lines.push_back(f.text);
+  }
+  report.verdict(verdict,
+                 verdict == Verdict::good      ? "Nothing was found that speaks against these logs."
+                 : verdict == Verdict::caution ? "These logs can be used with care."
+                                               : "A model from these logs is not to be trusted.",
+                 lines);
+  report.heading("Findings");
+  add_finding_table(report, context.findings, true);
+  report.heading("Data");
+  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  for (const Log& log : logs) {
+    facts.emplace_back("Log", fmt::format("{}: {} samples, {} Hz", log.file, format_count(log.samples()),
+                                          log.samples() > 1 ? format_number(1 / log.sample_time_s(), "", 4) : "–"));
+  }
+  report.facts(facts);
+  report.footer(context.command_line);
+  return report.str();
+}
+
+}  // namespace deltadyn

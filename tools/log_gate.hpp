@@ -1,0 +1,109 @@
+#pragma once
+
+/// \file
+/// The checks of logs inside the tools: run, printed first, written to the summary.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/io/summary.hpp"
+#include "deltadyn/report/log_report.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn::tools {
+
+/// All findings: those of the reader in the order of the logs, then those of the gate.
+inline std::vector<LogFinding> all_findings(const GateResult& gate) {
+  std::vector<LogFinding> all;
+  for (const Log& log : gate.logs) all.insert(all.end(), log.findings.begin(), log.findings.end());
+  all.insert(all.end(), gate.findings.begin(), gate.findings.end());
+  return all;
+}
+
+inline const char* level_word(FindingLevel level) {
+  switch (level) {
+    case FindingLevel::fine: return "fine";
+    case FindingLevel::mended: return "mended";
+    case FindingLevel::warning: return "warning";
+    case FindingLevel::fault: return "fault";
+  }
+  return "";
+}
+
+/// Findings as lines, the worst first; what is in order only if asked.
+inline void print_findings(const std::vector<LogFinding>& findings, bool with_fine) {
+  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
+    if (level == FindingLevel::fine && !with_fine) continue;
+    for (const LogFinding& f : findings) {
+      if (f.level != level) continue;
+      const bool bad = level == FindingLevel::fault || level == FindingLevel::warning;
+      std::FILE* to = bad ? stderr : stdout;
+      fmt::print(to, "check: {}: {}{}\n", level_word(level), f.file.empty() ? "" : f.file + ": ", f.text);
+      if (bad && !f.mend.empty()) fmt::print(to, "  mend: {}\n", f.mend);
+    }
+  }
+}
+
+/// Keys check_KEY, check_KEY_driveK with their standard deviations, and check_verdict. Of several findings with one key the worst
+/// counts, and among equals the first.
+inline void summarise_findings(const std::vector<LogFinding>& findings, Summary& out) {
+  FindingLevel worst = FindingLevel::fine;
+  std::vector<std::pair<std::string, FindingLevel>> written;
+  for (const LogFinding& f : findings) {
+    worst = std::max(worst, f.level);
+    const std::string key = "check_" + f.key + (f.drive >= 0 ? fmt::format("_drive{}", f.drive + 1) : "");
+    const auto before = std::find_if(written.begin(), written.end(), [&](const auto& w) { return w.first == key; });
+    if (before != written.end() && before->second >= f.level) continue;
+    if (before != written.end()) before->second = f.level;
+    if (before == written.end()) written.emplace_back(key, f.level);
+    if (std::isfinite(f.value)) {
+      out.add(key, f.value, f.unit);
+      if (std::isfinite(f.std)) out.add(key + "_std", f.std, f.unit);
+    } else {
+      out.add(key, level_word(f.level));
+    }
+  }
+  out.add("check_verdict", level_word(worst));
+}
+
+/// The flag and the work.
+class LogGate {
+ public:
+  void add_to(CLI::App& app) {
+    app.add_flag("--keep-delay", keep_delay_, "leave a delay between torque and position in the logs where one is found");
+  }
+
+  /// Checks and mends. Prints what was found, and adds it to the summary.
+  /// \param leave_delay  the tool weighs delays itself
+  GateResult run(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
+                 bool prior_given, bool given_derivatives, Summary& summary, bool leave_delay = false) const {
+    GateOptions options;
+    options.keep_delay = keep_delay_ || leave_delay;
+    options.given_derivatives = given_derivatives;
+    options.prior_given = prior_given;
+    GateResult result = examine_logs(robot, std::move(logs), prior, prior_std, options);
+    print_findings(all_findings(result), false);
+    summarise_findings(all_findings(result), summary);
+    return result;
+  }
+
+  /// Says that nothing is made of logs with such a fault.
+  static void refuse(const GateResult& gate) {
+    for (const LogFinding& f : gate.findings) {
+      if (f.level != FindingLevel::fault) continue;
+      fmt::print(stderr, "warning: Not to be trusted: {}. Nothing was computed from these logs.\n", f.text);
+      return;
+    }
+  }
+
+ private:
+  bool keep_delay_ = false;
+};
+
+}  // namespace deltadyn::tools
