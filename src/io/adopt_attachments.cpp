@@ -11,7 +11,7 @@
 namespace deltadyn::cad {
 namespace {
 
-constexpr double kClosure = 1e-5;    // of the strut's length: a pose of the CAD that closes to this is assembled
+constexpr double kClosure = 3e-4;    // of the strut's length: a pose of the CAD that closes to this is assembled
 constexpr double kDirection = 0.02;  // [rad] between the strut that closes and the line through its centre of mass
 constexpr double kDegenerate = 1e-3;
 constexpr double kFlat = 0.02;   // a strut this flat on the plane of the elbows is a tree whose passive joints are at zero
@@ -165,10 +165,13 @@ class Solver {
   std::optional<Attachments> by_closure() {
     const std::size_t k = first_known();
     const double length = length_of_known();
-    std::vector<double> candidates;
+    // Each of the two other limbs has two radii; where two of them are one, but for digits, their mean closes best.
+    std::vector<std::vector<double>> both;
     for (std::size_t i = 0; i < limbs_.size(); ++i)
-      if (i != k)
-        for (const double radius : radii(i, k, length)) candidates.push_back(radius);
+      if (i != k) both.push_back(radii(i, k, length));
+    std::vector<double> candidates;
+    for (const double a : both.front())
+      for (const double b : both.back()) candidates.push_back((a + b) / 2);
     // In a symmetric pose a plate wider than the elbows closes as well; the smaller one is meant.
     std::sort(candidates.begin(), candidates.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     const auto before = ends_;
@@ -249,7 +252,7 @@ class Solver {
     }
     result.note = fmt::format(
         "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m "
-        "by {}, and up is z of the root link",
+        "by {}, and up is z of the base's link",
         radius, how);
     return result;
   }

@@ -14,8 +14,8 @@
 namespace deltadyn::cad {
 namespace {
 
-constexpr double kParallel = 1e-3;  // [rad] directions of a CAD file
-constexpr double kAlike = 1e-4;     // lengths of the three limbs that differ by less, relative, are one length
+constexpr double kParallel = 5e-3;  // [rad] directions of a CAD file: struts 0.1 m apart, points with four digits
+constexpr double kAlike = 5e-4;     // lengths of the three limbs that differ by less, relative, are one length
 
 /// Nanometres: what is beyond is rounding of the CAD's matrices.
 double tidy(double value) {
@@ -42,7 +42,7 @@ class Placer {
     find_up();
     find_outwards();
     ends_ = attachments();
-    if (!ends_.assembled && up_.z() < 0) {
+    if (!ends_.assembled && up_.dot(upright()) < 0) {
       up_ = -up_;
       find_outwards();
       ends_ = attachments();
@@ -65,6 +65,13 @@ class Placer {
   }
   [[nodiscard]] std::string at(const Joint& joint) const {
     return fmt::format("{}, line {}, joint {}", tree_.where, joint.line, joint.name);
+  }
+
+  /// z of the link that carries the drives, or of the root where that one lies.
+  [[nodiscard]] Vec upright() const {
+    const robot_file::LinkPlace& base = tree_.links.at(parts_.limbs.front().drive->parent_link);
+    const Vec z = zero_pose(tree_)[static_cast<std::size_t>(base.body)].linear() * base.X_BL.linear().col(2);
+    return std::abs(z.dot(up_)) > 0.5 ? z : Vec(Vec::UnitZ());
   }
 
   [[nodiscard]] Attachments attachments() const {
@@ -119,7 +126,9 @@ class Placer {
       const Vec normal = limbs_[i].across.cross(limbs_[(i + 1) % 3].across);
       if (normal.norm() > widest.norm()) widest = normal;
     }
-    if (widest.norm() < 0.1) refuse("all parallelograms lie in the same direction, so the plate could turn", tree_.where, "");
+    if (widest.norm() < 0.1)
+      refuse("all parallelograms lie in the same direction, so the plate could turn", tree_.where,
+             "mend the rpy of the drives' joints");
     up_ = widest.normalized();
     for (std::size_t i = 0; i < 3; ++i)
       if (std::abs(limbs_[i].across.dot(up_)) > kParallel)
@@ -259,7 +268,7 @@ class Placer {
     } else {
       drive.sign = part.axis.dot(in.across) > 0 ? 1 : -1;
       const Vec arm = in.elbow - in.drive;
-      drive.offset = std::atan2(-arm.dot(up_), arm.dot(in.outwards));
+      drive.offset = tidy(std::atan2(-arm.dot(up_), arm.dot(in.outwards)));
       limb.p_WD = tidy(in_base(in.drive));
       limb.p_DE_0 = Vec(tidy(arm.norm()), 0, 0);
     }

@@ -19,7 +19,8 @@ using robot_file::Pose;
 using robot_file::UrdfTree;
 using Vec = Eigen::Vector3d;
 
-constexpr double kPoint = 1e-4;  // [m] joints nearer than this are one ball or universal joint; CAD files have 4 to 6 digits
+constexpr double kPoint =
+    5e-4;  // [m] joints nearer than this are one ball or universal joint; CAD files have 4 to 6 digits, parts hang ten joints deep
 
 struct Strut {
   std::string name;         ///< link

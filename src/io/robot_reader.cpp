@@ -24,6 +24,8 @@ using robot_file::Pose;
 using robot_file::UrdfTree;
 using Vec = Vector3<double>;
 
+constexpr const char* kMendTree =
+    "compare with a file of delta-model create, or take the file of a CAD program by delta-model adopt";
 constexpr double kTolerance = 1e-6;  // [m], [rad]: files by hand or from CAD have six digits
 
 std::string words(const Vec& v) {
@@ -55,7 +57,7 @@ class Reader {
     }
     for (const Joint* drive : drives_) robot_.limits.push_back(drive->limits);
     extension();
-    robot_.validate(tree_.where);
+    validate();
     inertials();
     return robot_;
   }
@@ -73,6 +75,24 @@ class Reader {
   }
   [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
 
+  /// A whole file in millimetres need not be mended by hand.
+  void validate() const {
+    try {
+      robot_.validate(tree_.where);
+    } catch (const Error& e) {
+      const bool all = !robot_.parts.empty() && std::all_of(robot_.limbs.begin(), robot_.limbs.end(), [](const auto& limb) {
+        return limb.strut > plausibility::kLength.highest;
+      });
+      if (!all) throw;
+      throw Error(
+          e.problem(), e.where(),
+          fmt::format("{}; a file that is in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o "
+                      "robot.urdf",
+                      e.mend(), tree_.where),
+          e.code());
+    }
+  }
+
   // --- access and rules for single joints -------------------------------------------------------
   [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
   [[nodiscard]] const Joint& joint(int index) const { return tree_.joints[static_cast<std::size_t>(index)]; }
@@ -81,13 +101,14 @@ class Reader {
   const Joint& only_joint(int index, const std::string& rule) const {
     const robot_file::Body& b = body(index);
     if (b.joints.size() != 1)
-      refuse(fmt::format("{} moving joints hang on this link, but {}", b.joints.size(), rule), at(b.name),
-             "compare with a file of delta-model create");
+      refuse(fmt::format("{} moving joints hang on this link, but {}", b.joints.size(), rule), at(b.name), kMendTree);
     return joint(b.joints[0]);
   }
 
   void require_axis(const Joint& j, const Vec& axis, bool prismatic, const std::string& what) const {
-    if (j.prismatic != prismatic) refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j), "");
+    if (j.prismatic != prismatic)
+      refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j),
+             "mend the joint's type, or take the file of a CAD program by delta-model adopt");
     if ((j.axis - axis).norm() > kTolerance)
       refuse(fmt::format("wrong axis: {} has axis {}, but must have {}", what, words(j.axis), words(axis)), at(j),
              "turn the joint's origin, or swap the signs");
@@ -130,7 +151,7 @@ class Reader {
       if (!found)
         refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}", drives_.size(),
                            drives_.size()),
-               at(j), "rename the joint");
+               at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
       if (j.mimic) refuse("a drive cannot mimic another joint", at(j), "remove the <mimic> element");
     }
   }
@@ -182,7 +203,7 @@ class Reader {
     if (limbs != 3)
       refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
              limbs == 4 ? "robots with four limbs (h4, i4, par4) are not supported yet"
-                        : "a limb is a drive on the base with two struts");
+                        : "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
     const bool telescope = limbs < drives_.size();
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
     robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
@@ -211,7 +232,7 @@ class Reader {
     if (arm.joints.size() != 2)
       refuse(
           fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts", arm.joints.size()),
-          at(arm.name), "compare with a file of delta-model create");
+          at(arm.name), kMendTree);
     std::vector<Strut> pair;
     for (const int index : arm.joints) {
       const Joint& about_y = joint(index);
@@ -358,12 +379,14 @@ class Reader {
     require_passive(x2, Vec::UnitX(), "the lower universal joint's second axis");
     require_no_offset(x2, "the lower universal joint");
     const robot_file::Body& tool = body(x2.child);
-    if (!tool.joints.empty()) refuse("the tool carries no moving joint", at(joint(tool.joints[0])), "");
+    if (!tool.joints.empty())
+      refuse("the tool carries no moving joint", at(joint(tool.joints[0])), "fix to the tool what moves with it");
 
     const ToolLoop* closure = nullptr;
     for (const ToolLoop& candidate : tool_loops_) {
       if (tree_.links.at(candidate.other->link).body != x2.child)
-        refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), at(*candidate.loop), "");
+        refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), at(*candidate.loop),
+               "let the loop join the plate with a strut or the tool");
       if (closure != nullptr) refuse("the tool is joined to the plate twice", at(*candidate.loop), "remove one of the two");
       closure = &candidate;
     }

@@ -41,7 +41,8 @@ std::string attribute(const XMLElement* element, const char* name, const std::st
 
 const XMLElement* require_child(const XMLElement* element, const char* name, const std::string& place) {
   const XMLElement* child = element->FirstChildElement(name);
-  if (child == nullptr) refuse(fmt::format("<{}> has no element <{}>", element->Name(), name), place, "");
+  if (child == nullptr)
+    refuse(fmt::format("<{}> has no element <{}>", element->Name(), name), place, fmt::format("add <{}>", name));
   return child;
 }
 
@@ -248,7 +249,7 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
         if (other->name == joint->child_link_name) return other;
       return urdf::LinkSharedPtr();
     }();
-    if (!child) refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "");
+    if (!child) refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "mend the child of the joint");
     const Pose X_BJ = here.X_BL * pose_of(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) {
       tree.links[child->name] = {here.body, X_BJ, link.name};

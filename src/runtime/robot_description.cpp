@@ -105,7 +105,7 @@ void RobotDescription::validate(const std::string& where) const {
            "use type linear-delta3 for prismatic drives, delta3 or delta4 for revolute ones");
   if (parts.size() != (rule.plate ? 1U : 0U))
     refuse(fmt::format("the plate of a {} has {} part, but this one has {}", type, rule.plate ? "one" : "no", parts.size()),
-           where, "");
+           where, "the plate of a Delta is one part");
   for (const PlatePart<double>& part : parts) {
     // All coefficients at once: NaN fails the comparison, too.
     if (!(part.c.norm() + part.a.norm() + part.b.norm() + std::abs(part.kappa) <= 0))

@@ -27,8 +27,11 @@ struct CadOptions {
   bool inertials = true;
   bool turned_frames = true;  ///< of every link, the root's too
   bool flipped_axes = false;  ///< every second drive turns the other way
+  int hinges = 2;             ///< at the elbow: 1, 2 (universal) or 3 (ball)
+  bool crosspiece = false;    ///< a bar at the elbow carries the two rods
   bool end_frames = false;    ///< a link without mass at the far end of each strut
   double unit = 1;            ///< written lengths in metres times this
+  int digits = 12;            ///< behind the point of lengths in metres and angles in radians
   std::string above_base;     ///< links and joints above the base, e.g. a world; ends with the joint to link "base_part"
 };
 
@@ -76,11 +79,13 @@ class CadFile {
     return X;
   }
 
-  static std::string origin(const Pose& X, double unit) {
+  [[nodiscard]] std::string origin(const Pose& X, double unit) const {
     const Vec zyx = X.linear().eulerAngles(2, 1, 0);
     const Vec p = X.translation() * unit;
-    return fmt::format("<origin xyz=\"{:.12g} {:.12g} {:.12g}\" rpy=\"{:.12g} {:.12g} {:.12g}\"/>", p.x(), p.y(), p.z(), zyx(2),
-                       zyx(1), zyx(0));
+    const auto three = [this](double a, double b, double c) {
+      return fmt::format("{:.{}f} {:.{}f} {:.{}f}", a, options_.digits, b, options_.digits, c, options_.digits);
+    };
+    return "<origin xyz=\"" + three(p.x(), p.y(), p.z()) + "\" rpy=\"" + three(zyx(2), zyx(1), zyx(0)) + "\"/>";
   }
 
   std::string fresh(const std::string& what) { return fmt::format("{}_{:x}", what, random_()); }
@@ -175,6 +180,10 @@ class CadFile {
       PseudoInertia<double> both = to_pseudo_inertia(Ten(2 * ten("strut")));
       both(1, 1) += both(3, 3) * half * half;  // a rod at either side
       strut(arm, elbow, end, y, R_S, from_pseudo_inertia<double>(both), i == 0);
+    } else if (options_.crosspiece) {
+      const Frame bar = joint(arm, fresh("hinge"), "continuous", elbow, y, fresh("bar"));
+      for (const double side : {half, -half})
+        rod(bar, elbow + side * y, end + side * y, y, R_S, ten("strut"), i == 0 && side > 0);
     } else {
       strut(arm, elbow + half * y, end + half * y, y, R_S, ten("strut"), i == 0);
       strut(arm, elbow - half * y, end - half * y, y, R_S, ten("strut"), false);
@@ -183,8 +192,17 @@ class CadFile {
 
   void strut(const Frame& arm, const Vec& elbow, const Vec& end, const Vec& y, const Eigen::Matrix3d& R_S, const Ten& p,
              bool carries) {
-    const Frame cross = joint(arm, fresh("hinge"), "continuous", elbow, y, fresh("cross"));
-    const Frame rod = joint(cross, fresh("hinge"), "revolute", elbow, R_S.col(2), fresh("rod"), p, pose(R_S, elbow));
+    Frame cross = arm;
+    if (options_.hinges >= 2) cross = joint(cross, fresh("hinge"), "continuous", elbow, y, fresh("cross"));
+    if (options_.hinges >= 3) cross = joint(cross, fresh("hinge"), "continuous", elbow, R_S.col(0), fresh("cross"));
+    rod(cross, elbow, end, y, R_S, p, carries);
+  }
+
+  /// The last joint at the elbow, the rod, and the plate if it carries it.
+  void rod(const Frame& parent, const Vec& elbow, const Vec& end, const Vec& y, const Eigen::Matrix3d& R_S, const Ten& p,
+           bool carries) {
+    const Frame rod = joint(parent, fresh("hinge"), "revolute", elbow, options_.hinges == 1 ? y : Vec(R_S.col(2)), fresh("rod"),
+                            p, pose(R_S, elbow));
     if (options_.end_frames) joint(rod, fresh("mount"), "fixed", end, Vec::UnitX(), fresh("tip"));
     if (!carries || options_.plate_hangs != PlateHangs::on_strut) return;
     const Frame ball = joint(rod, fresh("hinge"), "revolute", end, R_S.col(2), fresh("cross"));
