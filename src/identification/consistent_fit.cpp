@@ -244,10 +244,10 @@ OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, dou
 
 /// chi^2 of plain least squares and the number of parameters that the data see, columns in units of their scales.
 void add_least_squares(const ConsistentFitProblem& problem, const Layout& layout, ConsistentFitSummary& summary) {
-  const Eigen::MatrixXd scaled = problem.A * layout.scale.asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.A * layout.scale.asDiagonal());
   summary.data_rank = static_cast<int>(qr.rank());
-  summary.data_cost_free = (scaled * qr.solve(problem.b) - problem.b).squaredNorm();
+  const Eigen::VectorXd rotated = qr.householderQ().transpose() * problem.b;
+  summary.data_cost_free = rotated.tail(rotated.size() - summary.data_rank).squaredNorm();
 }
 
 /// Entries that section VI drops keep the prior's value where the data do not see them and the body stays consistent: the mass
