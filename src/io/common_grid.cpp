@@ -23,10 +23,10 @@ constexpr double kLowPassShare = 0.4;
 constexpr double kLongestGap = 2.5;
 
 /// Values on an even grid of the channel's own, filtered without lag.
-Series low_passed(const Series& series, double step_s, double cutoff_hz) {
+SampledChannel low_passed(const SampledChannel& series, double step_s, double cutoff_hz) {
   const double span = series.t_s(series.t_s.size() - 1) - series.t_s(0);
   const auto samples = static_cast<Index>(std::floor(span / step_s + 0.5)) + 1;
-  Series even;
+  SampledChannel even;
   even.t_s = Eigen::VectorXd::LinSpaced(samples, series.t_s(0), series.t_s(0) + static_cast<double>(samples - 1) * step_s);
   even.values = zero_phase_filter(resample(series.t_s, series.values, even.t_s), 1.0 / step_s, cutoff_hz);
   return even;
@@ -45,7 +45,7 @@ double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   return *middle;
 }
 
-Eigen::VectorXd onto_grid(const Series& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how) {
+Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how) {
   how.step_s = usual_step_s(series.t_s);
   const double grid_step = usual_step_s(grid_s);
   const Index n = series.t_s.size();
@@ -53,7 +53,7 @@ Eigen::VectorXd onto_grid(const Series& series, const Eigen::Ref<const Eigen::Ve
   if (n < 4) return result;
   const bool faster = how.step_s < kFaster * grid_step;
   how.low_pass_hz = faster ? kLowPassShare / grid_step : 0.0;
-  const Series source = faster ? low_passed(series, how.step_s, how.low_pass_hz) : series;
+  const SampledChannel source = faster ? low_passed(series, how.step_s, how.low_pass_hz) : series;
   // Rounding of stamps must not cost the first and last row.
   const double slack = 1e-6 * how.step_s;
   const double first = series.t_s(0), last = series.t_s(n - 1);

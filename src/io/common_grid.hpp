@@ -9,7 +9,7 @@
 namespace deltadyn {
 
 /// One channel with its own time stamps, strictly increasing.
-struct Series {
+struct SampledChannel {
   Eigen::VectorXd t_s, values;
 };
 
@@ -26,7 +26,7 @@ struct GridStep {
 /// Values at the times of the grid. A faster channel first passes a zero-phase low pass at 0.4 of the grid's rate, so that nothing
 /// folds into its band; then the cubic through the four samples around each time is taken, which shifts no frequency in time.
 /// Where the channel has a gap of more than 2.5 of its steps, and outside of it, the value is NaN: nothing is made up.
-[[nodiscard]] Eigen::VectorXd onto_grid(const Series& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how);
+[[nodiscard]] Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how);
 
 /// Sample indices of a channel whose slower recorder was filled up with repeats of the last value: of each `factor` rows the one
 /// where new values appear.

@@ -59,7 +59,7 @@ Recording merged(std::vector<Recording> recordings) {
 struct Prepared {
   const ChannelMap* map;
   const RecordedChannel* channel;
-  Series series;       ///< empty if `whole`
+  SampledChannel series;       ///< empty if `whole`
   bool whole = false;  ///< its rows are those of its time line
   TakenChannel taken;
 };
@@ -85,7 +85,7 @@ std::vector<Index> own_rows(const RecordedChannel& channel, const Timeline& time
 }
 
 /// Stamps must go on for interpolation: repeated ones are left out, those that go back are refused.
-void append_sample(Series& series, Index& count, double t, double value, const std::string& where) {
+void append_sample(SampledChannel& series, Index& count, double t, double value, const std::string& where) {
   if (std::isnan(t)) return;
   if (count > 0 && t < series.t_s(count - 1)) {
     throw Error("the time stamps decrease", where, "sort the rows by time, or put each recording into its own file");
@@ -159,10 +159,10 @@ class Builder {
     return 1e-9 * static_cast<double>(timeline.origin_ns - recording_.timelines[0].origin_ns);
   }
 
-  [[nodiscard]] Series series_of(const Eigen::VectorXd& values, const Timeline& timeline, const std::vector<Index>& rows,
+  [[nodiscard]] SampledChannel series_of(const Eigen::VectorXd& values, const Timeline& timeline, const std::vector<Index>& rows,
                                  double delay_s) const {
     const Index n = rows.empty() ? values.size() : static_cast<Index>(rows.size());
-    Series series{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+    SampledChannel series{Eigen::VectorXd(n), Eigen::VectorXd(n)};
     const double shift = shift_of(timeline) - delay_s;
     Index count = 0;
     for (Index k = 0; k < n; ++k) {
@@ -234,7 +234,7 @@ class Builder {
       return values;
     }
     const Timeline& timeline = recording_.timelines[one.channel->timeline];
-    const Series series = one.whole ? series_of(values, timeline, {}, 0.0) : Series{one.series.t_s, values};
+    const SampledChannel series = one.whole ? series_of(values, timeline, {}, 0.0) : SampledChannel{one.series.t_s, values};
     GridStep how;
     Eigen::VectorXd result = onto_grid(series, grid_s_, how);
     one.taken.how = how.low_pass_hz > 0

@@ -131,6 +131,16 @@ void take_rate(Timeline& timeline, double rate_hz) {
   timeline.t_s = Eigen::VectorXd::LinSpaced(timeline.rows(), 0.0, last / rate_hz);
 }
 
+/// Drives record at 2 Hz to 200 kHz; other steps are those of a wrong unit.
+void refuse_step(const Recording& recording, const Timeline& timeline) {
+  const double step_s = usual_step(timeline.t_s);
+  if (step_s >= 5e-6 && step_s <= 0.5) return;
+  throw Error(fmt::format("by the time column '{}' [{}] the rows are {:.4g} s apart, which no recorder of a drive does",
+                          timeline.name, timeline.unit, step_s),
+              recording.file,
+              "name the time in seconds t_s; or give delta-log import --time-unit, or unit below [time] in a column map (--map)");
+}
+
 void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap& map) {
   const auto unit = unit_of(channel, map);
   if (!unit) {
@@ -148,6 +158,7 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
   const bool filetime = unit->name == "filetime" && channel.origin > kFileTimeToUnixTicks;
   const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
   timeline.origin_ns = channel.clock ? channel.origin : static_cast<std::int64_t>(std::llround(unit->seconds * 1e9)) * origin;
+  if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
   map.time_source = channel.name;
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;
 }
