@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "deltadyn/signal/log_columns.hpp"
 
@@ -19,11 +20,19 @@ struct Candidate {
   HeaderWords words;
 };
 
+/// Whether a unit comes to SI by a factor of its own: currents, shares of the rated torque and counts need a data sheet.
+bool is_direct(const std::string& unit) {
+  const auto known = log_unit(unit);
+  return known && known->dimension != Dimension::current && known->dimension != Dimension::share_of_rated &&
+         known->dimension != Dimension::counts;
+}
+
 /// One column for each drive.
 struct Set {
   std::vector<Candidate> of_drive;
   Origin origin = Origin::unstated;
   bool has_unit = false;
+  bool direct = true;  ///< needs no constant of the motor or encoder to become SI
 };
 
 /// Units that a maker or a message states by custom, not in the header: ROS (REP 103) is SI, UR's RTDE is rad, A, N m.
@@ -121,7 +130,9 @@ std::optional<Set> set_of(const std::vector<Candidate>& members, const RobotDesc
     const Candidate& member = set.of_drive[drive];
     if (member.channel == nullptr) return std::nullopt;
     set.origin = member.words.origin;
-    set.has_unit = set.has_unit && !unit_of(member, quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults).empty();
+    const std::string unit = unit_of(member, quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults);
+    set.has_unit = set.has_unit && !unit.empty();
+    set.direct = set.direct && is_direct(unit);
   }
   return set;
 }
@@ -243,8 +254,8 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
   sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const Set& set) { return contradicts(set, map, robot.drives()); }),
              sets.end());
   if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
-  // Measured before unstated before commanded; among alike, those that state a unit.
-  const auto rank = [](const Set& set) { return std::pair(static_cast<int>(set.origin), set.has_unit); };
+  // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a current.
+  const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
   std::stable_sort(sets.begin(), sets.end(), [&](const Set& a, const Set& b) { return rank(a) > rank(b); });
   const Set& best = sets.front();
   if (sets.size() > 1 && rank(sets[1]) == rank(best)) {

@@ -13,6 +13,7 @@
 
 #include "common_grid.hpp"
 #include "guess_columns.hpp"
+#include "header_words.hpp"
 #include "recorded_time.hpp"
 
 namespace deltadyn {
@@ -36,7 +37,10 @@ Recording merged(std::vector<Recording> recordings) {
       if (is_time || names.count(channel.name) == 0) continue;
       throw Error(fmt::format("the column {} is in {} and in {}: these are recordings of their own, not columns of one",
                               channel.name, all.file, next.file),
-                  next.file, "import them one after the other, and give delta-identify all the logs");
+                  next.file,
+                  "import them one after the other, and give delta-identify all the logs; if each file holds one drive of one "
+                  "motion, let the "
+                  "column names carry its number");
     }
     const std::size_t shift = all.timelines.size();
     for (Timeline& timeline : next.timelines) all.timelines.push_back(std::move(timeline));
@@ -59,8 +63,8 @@ Recording merged(std::vector<Recording> recordings) {
 struct Prepared {
   const ChannelMap* map;
   const RecordedChannel* channel;
-  SampledChannel series;       ///< empty if `whole`
-  bool whole = false;  ///< its rows are those of its time line
+  SampledChannel series;  ///< empty if `whole`
+  bool whole = false;     ///< its rows are those of its time line
   TakenChannel taken;
 };
 
@@ -156,11 +160,12 @@ class Builder {
 
   /// Stamps from the first row of the first time line on.
   [[nodiscard]] double shift_of(const Timeline& timeline) const {
-    return 1e-9 * static_cast<double>(timeline.origin_ns - recording_.timelines[0].origin_ns);
+    return static_cast<double>(
+        1e-9L * (static_cast<long double>(timeline.origin_ns) - static_cast<long double>(recording_.timelines[0].origin_ns)));
   }
 
   [[nodiscard]] SampledChannel series_of(const Eigen::VectorXd& values, const Timeline& timeline, const std::vector<Index>& rows,
-                                 double delay_s) const {
+                                         double delay_s) const {
     const Index n = rows.empty() ? values.size() : static_cast<Index>(rows.size());
     SampledChannel series{Eigen::VectorXd(n), Eigen::VectorXd(n)};
     const double shift = shift_of(timeline) - delay_s;
@@ -369,6 +374,11 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
         quantity == Quantity::position || (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
     for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_)) {
       if (needed) ask(question.what, question.mend);
+    }
+    const ChannelMap* guessed = map_.find(quantity, 1);
+    if (guessed != nullptr && read_header_words(guessed->source, "").origin == Origin::commanded) {
+      recording_.notes.push_back(fmt::format("{}: '{}' is a commanded {} by its name; it is taken, as no measured one is there",
+                                             recording_.file, guessed->source, word_of(quantity)));
     }
   }
   for (ChannelMap& channel : map_.channels) {

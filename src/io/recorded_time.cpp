@@ -155,10 +155,13 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
   timeline.name = channel.name;
   timeline.unit = unit->name;
   timeline.t_s = unit->seconds * channel.values;
+  if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
   const bool filetime = unit->name == "filetime" && channel.origin > kFileTimeToUnixTicks;
   const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
-  timeline.origin_ns = channel.clock ? channel.origin : static_cast<std::int64_t>(std::llround(unit->seconds * 1e9)) * origin;
-  if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
+  const double unit_ns = 1e9 * unit->seconds;
+  // Stamps of other centuries have no date; their differences are all that counts.
+  const bool dated = unit_ns * std::abs(static_cast<double>(origin)) < 9e18;
+  timeline.origin_ns = channel.clock ? channel.origin : (dated ? std::llround(unit_ns) * origin : 0);
   map.time_source = channel.name;
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <gmock/gmock.h>
+#include <random>
 
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -338,6 +339,52 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"OtherDrivesTorque", "t_s,q1 [rad],tau2 [Nm]\n", "{t},{q},{tau}", 1, {"'tau2 [Nm]'"}},
         Refused{"NoHeader", "", "{t},{q},{tau}", 1, {"line 1", "header line is missing", "source = 2"}}),
     [](const auto& one) { return std::string(one.param.name); });
+
+TEST(LogImport, PrefersTorqueToCurrentAndMeasuredToCommandedAndSaysWhenItTakesACommand) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  const auto row = [](int, double t) { return fmt::format("{:.3f},{:.9f},7,8,9\n", t, position(t)); };
+  const LogImport both(
+      {folder.write("a.csv", recorded("t_s,actual position [rad],current [A],torque [Nm],position [cnt]\n", row))}, robot, {});
+  EXPECT_EQ(both.log().log.tau(3, 0), 8.0);
+  EXPECT_NEAR(both.log().log.q(3, 0), position(0.003), 1e-8);
+  const LogImport command({folder.write("b.csv", recorded("t_s,q1 [rad],x,torque command [Nm],y\n", row))}, robot, {});
+  EXPECT_THAT(command.log().log.notes, ::testing::Contains(HasSubstr("commanded torque")));
+}
+
+TEST(LogImport, DamagedFilesAreReadOrRefusedButNeverCrash) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  std::mt19937_64 engine(7);
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(engine() % n); };
+  const std::vector<std::string> pieces = {
+      ",", ";", "\t", "\n", "\"", "#", "nan", "1e308", "99999999999999999999", "12:30:00", "0001-01-01", "[", "\xff"};
+  int read = 0, refused = 0;
+  for (const Form& form : forms()) {
+    for (int k = 0; k < 12; ++k) {
+      std::string text = form.text;
+      for (int change = 0; change <= k % 3; ++change) {
+        const std::size_t at = below(change == 0 ? std::min<std::size_t>(text.size(), 120) : text.size());
+        if (k % 3 == 0) text.erase(at, 1 + below(60));
+        if (k % 3 != 0) text.insert(at, pieces[below(pieces.size())]);
+        if (k % 6 == 0) text.resize(text.size() - below(text.size() / 3));
+      }
+      ImportOptions options;
+      options.defaults = form.defaults;
+      try {
+        const LogImport import({folder.write("log.txt", text)}, robot, options);
+        (void)import.map_text();
+        (void)import.log();
+        ++read;
+      } catch (const Error& error) {
+        EXPECT_FALSE(error.mend().empty()) << error.what();
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_GT(refused, 10);
+}
 
 TEST(LogImport, FilesWithTheSameColumnsAreRecordingsOfTheirOwn) {
   const TemporaryFolder folder;

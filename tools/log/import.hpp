@@ -3,8 +3,10 @@
 /// \file
 /// `delta-log import`: a log of these tools from what drives and recorders export.
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,20 +88,27 @@ class Import {
       write_file(map_out_, import.map_text());
       fmt::print("wrote {}: the column map\n", map_out_);
     }
-    if (output_.empty() && !import.is_complete()) {
-      fmt::print("some columns are still open; mend {} and give it with --map\n", map_out_);
-      return;
-    }
-    const ImportedLog result = import.log();
-    print_taken(result, import.recording(), robot);
+    const auto result = output_.empty() ? log_or_open_question(import) : std::optional(import.log());
+    if (!result) return;
+    print_taken(*result, import.recording(), robot);
     // The first note repeats the table for tools that have none.
-    for (std::size_t k = 1; k < result.log.notes.size(); ++k) fmt::print("note: {}\n", result.log.notes[k]);
+    for (std::size_t k = 1; k < result->log.notes.size(); ++k) fmt::print("note: {}\n", result->log.notes[k]);
     if (!output_.empty()) {
-      write_log(output_, result.log, robot);
-      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, result.log.samples(),
-                 result.log.t_s(result.log.samples() - 1), 1.0 / result.step_s);
+      write_log(output_, result->log, robot);
+      const Eigen::Index rows = result->log.samples();
+      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, rows, result->log.t_s(rows - 1), 1.0 / result->step_s);
     }
-    add_figures(result, run);
+    add_figures(*result, run);
+  }
+
+  /// Where only a map was asked for, what is open is an answer and no failure.
+  [[nodiscard]] std::optional<ImportedLog> log_or_open_question(const LogImport& import) const {
+    try {
+      return import.log();
+    } catch (const Error& e) {
+      fmt::print("still open: {}\n  {}\nmend {} and give it with --map\n", e.problem(), e.mend(), map_out_);
+      return std::nullopt;
+    }
   }
 
   static std::string column_of(const TakenChannel& taken, const RobotDescription& robot) {

@@ -99,7 +99,8 @@ bool scan_day(DateScanner& scan, std::int64_t& days) {
     m = a, d = b;
   }
   if (first != 4 && last == 2) y += 2000;
-  if (m < 1 || m > 12 || d < 1 || d > 31) return false;
+  // Nanoseconds of other centuries would not fit, and no log is from there.
+  if (y < 1970 || y > 2200 || m < 1 || m > 12 || d < 1 || d > 31) return false;
   days = days_from_civil(y, m, d);
   return true;
 }
@@ -189,7 +190,8 @@ std::optional<std::int64_t> long_integer(std::string_view field) {
   if (field.size() < 16) return std::nullopt;
   std::int64_t value = 0;
   const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || stop != field.data() + field.size()) return std::nullopt;
+  constexpr std::int64_t kLargest = 4000000000000000000LL;  // differences must fit, too
+  if (error != std::errc() || stop != field.data() + field.size() || std::abs(value) > kLargest) return std::nullopt;
   return value;
 }
 

@@ -293,8 +293,9 @@ Recording read_rosbag2(const std::string& path, const RecordingOptions& options)
   timeline.unit = "ns";
   timeline.origin_ns = stamps.front();
   timeline.t_s.resize(static_cast<Eigen::Index>(stamps.size()));
+  const auto first = static_cast<std::uint64_t>(stamps.front());  // stamps are in order; a broken one may be very large
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    timeline.t_s(static_cast<Eigen::Index>(k)) = 1e-9 * static_cast<double>(stamps[k] - stamps.front());
+    timeline.t_s(static_cast<Eigen::Index>(k)) = 1e-9 * static_cast<double>(static_cast<std::uint64_t>(stamps[k]) - first);
   }
   timeline.line = series.line;
   recording.timelines.push_back(std::move(timeline));

@@ -131,7 +131,7 @@ void take_row(Group& group, const std::vector<std::string_view>& fields, char de
   if (group.time >= fields.size() || fields[group.time].empty()) return;
   const std::string_view stamp = fields[group.time];
   double value = kNan;
-  if (const auto ticks = long_integer(stamp)) {
+  if (const auto ticks = long_integer(stamp); ticks && *ticks > kFileTimeToUnixTicks && *ticks < 2 * kFileTimeToUnixTicks) {
     if (group.line.empty()) {
       group.ticks = true;
       group.origin = *ticks;
