@@ -72,7 +72,7 @@ std::string unit_of(const Candidate& candidate, Quantity quantity, DriveKind kin
 std::vector<Candidate> candidates_of(const Recording& recording, Quantity quantity, const ColumnMap& map) {
   std::vector<Candidate> found;
   for (const RecordedChannel& channel : recording.channels) {
-    if (channel.clock || channel.name == map.time_source) continue;
+    if (channel.clock || channel.name == map.time_source || channel.name == recording.timelines[channel.timeline].name) continue;
     Candidate candidate{&channel, read_header_words(channel.name, channel.unit)};
     if (!channel.quantity.empty()) {
       candidate.words.quantity = quantity_of_word(channel.quantity);

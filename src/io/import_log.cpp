@@ -348,14 +348,18 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     map_.time_source.clear();
   }
   std::vector<Recording> recordings;
+  ColumnMap found = map_;
   for (const std::string& file : files) {
     recordings.push_back(read_recording(file, {map_.topic}));
     try {
-      resolve_time(recordings.back(), map_);
+      ColumnMap of_file = map_;  // each file may name its time otherwise
+      resolve_time(recordings.back(), of_file);
+      if (recordings.size() == 1) found = of_file;
     } catch (const Error& e) {
       ask(e.problem(), e.mend(), e.where());
     }
   }
+  map_ = found;
   recording_ = merged(std::move(recordings));
   if (recording_.headerless && map_.channels.empty()) {
     open_.clear();  // the one cause of all that is open

@@ -141,6 +141,20 @@ void refuse_step(const Recording& recording, const Timeline& timeline) {
               "name the time in seconds t_s; or give delta-log import --time-unit, or unit below [time] in a column map (--map)");
 }
 
+/// Fills in a time line from a column with the stamps of its rows.
+void take_stamps(const Recording& recording, const RecordedChannel& channel, const TimeUnit& unit, Timeline& timeline) {
+  timeline.name = channel.name;
+  timeline.unit = unit.name;
+  timeline.t_s = unit.seconds * channel.values;
+  if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
+  const bool filetime = unit.name == "filetime" && channel.origin > kFileTimeToUnixTicks;
+  const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
+  const double unit_ns = 1e9 * unit.seconds;
+  // Stamps of other centuries have no date; their differences are all that counts.
+  const bool dated = unit_ns * std::abs(static_cast<double>(origin)) < 9e18;
+  timeline.origin_ns = channel.clock ? channel.origin : (dated ? std::llround(unit_ns) * origin : 0);
+}
+
 void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap& map) {
   const auto unit = unit_of(channel, map);
   if (!unit) {
@@ -148,22 +162,82 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
                             usual_step(channel.values)),
                 recording.file,
                 "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts rows; or "
-                "unit or rate_hz below "
-                "[time] in a column map (--map)");
+                "unit or rate_hz below [time] in a column map (--map)");
   }
-  Timeline& timeline = recording.timelines[channel.timeline];
-  timeline.name = channel.name;
-  timeline.unit = unit->name;
-  timeline.t_s = unit->seconds * channel.values;
-  if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
-  const bool filetime = unit->name == "filetime" && channel.origin > kFileTimeToUnixTicks;
-  const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
-  const double unit_ns = 1e9 * unit->seconds;
-  // Stamps of other centuries have no date; their differences are all that counts.
-  const bool dated = unit_ns * std::abs(static_cast<double>(origin)) < 9e18;
-  timeline.origin_ns = channel.clock ? channel.origin : (dated ? std::llround(unit_ns) * origin : 0);
+  take_stamps(recording, channel, *unit, recording.timelines[channel.timeline]);
   map.time_source = channel.name;
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;
+}
+
+/// A time column among others of one table.
+struct TimeColumn {
+  std::size_t index;  ///< of the channel
+  TimeUnit unit;
+  double step_s;
+  Eigen::Index stamps;
+};
+
+std::vector<TimeColumn> time_columns(const Recording& recording, const ColumnMap& map) {
+  std::vector<TimeColumn> found;
+  for (std::size_t k = 0; k < recording.channels.size(); ++k) {
+    const RecordedChannel& channel = recording.channels[k];
+    if (time_rank(channel) < 3 || channel.text_line > 0 || !goes_on(channel.values)) continue;
+    if (const auto unit = unit_of(channel, map)) {
+      found.push_back({k, *unit, unit->seconds * usual_step(channel.values), (!channel.values.array().isNaN()).count()});
+    }
+  }
+  return found;
+}
+
+/// Whether two time columns are those of groups with rows of their own, and not two clocks for the same rows (ROS: measured and
+/// written down): another rate, fewer stamps, or the same name with other stamps.
+bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColumn& b) {
+  const RecordedChannel& one = recording.channels[a.index];
+  const RecordedChannel& other = recording.channels[b.index];
+  const bool other_rate = std::abs(a.step_s - b.step_s) > 0.1 * std::min(a.step_s, b.step_s);
+  const bool fewer =
+      std::abs(static_cast<double>(a.stamps - b.stamps)) > 0.01 * static_cast<double>(std::max(a.stamps, b.stamps));
+  const auto plain = [](const RecordedChannel& channel) { return simplified(channel.name.substr(0, channel.name.find(" ("))); };
+  const bool other_stamps = !((one.values - other.values).cwiseAbs().maxCoeff() <= 1e-3 * usual_step(one.values));
+  return other_rate || fewer || (plain(one) == plain(other) && other_stamps);
+}
+
+/// A channel's rows where its group's time column has stamps.
+Eigen::VectorXd picked(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& rows) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) result(static_cast<Eigen::Index>(k)) = values(rows[k]);
+  return result;
+}
+
+/// Several time columns in a text, each with a rate of its own for the columns to its right: every one becomes a time line.
+/// Returns whether there were such groups.
+bool split_groups(Recording& recording, const ColumnMap& map) {
+  if (recording.timelines.size() != 1) return false;
+  const std::vector<TimeColumn> times = time_columns(recording, map);
+  bool groups = false;
+  for (std::size_t k = 1; k < times.size(); ++k) groups = groups || are_groups(recording, times[0], times[k]);
+  if (!groups) return false;
+  const Timeline whole = recording.timelines[0];
+  recording.timelines.clear();
+  for (std::size_t group = 0; group < times.size(); ++group) {
+    const std::size_t begin = group == 0 ? 0 : times[group].index;
+    const std::size_t end = group + 1 < times.size() ? times[group + 1].index : recording.channels.size();
+    const Eigen::VectorXd stamps = recording.channels[times[group].index].values;
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < stamps.size(); ++row) {
+      if (!std::isnan(stamps(row))) rows.push_back(row);
+    }
+    Timeline timeline;
+    for (const Eigen::Index row : rows) timeline.line.push_back(whole.line[static_cast<std::size_t>(row)]);
+    for (std::size_t k = begin; k < end; ++k) {
+      recording.channels[k].values = picked(recording.channels[k].values, rows);
+      recording.channels[k].timeline = group;
+    }
+    take_stamps(recording, recording.channels[times[group].index], times[group].unit, timeline);
+    recording.timelines.push_back(std::move(timeline));
+  }
+  recording.form += fmt::format(", {} groups of columns with time columns of their own", times.size());
+  return true;
 }
 
 [[noreturn]] void refuse_no_time(const Recording& recording) {
@@ -171,8 +245,7 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
                           list_channels(recording)),
               recording.file,
               "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is none; "
-              "or source or rate_hz "
-              "below [time] in a column map (--map)");
+              "or source or rate_hz below [time] in a column map (--map)");
 }
 
 }  // namespace
@@ -223,6 +296,7 @@ void resolve_time(Recording& recording, ColumnMap& map) {
     }
     return;
   }
+  if (open && split_groups(recording, map)) return;
   if (!map.time_source.empty()) {
     const RecordedChannel& channel = find_channel(recording, map.time_source, map.file.empty() ? "--time-column" : map.file);
     if (channel.text_line > 0) {

@@ -201,6 +201,49 @@ TEST(LogImport, BringsUnequalRatesToOneGridWithoutPhaseError) {
   for (int k = 20; k < kMotionRows - 20; ++k) ASSERT_NEAR(two.log.tau(k, 0), torque(0.001 * k), 2e-3) << k;
 }
 
+// Groups with time columns of their own, as spreadsheets and scopes export them: the slow one ends early, below it fields are empty.
+TEST(LogImport, ColumnsBelongToTheTimeColumnToTheirLeft) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  for (const int slower : {1, 4}) {
+    const std::string text = recorded("Time [ms];q1 [rad];Time [ms];tau1 [Nm]\n", [&](int k, double t) {
+      const double late = 1e-3 * slower * k + 0.0004;  // the second recorder started 0.4 ms later
+      std::string line = fmt::format("{};{:.9f}", k, position(t));
+      line += late < 1e-3 * kMotionRows ? fmt::format(";{:.4f};{:.9f}\n", 1e3 * late, torque(late)) : ";;\n";
+      return line;
+    });
+    const ImportedLog result = LogImport({folder.write("log.csv", text)}, robot, {}).log();
+    ASSERT_GT(result.log.samples(), kMotionRows - 6) << slower;
+    for (Eigen::Index k = 0; k < result.log.samples(); ++k) {
+      // The first row is left out, as the torque begins after it.
+      const double t = 0.001 * static_cast<double>(k + 1);
+      ASSERT_NEAR(result.log.q(k, 0), position(t), 1e-8) << slower;
+      ASSERT_NEAR(result.log.tau(k, 0), torque(t), 1e-5) << slower;
+    }
+  }
+}
+
+// A slow channel in TwinCAT's fast group, filled up with its last value: only the rows where it was sampled are its data.
+TEST(LogImport, FilledUpRepeatsAreNoData) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  const std::string head =
+      "Name\tP\nFile\tx\nStarttime of export\t132959733843760000\nEndtime of export\t132959733853750000\n\n\n"
+      "Name\tActPos\tActTorque\nData-Type\tREAL64\tREAL64\nSampleTime[ms]\t1\t4\nUnit\trad\tNm\n\n";
+  const std::string text = recorded(head, [](int k, double t) {
+    const double sampled = 0.001 * (k < 2 ? 0 : (k - 2) / 4 * 4 + 2);  // new values in the rows 2, 6, 10, ...
+    return fmt::format("{}\t{:.9f}\t{:.9f}\n", k, position(t), torque(sampled));
+  });
+  const ImportedLog result = LogImport({folder.write("scope.csv", text)}, robot, {}).log();
+  EXPECT_NEAR(result.taken.back().step_s, 0.004, 1e-9);
+  ASSERT_GT(result.log.samples(), kMotionRows - 8);
+  for (Eigen::Index k = 0; k < result.log.samples(); ++k) {
+    const double t = 0.001 * static_cast<double>(k + 2);
+    ASSERT_NEAR(result.log.q(k, 0), position(t), 1e-8);
+    ASSERT_NEAR(result.log.tau(k, 0), torque(t), 1e-5);
+  }
+}
+
 TEST(LogImport, MapGivesSourceUnitSignScaleOffsetAndDelay) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();

@@ -168,6 +168,9 @@ Recording read_delimited(const TextFile& file) {
   recording.file = file.path;
   recording.form = describe(layout);
   recording.headerless = layout.header_line == 0;
+  if (layout.units.empty()) {
+    for (const std::string& name : layout.names) layout.units.push_back(split_unit(name).unit);
+  }
   make_unique(layout.names, recording);
   recording.timelines.resize(1);
   std::vector<Column> columns = RowReader(file, layout, recording).read(recording.timelines[0].line);
@@ -179,7 +182,7 @@ Recording read_delimited(const TextFile& file) {
     RecordedChannel channel;
     channel.name = layout.names[k];
     channel.aliases.push_back(fmt::format("column{}", k + 1));
-    channel.unit = layout.units.empty() ? split_unit(channel.name).unit : layout.units[k];
+    channel.unit = layout.units[k];
     channel.origin = column.origin;
     channel.clock = column.kind == ColumnKind::date;
     channel.text_line = column.text_line;
