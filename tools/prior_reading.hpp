@@ -26,7 +26,8 @@ inline Prior read_prior(const Robot& robot, const std::string& file) {
     fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
     return out;
   }
-  const ParameterMatch match = match_parameters(read_parameters(file), robot.parameter_names(), robot.parameter_units());
+  const ParameterMatch match =
+      match_parameters(read_parameters(file, robot.description()), robot.parameter_names(), robot.parameter_units());
   out.value = match.value;
   for (Eigen::Index k = 0; k < out.value.size(); ++k) {
     const double std = match.std(k);

@@ -38,19 +38,6 @@ void to_si(robot_file::UrdfTree& tree, double metre, double kilogram) {
   }
 }
 
-/// Before anything is looked for: points metres apart make no joint, so millimetres would be told as another fault.
-void require_metres(const robot_file::UrdfTree& tree) {
-  for (const robot_file::Joint& joint : tree.joints) {
-    try {
-      plausibility::require(plausibility::kOffset, joint.X_PJ.translation().norm(),
-                            "the distance of the joint from the one before",
-                            fmt::format("{}, line {}, joint {}", tree.where, joint.line, joint.name));
-    } catch (const Error& e) {
-      throw Error(e.problem(), e.where(), "if the file is in millimetres, say --length-unit mm", e.code());
-    }
-  }
-}
-
 void require_masses(const AdoptedRobot& adopted, const std::string& where) {
   for (const Body body :
        {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper, Body::telescope_lower}) {
@@ -77,7 +64,7 @@ AdoptedRobot adopt_robot(const std::string& text, const std::string& where, cons
     plausibility::require(plausibility::kGravity, *options.gravity_size, "--gravity-m-s2", "", ExitCode::usage);
   robot_file::UrdfTree tree = robot_file::parse_urdf_tree(text, where, robot_file::UrdfDialect::cad);
   to_si(tree, options.length_unit, options.mass_unit);
-  require_metres(tree);
+  robot_file::require_metres(tree);
   const cad::Parts parts = cad::find_parts(tree, options);
   cad::Placed placed = cad::place_parts(tree, parts, options);
   AdoptedRobot adopted;

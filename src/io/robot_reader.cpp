@@ -57,7 +57,7 @@ class Reader {
     }
     for (const Joint* drive : drives_) robot_.limits.push_back(drive->limits);
     extension();
-    validate();
+    robot_.validate(tree_.where);
     inertials();
     return robot_;
   }
@@ -74,24 +74,6 @@ class Reader {
     return fmt::format("{}, line {}, loop {}", tree_.where, loop.line, loop.name);
   }
   [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
-
-  /// A whole file in millimetres need not be mended by hand.
-  void validate() const {
-    try {
-      robot_.validate(tree_.where);
-    } catch (const Error& e) {
-      const bool all = !robot_.parts.empty() && std::all_of(robot_.limbs.begin(), robot_.limbs.end(), [](const auto& limb) {
-        return limb.strut > plausibility::kLength.highest;
-      });
-      if (!all) throw;
-      throw Error(
-          e.problem(), e.where(),
-          fmt::format("{}; a file that is in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o "
-                      "robot.urdf",
-                      e.mend(), tree_.where),
-          e.code());
-    }
-  }
 
   // --- access and rules for single joints -------------------------------------------------------
   [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
@@ -418,7 +400,8 @@ class Reader {
   void inertials() const {
     for (const auto& [name, inertial] : tree_.inertials) {
       const robot_file::LinkPlace& place = tree_.links.at(name);
-      if (place.body == 0) continue;  // the base may weigh what it likes
+      if (place.body == 0) continue;  // the base may weigh what it likes, and so may the rotor that rests on it
+      if (robot_.telescope && place.body == drives_.back()->child) continue;
       plausibility::require_body(robot_, role_of(place.body), inertial.in_frame(place.X_BL), "link " + name, tree_.where);
     }
   }
@@ -480,6 +463,7 @@ class Reader {
 
 RobotDescription robot_from_urdf(const std::string& text, const std::string& where) {
   UrdfTree tree = robot_file::parse_urdf_tree(text, where);
+  robot_file::require_metres(tree);
   robot_file::place_base(tree);
   return Reader(tree).run();
 }

@@ -14,6 +14,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 #include "robot_file_format.hpp"
 
@@ -353,6 +354,23 @@ double parse_number(const std::string& text, const std::string& where, const std
     refuse(fmt::format("attribute {} holds '{}', which is not a finite number", attribute_name, text), where,
            "write a decimal number");
   return value;
+}
+
+void require_metres(const UrdfTree& tree) {
+  const auto check = [&tree](const Eigen::Vector3d& origin, const char* kind, const std::string& name, int line) {
+    const std::string place = fmt::format("{}, line {}, {} {}", tree.where, line, kind, name);
+    try {
+      plausibility::require(plausibility::kOffset, origin.norm(), "its distance from the link's origin", place);
+    } catch (const Error& e) {
+      refuse(e.problem(), place,
+             fmt::format("{}; a file in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o robot.urdf",
+                         e.mend(), tree.where));
+    }
+  };
+  for (const Joint& joint : tree.joints)
+    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), "joint", joint.name, joint.line);
+  for (const Loop& loop : tree.loops)
+    for (const LoopEnd* end : {&loop.predecessor, &loop.successor}) check(end->X_LO.translation(), "loop", loop.name, loop.line);
 }
 
 UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, UrdfDialect dialect) {

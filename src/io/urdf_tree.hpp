@@ -90,6 +90,10 @@ enum class UrdfDialect { robot_file, cad };
 [[nodiscard]] UrdfTree parse_urdf_tree(const std::string& text, const std::string& where,
                                        UrdfDialect dialect = UrdfDialect::robot_file);
 
+/// Throws deltadyn::Error with the joint or loop that lies farther from its link than any robot is large: before the rules of
+/// mechanisms are looked at, which a file that is partly in millimetres breaks in ways that do not name the reason.
+void require_metres(const UrdfTree& tree);
+
 /// Turns the tree from the frame of its root link to that of the robot's base W: gravity and the places of the drives. A base that
 /// hangs, leans or is turned is a link that fixed joints hold against the root ("world"). W is the frame of the last link that
 /// carries all drives and against which the limbs are turned about z only; if there is none (drives on brackets of their own below

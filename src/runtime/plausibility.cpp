@@ -156,6 +156,7 @@ const Rule kPlateVelocity{0, 30, "m/s", kMillimetres, "the fastest Deltas do 10 
 const Rule kPlateAcceleration{0, 1500, "m/s^2", kMillimetres, "the record of a Delta is 100 times gravity"};
 const Rule kYawVelocity{0, 150, "rad/s", kDegrees, "no Delta turns its tool faster than 1400 rpm"};
 const Rule kYawAcceleration{0, 3000, "rad/s^2", kDegrees, "no Delta turns its tool that suddenly"};
+const Rule kTilt{-kPi, kPi, "rad", kDegrees, "a tilt is half a turn at most"};
 const Rule kShare{1e-6, 10, "times the value", {"per cent", 0.01}, "that says nothing about the value"};
 const Rule kYaw{-100, 100, "rad", kDegrees, "more than 16 turns are no range: leave the limit out if the tool turns without end"};
 

@@ -161,6 +161,7 @@ class Create {
       refuse_usage("--rail-axis-limb and --rail-tilt-rad exclude each other", "give one of them");
     if (!rail_axis_.empty()) return direction_of(rail_axis_, "--rail-axis-limb");
     const double tilt = rail_tilt_.value_or(0);
+    plausibility::require(plausibility::kTilt, tilt, "--rail-tilt-rad", "", ExitCode::usage);
     return {std::sin(tilt), 0, -std::cos(tilt)};
   }
 

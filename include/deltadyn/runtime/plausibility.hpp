@@ -42,6 +42,7 @@ extern const Rule kPlateVelocity;      ///< [m/s]
 extern const Rule kPlateAcceleration;  ///< [m/s^2]
 extern const Rule kYawVelocity;        ///< [rad/s]
 extern const Rule kYawAcceleration;    ///< [rad/s^2]
+extern const Rule kTilt;               ///< of a rail against the vertical [rad]
 extern const Rule kShare;              ///< a standard deviation as a share of the value
 extern const Rule kYaw;                ///< angle of the tool to either side [rad]
 
