@@ -1,6 +1,7 @@
 /// \file
 /// delta-diagnose: where a model and its logs disagree, the name of what is missing, the model with it, and the proof.
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -97,7 +98,12 @@ class Diagnose {
     }
     const std::vector<Log>& logs = gate.logs;
     std::optional<Log> holdout;
-    if (!holdout_file_.empty()) holdout = processing_.read_logs({holdout_file_}, description).front();
+    if (!holdout_file_.empty()) {
+      // The proof rests on one stretch of motion; of a log with gaps, the longest.
+      const std::vector<Log> parts = processing_.read_logs({holdout_file_}, description);
+      holdout =
+          *std::max_element(parts.begin(), parts.end(), [](const Log& a, const Log& b) { return a.samples() < b.samples(); });
+    }
 
     options_.processing = processing_.options();
     options_.choose_cutoff = processing_.automatic_cutoff();

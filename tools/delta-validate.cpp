@@ -83,7 +83,7 @@ class Validate {
     Validation result =
         validate(*robot, without_effects(*robot, logs, match.value, effects, options.cutoff_hz), match.value, options);
     if (!effects.empty()) add_effects(*robot, logs, result);
-    if (!output_.empty()) write_residuals(description, result);
+    if (!output_.empty()) write_residuals(description, logs, result);
     if (!report_file_.empty()) {
       write_file(report_file_, validation_report(*robot, result, match.value, report_context(findings)));
     }
@@ -122,10 +122,11 @@ class Validate {
     return low_passed_rows(prepared, prepared.tau);
   }
 
-  void write_residuals(const RobotDescription& robot, const Validation& result) const {
+  void write_residuals(const RobotDescription& robot, const std::vector<Log>& logs, const Validation& result) const {
     OutputFile file(output_);
     const int n = robot.drives();
-    std::string header = result.logs.size() > 1 ? "log,t_s" : "t_s";
+    const bool numbered = log_files_.size() > 1;
+    std::string header = numbered ? "log,t_s" : "t_s";
     for (int j = 0; j < n; ++j) {
       const DriveColumns names = drive_columns(robot, j);
       const std::string unit = names.tau.substr(names.tau.find('_'));
@@ -133,15 +134,17 @@ class Validate {
                             names.qdd);
     }
     file.write(header + "\n");
+    int number = 0;
     for (std::size_t k = 0; k < result.logs.size(); ++k) {
       const Prediction& p = result.logs[k].prediction;
+      if (logs[k].part <= 1) ++number;  // the parts of a log have its number
       for (Eigen::Index row = 0; row < p.rows(); ++row) {
-        if ((p.use.row(row) == RowUse::unusable).any()) continue;
-        if (result.logs.size() > 1) file.print("{},", k + 1);
+        if ((p.use.row(row) == RowUse::unusable).all()) continue;
+        if (numbered) file.print("{},", number);
         file.print("{}", p.t_s(row));
         for (int j = 0; j < n; ++j) {
           file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j), p.q(row, j),
-                     p.qd(row, j), p.qdd(row, j), p.use(row, j) == RowUse::reversal ? 1 : 0);
+                     p.qd(row, j), p.qdd(row, j), p.use(row, j) == RowUse::regular ? 0 : 1);
         }
         file.write("\n");
       }

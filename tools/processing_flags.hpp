@@ -55,7 +55,7 @@ class ProcessingFlags {
   }
   [[nodiscard]] bool automatic_cutoff() const { return cutoff_ == "auto"; }
 
-  /// Reads the logs and prints what the reader had to say.
+  /// Reads the logs and prints what the reader had to say. A log with gaps comes in parts (Log::part).
   [[nodiscard]] std::vector<Log> read_logs(const std::vector<std::string>& paths, const RobotDescription& robot) const {
     LogReadOptions options;
     options.need_derivatives = no_filter_;
@@ -63,9 +63,11 @@ class ProcessingFlags {
     options.map = map_;
     std::vector<Log> logs;
     for (const std::string& path : paths) {
-      logs.push_back(read_log(path, robot, options));
-      if (!no_filter_ && !automatic_cutoff()) refuse_cutoff_beyond(0.4 / logs.back().sample_time_s(), path);
-      for (const std::string& note : logs.back().notes) fmt::print("note: {}\n", note);
+      for (Log& part : read_log_parts(path, robot, options)) {
+        if (!no_filter_ && !automatic_cutoff()) refuse_cutoff_beyond(0.4 / part.sample_time_s(), path);
+        for (const std::string& note : part.notes) fmt::print("note: {}\n", note);
+        logs.push_back(std::move(part));
+      }
     }
     return logs;
   }

@@ -54,9 +54,8 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
     out.qd.row(row) = from.qd.row(centre);
     out.qdd.row(row) = from.qdd.row(centre);
     const Index first = centre - reach, count = 2 * reach + 1;
-    const bool filled = !from.filled.empty() && std::any_of(from.filled.begin() + first, from.filled.begin() + first + count,
-                                                            [](char c) { return c != 0; });
     for (Index j = 0; j < n; ++j) {
+      const bool filled = left_out(from, static_cast<int>(j), first, count);
       if (filled) out.present[static_cast<std::size_t>(j)](row) = false;
       if (filled || from.reversal.col(j).segment(first, count).any()) out.usable[static_cast<std::size_t>(j)](row) = false;
     }

@@ -95,6 +95,7 @@ PreparedLog copy_log(const Robot& robot, const Log& log) {
   out.tau = log.tau;
   out.line = log.line;
   out.filled = log.filled;
+  out.torque_out = log.torque_out;
   return out;
 }
 
@@ -161,11 +162,13 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
   out.qd = mean.series.evaluate(out.t_s, 1);
   out.qdd = mean.series.evaluate(out.t_s, 2);
   out.tau.resize(length, log.drives());
-  out.filled.assign(static_cast<std::size_t>(length), 0);
+  out.filled.assign(static_cast<std::size_t>(length), Log::kMeasured);
+  if (mean.log.torque_out.size() > 0) out.torque_out.resize(length, log.drives());
   for (Index k = 0; k < length; ++k) {
     const Index phase = ((k - out.first) % samples + samples) % samples;
     out.tau.row(k) = mean.log.tau.row(phase);
-    out.filled[static_cast<std::size_t>(k)] = mean.log.is_filled(phase) ? 1 : 0;
+    out.filled[static_cast<std::size_t>(k)] = mean.log.is_left_out(phase) ? Log::kLeftOut : Log::kMeasured;
+    if (out.torque_out.size() > 0) out.torque_out.row(k) = mean.log.torque_out.row(phase);
   }
   out.period_s = period_s;
   mark_reversals(robot, options, velocity_noise(log, options.cutoff_hz) / std::sqrt(static_cast<double>(mean.periods)), 0, out);
@@ -224,6 +227,12 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   return out;
 }
 
+bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
+  const auto begin = log.filled.begin() + (log.filled.empty() ? 0 : first);
+  if (!log.filled.empty() && std::find(begin, begin + count, Log::kLeftOut) != begin + count) return true;
+  return log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
+}
+
 void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
   const int n = robot.drives();
   const Index P = robot.parameters();
@@ -259,9 +268,8 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
     for (int j = 0; j < n; ++j) {
       if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
     }
-    if (!log.filled.empty() && std::any_of(log.filled.begin() + centre - reach, log.filled.begin() + centre + reach + 1,
-                                           [](char filled) { return filled != 0; })) {
-      block.use.row(k).setConstant(RowUse::unusable);
+    for (int j = 0; j < n; ++j) {
+      if (left_out(log, j, centre - reach, 2 * reach + 1)) block.use(k, j) = RowUse::unusable;
     }
   }
 }

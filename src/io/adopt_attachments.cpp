@@ -216,15 +216,6 @@ class Solver {
   /// from its centre to the strut that carries it. The plate's axes count as parallel to the base's.
   Attachments by_lengths() const {
     const std::size_t k = first_known();
-    for (std::size_t i = 0; i < limbs_.size(); ++i)
-      if (ends_[i] && std::abs((*ends_[i] - limbs_[i].elbow).norm() - length_of_known()) > kLevel)
-        throw Error(
-            fmt::format(
-                "the struts of link {} are {:.6g} m long, those of link {} {:.6g} m, and the joints at zero are no pose of "
-                "a robot with like limbs",
-                parts_.limbs[i].struts.front().name, (*ends_[i] - limbs_[i].elbow).norm(), parts_.limbs[k].struts.front().name,
-                length_of_known()),
-            "", "export the robot assembled, or mend the frames at the ends of the struts");
     const Vec end = *ends_[k];
     double radius = 0;
     std::string how;

@@ -282,6 +282,19 @@ Log read_log(const std::string& path, const RobotDescription& robot, const LogRe
   return log;
 }
 
+std::vector<Log> read_log_parts(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
+  LogReadOptions unchecked = options;
+  unchecked.check = false;
+  Log log = read_log(path, robot, unchecked);
+  std::vector<Log> parts;
+  if (options.check) {
+    parts = check_and_split(std::move(log), robot, options.checks);
+  } else {
+    parts.push_back(std::move(log));
+  }
+  return parts;
+}
+
 void write_log(const std::string& path, const Log& log, const RobotDescription& robot) {
   const std::pair<Block, const Eigen::MatrixXd*> blocks[] = {
       {Block::q, &log.q}, {Block::qd, &log.qd}, {Block::qdd, &log.qdd}, {Block::tau, &log.tau}};

@@ -235,7 +235,7 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   const Index drives = log.drives();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(points, drives);
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(points, drives);
-  Eigen::VectorXd used = Eigen::VectorXd::Zero(points);
+  Eigen::MatrixXd used = Eigen::MatrixXd::Zero(points, drives);
   const Eigen::RowVectorXd reference = log.tau.colwise().mean();  // squares of small numbers do not cancel
   for (int period = 0; period < mean.periods; ++period) {
     Eigen::MatrixXd tau;
@@ -248,26 +248,30 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
     for (Index i = 0; i < points; ++i) {
       const Index nearest = std::min(log.samples() - 1, static_cast<Index>(std::lround(when(i) / h)));
       if (log.is_filled(nearest)) continue;
-      const Eigen::RowVectorXd difference = tau.row(i) - reference;
-      sum.row(i) += difference;
-      squares.row(i) += difference.cwiseAbs2();
-      used(i) += 1.0;
+      for (Index d = 0; d < drives; ++d) {
+        if (log.torque_out.size() > 0 && log.torque_out(nearest, d)) continue;
+        const double difference = tau(i, d) - reference(d);
+        sum(i, d) += difference;
+        squares(i, d) += difference * difference;
+        used(i, d) += 1.0;
+      }
     }
   }
   one.tau.resize(points, drives);
   mean.tau_std.resize(points, drives);
   for (Index i = 0; i < points; ++i) {
-    const double n = used(i);
-    if (n < 1.0) {
-      one.filled.resize(static_cast<std::size_t>(points), 0);
-      one.filled[static_cast<std::size_t>(i)] = 1;
-      one.tau.row(i) = reference;
-      mean.tau_std.row(i).setConstant(std::numeric_limits<double>::infinity());
-      continue;
+    if ((used.row(i).array() < 1.0).all()) {
+      one.filled.resize(static_cast<std::size_t>(points), Log::kMeasured);
+      one.filled[static_cast<std::size_t>(i)] = Log::kLeftOut;
     }
-    one.tau.row(i) = reference + sum.row(i) / n;
-    // One sample shows no scatter.
     for (Index d = 0; d < drives; ++d) {
+      const double n = used(i, d);
+      one.tau(i, d) = reference(d) + (n > 0 ? sum(i, d) / n : 0.0);
+      if (n < 1.0) {
+        if (one.torque_out.size() == 0) one.torque_out.setConstant(points, drives, false);
+        one.torque_out(i, d) = true;
+      }
+      // One sample shows no scatter.
       const double variance = n > 1.0 ? std::max(0.0, squares(i, d) - sum(i, d) * sum(i, d) / n) / (n - 1.0)
                                       : std::numeric_limits<double>::infinity();
       mean.tau_std(i, d) = std::sqrt(variance / n);

@@ -52,7 +52,8 @@ struct PreparedLog {
   std::vector<long> line;          ///< of each sample in the file; empty if unknown
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
       reversal;              ///< N x drives: the sign of a friction in this drive's torque is uncertain
-  std::vector<char> filled;  ///< samples that the log reader repaired; empty: none
+  std::vector<char> filled;  ///< marks of Log::filled; empty: all measured
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< as Log::torque_out; empty: nowhere
   std::vector<std::string> notes;
 };
 
@@ -61,11 +62,14 @@ struct PreparedLog {
 /// derivatives when filter is off.
 [[nodiscard]] PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options);
 
+/// Do samples [first, first + count) hold one that must not enter a row of this drive (Log::filled, Log::torque_out)?
+[[nodiscard]] bool left_out(const PreparedLog& log, int drive, Eigen::Index first, Eigen::Index count);
+
 /// What a row may be used for.
 enum class RowUse : char {
   regular,   ///< for every fit
   reversal,  ///< a velocity reversal is in reach of the filter: only where static friction is no matter
-  unusable   ///< repaired samples in reach of the filter
+  unusable   ///< samples that are left out are in reach of the filter
 };
 
 /// Consecutive rows of a prepared log.

@@ -4,6 +4,7 @@
 /// Logs as CSV (see interfaces: `t_s, q1_rad, ..., tau1_Nm, ...`; prismatic drives: `q1_m, tau1_N`), and what import_log.hpp reads.
 
 #include <string>
+#include <vector>
 
 #include "deltadyn/runtime/robot_description.hpp"
 #include "deltadyn/signal/log.hpp"
@@ -29,6 +30,11 @@ struct LogReadOptions {
 /// A file of another form, or a map, goes through LogImport; the first note then says what was taken for what.
 /// Throws Error(bad_input) with file, line and column.
 [[nodiscard]] Log read_log(const std::string& path, const RobotDescription& robot, const LogReadOptions& options = {});
+
+/// Like read_log(), but a log with gaps, or with several recordings in one file, comes as its parts (check_and_split()). Without the
+/// check it is always one.
+[[nodiscard]] std::vector<Log> read_log_parts(const std::string& path, const RobotDescription& robot,
+                                              const LogReadOptions& options = {});
 
 /// Writes t_s, q and, where the log has them, qd, qdd, tau, in SI units. Numbers read back exactly.
 /// Throws Error(bad_input) if the disk is full; then nothing is left behind.

@@ -15,8 +15,9 @@ struct LogCheckOptions {
   /// false: the rows are states of their own, not a motion recorded evenly in time (a table of poses); only missing numbers,
   /// implausible positions and limits are looked at.
   bool motion = true;
-  int max_filled_gap = 3;              ///< longest run of missing samples that is filled in
-  double max_filled_share = 0.01;      ///< largest share of samples that may be filled in
+  int max_filled_gap = 3;              ///< longest run of missing samples that is filled in,
+  double max_filled_gap_s = 0.004;     ///< or as many as fit into this time; at longer gaps the log is split
+  double max_filled_share = 0.3;       ///< largest share of samples that may be missing or spoilt
   double max_stamp_jitter = 0.02;      ///< up to this share of the sample time, stamps are set to the even grid
   double max_resampled_jitter = 0.45;  ///< up to this share, the log is resampled onto the even grid
   Eigen::Index min_samples = 50;       ///< shorter logs are refused
@@ -29,7 +30,7 @@ struct LogCheckOptions {
   void validate() const;
 };
 
-/// What was found, for reports. Everything in it is also a note of the log.
+/// What was found, for reports. Everything in it is also a finding of the log.
 struct LogFindings {
   std::vector<std::string> notes;       ///< in plain words, with line numbers
   Eigen::Index filled_samples = 0;      ///< missing or spoilt samples that were filled in (Log::filled)
@@ -38,13 +39,25 @@ struct LogFindings {
   bool resampled = false;               ///< values were moved onto the even grid by cubic interpolation
 };
 
-/// Checks a log, in this order: counts, time stamps, missing numbers, positions in degrees, limits, single-sample spikes,
-/// stuck encoders, saturated torque, excitation.
+/// Checks a log and mends what is certain and harmless, with one finding for each kind of fault (Log::findings, Log::notes):
+/// - stamps: rows that are there twice, single wrong stamps, a clock coarser than the sampling or one that drifts, stamps that jitter
+///   about even samples, samples taken at uneven times (moved to even steps);
+/// - counters that ran over; rows that hold the values of the row before; channels that change only every n-th row (the log comes to
+///   that rate, in phase);
+/// - lost rows, missing numbers and spikes of a few samples: filled from their neighbours, marked in Log::filled. Where the filling
+///   is as good as the channel's noise the rows stay in use (Log::kBridged), else they are left out (Log::kLeftOut);
+/// - torque of a drive at rest, cut off, or constant because the servo is off: left out (Log::torque_out).
 ///
-/// Repaired, with a note: exact duplicates of a row, stamps with rounding or jitter, short gaps and missing numbers and
-/// single-sample spikes (positions by a cubic, torque by a line, sample marked in Log::filled); samples where the torque
-/// is cut off are marked too.
-/// Afterwards Log::t_s is even and every number is finite. Throws Error(bad_input) for everything else.
+/// At gaps longer than can be filled, and where the stamps of another recording begin, the log falls into parts, which have the same
+/// Log::file and are numbered by Log::part. Parts that are too short or cannot be used are left away, and that is said.
+/// What was measured on the way (rate, jitter, steps, noise, travel) is a finding of level fine, in the first part.
+/// \param findings  may be null
+/// \return  at least one part; in each t_s is even and every number is finite
+/// Throws Error(bad_input) with file, line and column for everything else: positions in degrees, stuck encoders, lost counts, ...
+[[nodiscard]] std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options = {},
+                                               LogFindings* findings = nullptr);
+
+/// check_and_split() of a log without gaps, in place. Throws Error(bad_input) if it falls into several parts.
 LogFindings check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options = {});
 
 }  // namespace deltadyn

@@ -1,0 +1,46 @@
+/// \file
+/// What is measured of every log and stands in summaries: resolution, noise, travel.
+
+#include <fmt/format.h>
+
+#include "deltadyn/signal/log_columns.hpp"
+
+#include "checks.hpp"
+#include "statistics.hpp"
+
+namespace deltadyn::checks {
+namespace {
+
+void add(const CheckRoom& room, const char* key, Index drive, double value, const std::string& unit, const std::string& text) {
+  LogFinding finding;
+  finding.key = key;
+  finding.drive = static_cast<int>(drive);
+  finding.value = value;
+  finding.unit = unit;
+  finding.text = room.log.file + ": " + text;
+  room.tell(std::move(finding));
+}
+
+}  // namespace
+
+void measure_channels(CheckRoom& room) {
+  const Log& log = room.log;
+  for (Index d = 0; d < log.drives(); ++d) {
+    const DriveColumns names = drive_columns(room.robot, static_cast<int>(d));
+    const std::string length = room.turns(d) ? "rad" : "m";
+    const std::string effort = room.turns(d) ? "N*m" : "N";
+    const ChannelQuality q = measure_channel(log.q.col(d));
+    add(room, "step", d, q.step, length, fmt::format("{} is quantised to {:.3g} {}", names.q, q.step, length));
+    add(room, "noise", d, q.noise, length, fmt::format("{} has noise of {:.3g} {}", names.q, q.noise, length));
+    add(room, "travel", d, q.travel, length, fmt::format("{} travels {:.4g} {}", names.q, q.travel, length));
+    if (room.stale_positions[static_cast<std::size_t>(d)] == 1) {
+      add(room, "stale", d, 1.0, "rows", names.q + " is fresh in every row");
+    }
+    if (log.tau.size() == 0) continue;
+    const ChannelQuality tau = measure_channel(log.tau.col(d));
+    add(room, "torque_step", d, tau.step, effort, fmt::format("{} is quantised to {:.3g} {}", names.tau, tau.step, effort));
+    add(room, "torque_noise", d, tau.noise, effort, fmt::format("{} has noise of {:.3g} {}", names.tau, tau.noise, effort));
+  }
+}
+
+}  // namespace deltadyn::checks

@@ -1,0 +1,96 @@
+/// \file
+/// A torque that is cut off at a level.
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deltadyn/signal/log_columns.hpp"
+
+#include "checks.hpp"
+
+namespace deltadyn::checks {
+namespace {
+
+constexpr Index kShortestRun = 3;    // equal values in a row at the level
+constexpr Index kFewestClipped = 6;  // rows; fewer are chance
+constexpr Index kMostBeyond = 3;     // rows beyond a level that is still the level of a cut: spikes
+
+/// The rows of one drive at a level where its torque is cut off.
+struct Cut {
+  double level = 0;
+  std::vector<Index> rows;
+};
+
+/// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for spikes.
+Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double sign) {
+  Cut best;
+  const Index n = tau.size();
+  const auto counts = [&](Index begin, Index end) {
+    return end - begin >= kShortestRun && out[static_cast<std::size_t>(begin)] == 0;
+  };
+  // The extreme among values that occur in runs.
+  bool any = false;
+  for (Index begin = 0; begin < n;) {
+    Index end = begin + 1;
+    while (end < n && tau(end) == tau(begin)) ++end;
+    if (counts(begin, end) && (!any || sign * tau(begin) > sign * best.level)) {
+      best.level = tau(begin);
+      any = true;
+    }
+    begin = end;
+  }
+  if (!any) return best;
+  Index beyond = 0;
+  for (Index begin = 0; begin < n;) {
+    Index end = begin + 1;
+    while (end < n && tau(end) == tau(begin)) ++end;
+    if (tau(begin) == best.level && counts(begin, end)) {
+      for (Index i = begin; i < end; ++i) best.rows.push_back(i);
+    } else if (sign * tau(begin) > sign * best.level) {
+      beyond += end - begin;
+    }
+    begin = end;
+  }
+  if (beyond > kMostBeyond) best.rows.clear();
+  return best;
+}
+
+}  // namespace
+
+void check_saturation(CheckRoom& room) {
+  const Log& log = room.log;
+  const Index n = log.samples();
+  for (Index d = 0; d < log.tau.cols(); ++d) {
+    const auto tau = log.tau.col(d);
+    const std::string column = drive_columns(room.robot, static_cast<int>(d)).tau;
+    if (tau.maxCoeff() == tau.minCoeff()) continue;
+    // A servo that is off also repeats a value; it was found before.
+    std::vector<char> out(static_cast<std::size_t>(n), 0);
+    for (Index i = 0; i < n && log.torque_out.size() > 0; ++i) out[static_cast<std::size_t>(i)] = log.torque_out(i, d) ? 1 : 0;
+    const Cut above = cut_of(tau, out, 1.0);
+    const Cut below = cut_of(tau, out, -1.0);
+    std::vector<Index> rows;
+    std::merge(above.rows.begin(), above.rows.end(), below.rows.begin(), below.rows.end(), std::back_inserter(rows));
+    const auto clipped = static_cast<Index>(rows.size());
+    // Where the other values repeat too, equality means nothing.
+    Index repeats = 0;
+    for (Index i = 1; i < n; ++i) repeats += tau(i) == tau(i - 1) && out[static_cast<std::size_t>(i)] == 0 ? 1 : 0;
+    const Index repeated_elsewhere = std::max<Index>(0, repeats - clipped);
+    if (clipped < kFewestClipped || repeated_elsewhere > (n - clipped) / 5) continue;
+    const double share = static_cast<double>(clipped) / static_cast<double>(n);
+    const std::string levels = above.rows.empty()   ? fmt::format("{:.9g}", below.level)
+                               : below.rows.empty() ? fmt::format("{:.9g}", above.level)
+                                                    : fmt::format("{:.9g} or {:.9g}", below.level, above.level);
+    if (share > room.options.max_saturated_share) {
+      throw Error(fmt::format("the torque is at its extreme ({}) in {:.2g} % of the samples, the first one here: it is cut off",
+                              levels, 100.0 * share),
+                  room.where(rows.front(), column), "record a gentler motion, or widen the range of the recorder");
+    }
+    for (const Index i : rows) room.leave_torque_out(d, i, i + 1);
+    room.tell(FindingLevel::mended, "torque_cut_off", rows.front(), column, static_cast<int>(d), static_cast<double>(clipped),
+              "rows", fmt::format("the torque is cut off at {} from here on in {} samples, left out of fits", levels, clipped));
+  }
+}
+
+}  // namespace deltadyn::checks

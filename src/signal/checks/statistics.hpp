@@ -1,0 +1,44 @@
+#pragma once
+
+/// \file
+/// Order statistics of channels of any length, from evenly spread stretches of rows.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace deltadyn::checks {
+
+/// Value below which the share lies; 0 for no values.
+inline double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+inline double median(std::vector<double> values) {
+  return quantile(values, 0.5);
+}
+
+/// A stretch of consecutive rows [first, second).
+using Stretch = std::pair<Eigen::Index, Eigen::Index>;
+
+/// Stretches of `length` rows that tell as much about a channel as all of its rows: all rows of a short log, evenly spread ones of
+/// a long log, so that the statistics of a long log cost no more than those of a short one.
+inline std::vector<Stretch> sample_stretches(Eigen::Index rows, Eigen::Index length) {
+  constexpr Eigen::Index kEnoughRows = 40000;
+  std::vector<Stretch> stretches;
+  const Eigen::Index all = std::max<Eigen::Index>(1, rows / length);
+  const Eigen::Index wanted = std::min(all, std::max<Eigen::Index>(1, kEnoughRows / length));
+  for (Eigen::Index k = 0; k < wanted; ++k) {
+    const Eigen::Index begin = k * all / wanted * length;
+    // The last stretch of a log that is used whole takes what is left over.
+    const Eigen::Index end = wanted == all && k + 1 == all ? rows : std::min(rows, begin + length);
+    stretches.emplace_back(begin, end);
+  }
+  return stretches;
+}
+
+}  // namespace deltadyn::checks
