@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
@@ -14,7 +15,9 @@
 
 #include "deltadyn/excitation/optimize.hpp"
 #include "deltadyn/excitation/predicted_uncertainty.hpp"
+#include "deltadyn/excitation/reversals.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/identification/log_processing.hpp"
 #include "deltadyn/io/coefficient_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -112,6 +115,14 @@ class Excite {
     app.add_option("--segments", segments_, "motions one after the other, each as good as possible beside the others")
         ->capture_default_str();
     list("--segment-speeds", options_.speeds, "speed of each segment as a share of the velocity limits, e.g. 0.3,1 [1]");
+    app.add_flag("--segment-files", segment_files_, "each segment in a file of its own, too: OUTPUT_1.csv, OUTPUT_2.csv, ..");
+    app.add_option("--away-from-reversals", options_.least_away,
+                   "share of the time that every drive is away from velocity reversals, at least, 0: no matter [1]")
+        ->capture_default_str();
+    app.add_option("--cutoff-hz", cutoff_hz_, "cut-off of the identification, which sets what it leaves out near a reversal [Hz]")
+        ->capture_default_str();
+    app.add_option("--torque-margin", torque_margin_,
+                   "share of the torque limits left for a model that is off, 0..0.9 [the model's uncertainty and 5 %]");
     app.add_option("--duration-s", duration_s_, "of the periodic part of each segment, at least; whole periods [s]")
         ->capture_default_str();
     app.add_option("--rate-hz", options_.rate_hz, "sample rate of the controller [Hz]")->capture_default_str();
@@ -144,7 +155,10 @@ class Excite {
   ExitCode execute(ToolRun& run) {
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    run.check_files({output_, coefficients_, validation_, report_file_}, {robot_file_, params_file_});
+    std::vector<std::string> outputs = {output_, coefficients_, validation_, report_file_};
+    const std::vector<std::string> own_files = segment_file_names();
+    outputs.insert(outputs.end(), own_files.begin(), own_files.end());
+    run.check_files(outputs, {robot_file_, params_file_});
     if (!report_file_.empty() && !gnuplot_available())
       throw Error("the report needs gnuplot", "", "install gnuplot-nox, or leave out --report", ExitCode::usage);
     options_.seed = run.seed;
@@ -152,12 +166,14 @@ class Excite {
     const auto robot = make_robot(description, parameter_options(description));
     set_options();
     const NominalParameters nominal = nominal_parameters(*robot, PartShapes(description));
-    const VectorXd parameters = params_file_.empty()
-                                    ? nominal.value
-                                    : values(read_parameters(params_file_, description), robot->parameter_names(), robot->parameter_units());
-    const MotionLimits limits = motion_limits(*robot, parameters);
+    NominalParameters model = nominal;
+    if (!params_file_.empty()) model = known_model(*robot);
+    const VectorXd& parameters = model.value;
+    MotionLimits limits = motion_limits(*robot, parameters);
+    if (!params_file_.empty()) keep_torque_margin(*robot, model, limits);
     const BaseParameters base = find_base_parameters(*robot);
     const VectorXd scale = torque_scale(*robot, nominal.value);
+    if (!params_file_.empty()) tell_scale_below_friction(*robot, parameters, scale);
     const DesignSpace space = make_design_space(*robot, limits, base.independent, scale, bound_states_, run.seed);
     const DesignBound bound = design_bound(space);
 
@@ -174,6 +190,10 @@ class Excite {
     options_.progress = [&bar](double share) { bar.update(share); };
     const Written main = make(*robot, space, limits, bound, options_);
     write_trajectory(output_, main.samples, description);
+    for (std::size_t k = 0; k < own_files.size(); ++k) {
+      const MotionPlan plan = make_plan(*robot, {main.segments[k]}, options_.rate_hz, periodic_);
+      write_trajectory(own_files[k], sample_plan(*robot, plan, options_.rate_hz), description);
+    }
     if (!coefficients_.empty()) {
       std::vector<FourierSeries> series;
       for (const Excitation::Segment& segment : main.excitation.segments) series.push_back(segment.series);
@@ -200,6 +220,11 @@ class Excite {
     input.base_scale = input.base_values.cwiseAbs().cwiseMax(spread_of_base);
     input.values_are_nominal = params_file_.empty();
     if (second) input.validation = &second->samples;
+    if (options_.reversal_reach_s > 0) {
+      input.away_from_reversals = away_from_reversals(*robot, main.segments);
+      input.least_away = options_.least_away;
+      input.reversal_cutoff_hz = cutoff_hz_;
+    }
     if (!report_file_.empty()) {
       ReportContext context;
       context.robot_file = robot_file_;
@@ -207,7 +232,7 @@ class Excite {
       context.command_line = command_line_;
       write_file(report_file_, excitation_report(input, context));
     }
-    return tell(input, second ? &second->excitation : nullptr, seconds(), run.summary);
+    return tell(input, second ? &*second : nullptr, seconds(), run.summary);
   }
 
   /// Time to keep for what follows a search.
@@ -259,6 +284,10 @@ class Excite {
                   "give one speed a segment", ExitCode::usage);
     options_.time_limit_s = time_limit_s_;
     options_.validate();
+    if (segment_files_ && segments_ < 2 && options_.speeds.size() < 2)
+      throw Error("--segment-files with one segment", "", "give --segments 2 --segment-speeds 0.3,1, or leave it out",
+                  ExitCode::usage);
+    set_reversals();
     if (!(duration_s_ > 0) || !(duration_s_ <= 36000))
       throw Error("--duration-s is out of range", "", "give 0 to 36000 s", ExitCode::usage);
     if (options_.lowest_hz * duration_s_ < 1 - 1e-9)
@@ -269,6 +298,111 @@ class Excite {
                   ExitCode::usage);
     if (periodic_ && options_.speeds.size() > 1)
       throw Error("--periodic holds one segment", "", "leave out --periodic or --segments", ExitCode::usage);
+  }
+
+  /// What an identification at this cut-off leaves out on either side of a reversal.
+  void set_reversals() {
+    const ProcessingOptions usual;
+    const double low_pass_hz = usual.torque_cutoff_ratio * cutoff_hz_;
+    if (!(cutoff_hz_ > 0) || !(low_pass_hz < 0.5 * options_.rate_hz))
+      throw Error(fmt::format("a cut-off of {} Hz is out of range", cutoff_hz_), "--cutoff-hz",
+                  fmt::format("give 1 to {:.4g} Hz", 0.25 * options_.rate_hz), ExitCode::usage);
+    options_.reversal_reach_s = options_.least_away > 0 ? reversal_reach_s(low_pass_hz, options_.rate_hz) : 0.0;
+  }
+
+  /// Drives x segments, over the periodic part of each.
+  [[nodiscard]] Eigen::MatrixXd away_from_reversals(const Robot& robot, const std::vector<PlanSegment>& segments) const {
+    Eigen::MatrixXd shares(robot.drives(), static_cast<Eigen::Index>(segments.size()));
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      const MotionPlan plan = make_plan(robot, {segments[k]}, options_.rate_hz, true);
+      shares.col(static_cast<Eigen::Index>(k)) = share_away_from_reversals(
+          robot, sample_plan(robot, plan, options_.rate_hz), options_.reversal_reach_s, ProcessingOptions{}.reversal_floor);
+    }
+    return shares;
+  }
+
+  /// OUTPUT_1.csv, OUTPUT_2.csv, .. beside the output, if they are asked for.
+  [[nodiscard]] std::vector<std::string> segment_file_names() const {
+    std::vector<std::string> names;
+    if (!segment_files_) return names;
+    const std::filesystem::path path(output_);
+    const std::size_t count = std::max(static_cast<std::size_t>(std::max(segments_, 1)), options_.speeds.size());
+    for (std::size_t k = 1; k <= count; ++k)
+      names.push_back((path.parent_path() / fmt::format("{}_{}{}", path.stem().string(), k, path.extension().string())).string());
+    return names;
+  }
+
+  /// Values of --params; a value whose standard deviation the file does not give is as uncertain as a prior of the fit.
+  [[nodiscard]] NominalParameters known_model(const Robot& robot) const {
+    const ParameterMatch match =
+        match_parameters(read_parameters(params_file_, robot.description()), robot.parameter_names(), robot.parameter_units());
+    NominalParameters model{match.value, match.std};
+    const VectorXd usual = ConsistentFitOptions{}.prior_relative_std * match.value.cwiseAbs();
+    model.std = model.std.array().isFinite().select(model.std, usual);
+    return model;
+  }
+
+  /// Share of the torque that the model's uncertainty may make of a drive's torque, all parameters off the same way, as those of a
+  /// prior that is too light are.
+  [[nodiscard]] static double model_uncertainty(const Robot& robot, const NominalParameters& model) {
+    WorkspaceSampler sampler(robot);
+    VectorXd q, qd, qdd;
+    Eigen::MatrixXd Y(robot.drives(), robot.parameters());
+    VectorXd off = VectorXd::Zero(robot.drives()), all = off;
+    for (int k = 0; k < kScaleStates; ++k) {
+      sampler.next(q, qd, qdd);
+      if (robot.regressor(q, qd, qdd, Y) != Status::ok) continue;
+      off += Y.cwiseAbs() * model.std;
+      all += Y.cwiseAbs() * model.value.cwiseAbs();
+    }
+    return off.cwiseQuotient(all.cwiseMax(1e-300)).maxCoeff();
+  }
+
+  /// Takes the margin off the torque limits, and refuses limits that friction alone exceeds.
+  void keep_torque_margin(const Robot& robot, const NominalParameters& model, MotionLimits& limits) const {
+    constexpr double kForTheLoop = 0.05;  // what the controller adds to the model's torque
+    constexpr double kLargest = 0.5;      // a model that is further off does not limit a torque at all
+    if (torque_margin_ && !(*torque_margin_ >= 0 && *torque_margin_ < 0.9))
+      throw Error("--torque-margin is out of range", "", "give 0 to 0.9, the share of the torque limits to keep free",
+                  ExitCode::usage);
+    const double margin = torque_margin_.value_or(std::min(kLargest, model_uncertainty(robot, model) + kForTheLoop));
+    bool limited = false;
+    for (int i = 0; i < robot.drives(); ++i) {
+      if (!std::isfinite(limits.tau(i))) continue;
+      limited = true;
+      const double friction = coulomb_of(robot, model.value, i);
+      const char* unit = tools::torque_unit(robot.description(), i);
+      if (friction >= (1 - margin) * limits.tau(i))
+        throw Error(
+            fmt::format("the model's Coulomb friction of drive {} is {:.4g} {}, of {:.4g} {} that the drive may give ({:.4g} {} "
+                        "less a margin of {:.0f} %): nothing may move",
+                        i + 1, friction, unit, (1 - margin) * limits.tau(i), unit, limits.tau(i), unit, 100 * margin),
+            params_file_,
+            "check unit and scale of the friction in the model, and of the torque limits; --torque-margin 0 "
+            "keeps nothing free");
+    }
+    if (!limited) return;
+    limits.tau *= 1 - margin;
+    fmt::print("torque limits planned with a margin of {:.0f} % for a model that is off{}\n", 100 * margin,
+               torque_margin_ ? "" : " (its uncertainty and 5 %; --torque-margin)");
+  }
+
+  [[nodiscard]] static double coulomb_of(const Robot& robot, const VectorXd& parameters, int drive) {
+    const auto& names = robot.parameter_names();
+    const auto at = std::find(names.begin(), names.end(), fmt::format("drive{}.coulomb", drive + 1));
+    return at == names.end() ? 0.0 : std::abs(parameters(at - names.begin()));
+  }
+
+  static void tell_scale_below_friction(const Robot& robot, const VectorXd& parameters, const VectorXd& scale) {
+    for (int i = 0; i < robot.drives(); ++i) {
+      const double friction = coulomb_of(robot, parameters, i);
+      const char* unit = tools::torque_unit(robot.description(), i);
+      if (friction > scale(i))
+        fmt::print(
+            "note: the torque scale of drive {} is {:.4g} {}, less than its Coulomb friction in the model, {:.4g} {}: check "
+            "the unit of --torque-scale or of the model\n",
+            i + 1, scale(i), unit, friction, unit);
+    }
   }
 
   ParameterOptions parameter_options(const RobotDescription& robot) const {
@@ -405,9 +539,23 @@ class Excite {
     return scale;
   }
 
-  ExitCode tell(const ExcitationReportInput& input, const Excitation* validation, double total_s, Summary& out) const {
+  /// Shares away from reversals of each segment, by drives.
+  void tell_reversals(const Eigen::MatrixXd& away, const std::string& of, Summary& out) const {
+    for (Eigen::Index k = 0; k < away.cols(); ++k) {
+      std::vector<std::string> shares;
+      for (Eigen::Index i = 0; i < away.rows(); ++i) {
+        shares.push_back(fmt::format("{:.0f}", 100 * away(i, k)));
+        out.add(fmt::format("away_from_reversals_{}segment{}_drive{}", of.empty() ? "" : of + "_", k + 1, i + 1), away(i, k));
+      }
+      fmt::print("{}{}segment {}: {} % of the rows of drives 1..{} away from velocity reversals, at a cut-off of {:.3g} Hz\n", of,
+                 of.empty() ? "" : ", ", k + 1, fmt::join(shares, ", "), shares.size(), cutoff_hz_);
+    }
+  }
+
+  ExitCode tell(const ExcitationReportInput& input, const Written* validation, double total_s, Summary& out) const {
     const Excitation& e = input.excitation;
     const LimitUse& tight = input.check.tightest();
+    const Assessment assessment = assess_excitation(input);
     fmt::print("{}\n", e.brief_report());
     fmt::print("{} base parameters of {} columns, {} samples in {:.3f} s\n", input.base.count(), input.robot.parameters(),
                input.samples.samples(), input.plan.duration_s);
@@ -436,6 +584,9 @@ class Excite {
             "--time-limit-s\n",
             k + 1);
     }
+    tell_reversals(input.away_from_reversals, "", out);
+    if (validation != nullptr && options_.reversal_reach_s > 0)
+      tell_reversals(away_from_reversals(input.robot, validation->segments), "validation", out);
     out.add("d_efficiency", e.d_efficiency);
     out.add("constraint_margin", input.check.margin());
     out.add("tightest_limit", tight.limit.name);
@@ -457,9 +608,13 @@ class Excite {
     out.add("starts", e.starts);
     out.add("finished_starts", e.finished_starts);
     out.add("stopped", e.interrupted ? "interrupted" : (e.out_of_time ? "time" : "completed"));
-    if (validation != nullptr) out.add("validation_d_efficiency", validation->d_efficiency);
-    fmt::print("wrote {}{}{}{}\n", output_, coefficients_.empty() ? "" : ", " + coefficients_,
-               validation_.empty() ? "" : ", " + validation_, report_file_.empty() ? "" : ", " + report_file_);
+    if (validation != nullptr) out.add("validation_d_efficiency", validation->excitation.d_efficiency);
+    out.add("verdict", tools::verdict_word(assessment.verdict));
+    std::string written = output_;
+    for (const std::string& file : segment_file_names()) written += ", " + file;
+    for (const std::string& file : {coefficients_, validation_, report_file_}) written += file.empty() ? "" : ", " + file;
+    fmt::print("wrote {}\n", written);
+    tools::print_assessment(assessment);
     return ExitCode::done;
   }
 
@@ -468,14 +623,16 @@ class Excite {
   std::vector<double> centre_, size_, velocity_rad_, velocity_m_, acceleration_rad_, acceleration_m_, torque_, force_;
   std::vector<double> plate_velocity_, plate_acceleration_, torque_scale_, noise_, frequency_ = {0.1, 1.0};
   std::optional<double> radius_, top_radius_, height_, yaw_velocity_, yaw_acceleration_, yaw_range_;
-  double duration_s_ = 10, time_limit_s_ = 60;
+  double duration_s_ = 10, time_limit_s_ = 60, cutoff_hz_ = 40;
+  std::optional<double> torque_margin_;
   int segments_ = 1, bound_states_ = kUsualStates;
-  bool periodic_ = false, individual_limbs_ = false, without_tool_ = false, offset_ = false;
+  bool periodic_ = false, segment_files_ = false, individual_limbs_ = false, without_tool_ = false, offset_ = false;
   CLI::Option* offset_flag_ = nullptr;
   std::vector<int> rotor_inertia_;
   ExcitationOptions options_ = [] {
     ExcitationOptions options;
     options.speeds.clear();
+    options.least_away = 0.45;  // at a cut-off of 30 Hz a third is then still left, from which on validation has no reservations
     return options;
   }();
 };

@@ -1,8 +1,11 @@
 #include "design_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "deltadyn/excitation/reversals.hpp"
 
 namespace deltadyn::detail {
 
@@ -41,6 +44,9 @@ DesignProblem::DesignProblem(const DesignSpace& space, const MotionLimits& limit
     }
   }
   scale_ = scale_matrix_.reshaped();
+  rate_unit_ = limits.qd;
+  for (int i = 0; i < n; ++i)
+    if (!std::isfinite(rate_unit_(i))) rate_unit_(i) = space.rate_scale(i);
   const VectorXd phases = even_phases(settings.samples);
   for (int d = 0; d < 3; ++d) basis_[d] = fourier_basis(phases, settings.harmonics, d);
   if (settings.sign_share > 0) {
@@ -150,10 +156,7 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
   out.value = criterion.value;
 
   // Drive velocities in units of their limits, root of the mean square: the second term of (9).
-  VectorXd velocity_unit = limits_.qd;
-  for (Index i = 0; i < n; ++i)
-    if (!std::isfinite(velocity_unit(i))) velocity_unit(i) = space_.rate_scale(i);
-  const MatrixXd share_of_limit = at.drives.middleRows(n, n).array().colwise() / velocity_unit.array();
+  const MatrixXd share_of_limit = at.drives.middleRows(n, n).array().colwise() / rate_unit_.array();
   const double rms = std::sqrt(share_of_limit.squaredNorm() / samples_real);
   out.value += settings_.velocity_weight * rms;
 
@@ -173,7 +176,7 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
     }
   }
   const Index windows = settings_.windows;
-  out.constraints.resize(limits * windows);
+  out.constraints.resize(constraints());
   MatrixXd weight(limits, count);  // signed: d constraint / d usage
   for (Index k = 0; k < limits; ++k) {
     const bool both = two_sided(list_[static_cast<std::size_t>(k)]);
@@ -193,10 +196,13 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
     }
   }
   out.regular = true;
-  if (!derivatives) return;
-
+  out.lacks_away = 0;
+  if (!derivatives) {
+    if (minds_reversals()) add_reversals(at, false, out);
+    return;
+  }
   out.gradient = VectorXd::Zero(v.size());
-  out.jacobian = MatrixXd::Zero(v.size(), limits * windows);
+  out.jacobian = MatrixXd::Zero(v.size(), constraints());
   const RowMatrix G_A = (2 * settings_.share / samples_real) * (at.A * criterion.by_M);
   at.drive_jacobian.assign(static_cast<std::size_t>(count), MatrixXd(3 * n, 3 * n));
   if (torque) at.tau_jacobian.assign(static_cast<std::size_t>(count), MatrixXd(n, 3 * n));
@@ -214,7 +220,7 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
       return;
     }
     if (settings_.velocity_weight != 0 && rms > 0) {
-      const VectorXd by_qd = share_of_limit.col(i).cwiseQuotient(velocity_unit) / (rms * samples_real);
+      const VectorXd by_qd = share_of_limit.col(i).cwiseQuotient(rate_unit_) / (rms * samples_real);
       g += settings_.velocity_weight * jacobian.middleRows(n, n).transpose() * by_qd;
     }
     chain(at, i, g, out.gradient);
@@ -242,6 +248,52 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
       chain(at, i, g, out.jacobian.col(k * windows + window));
     }
   }
+  if (minds_reversals()) add_reversals(at, true, out);
+}
+
+/// One constraint a drive: least share away from reversals minus the mean of the smooth distances, own times that of the bar.
+void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Evaluation& out) const {
+  const Index n = space_.regressor->drives(), count = settings_.samples;
+  const auto first = static_cast<Index>(list_.size()) * settings_.windows;
+  const RobotDescription& robot = space_.robot->description();
+  const auto limbs = static_cast<Index>(robot.limbs.size());
+  const double reach = settings_.reversal_reach_s;
+  constexpr double kLeastRate = 0.003;  // of the joint's scale, as the mask's floor
+  const double bar_rate =               // of d . v, typical
+      robot.telescope ? (space_.states.centre.head<3>() + robot.telescope->p_BV - robot.telescope->p_WU).norm() *
+                            space_.rate_scale.head<3>().norm()
+                      : 0.0;
+  out.constraints.tail(n).setConstant(settings_.least_away);
+  VectorXd g(3 * n);
+  for (Index i = 0; i < count; ++i) {
+    // The bar's length L turns where L dL/dt = d . v does, d from its upper to its lower joint and v the plate's velocity.
+    SmoothDistance bar;
+    Eigen::Vector3d d = Eigen::Vector3d::Zero(), v = d, a = d;
+    if (robot.telescope) {
+      d = samples.x.col(i).head<3>() + robot.telescope->p_BV - robot.telescope->p_WU;
+      v = samples.x.col(i).segment<3>(n);
+      a = samples.x.col(i).segment<3>(2 * n);
+      bar = distance_from_reversal(d.dot(v), v.dot(v) + d.dot(a), reach, kLeastRate * bar_rate);
+    }
+    for (Index j = 0; j < n; ++j) {
+      const bool with_bar = robot.telescope && j < limbs;
+      const SmoothDistance own =
+          distance_from_reversal(samples.drives(n + j, i), samples.drives(2 * n + j, i), reach, kLeastRate * rate_unit_(j));
+      const double of_bar = with_bar ? bar.value : 1.0;
+      out.constraints(first + j) -= own.value * of_bar / static_cast<double>(count);
+      if (!derivatives) continue;
+      const MatrixXd& J = samples.drive_jacobian[static_cast<std::size_t>(i)];
+      g = of_bar * (own.by_rate * J.row(n + j) + own.by_acceleration * J.row(2 * n + j)).transpose();
+      if (with_bar) {
+        g.head<3>() += own.value * (bar.by_rate * v + bar.by_acceleration * a);
+        g.segment<3>(n) += own.value * (bar.by_rate * d + 2 * bar.by_acceleration * v);
+        g.segment<3>(2 * n) += own.value * bar.by_acceleration * d;
+      }
+      g /= -static_cast<double>(count);
+      chain(samples, i, g, out.jacobian.col(first + j));
+    }
+  }
+  out.lacks_away = std::max(0.0, out.constraints.tail(n).maxCoeff());
 }
 
 }  // namespace deltadyn::detail

@@ -23,6 +23,8 @@ struct ProblemSettings {
   double sign_share = 0.02;           ///< width of the smooth Coulomb sign as a share of the joint's rate scale; 0: true sign
   Eigen::MatrixXd other_information;  ///< of the other segments, times their shares of time; empty: none
   double share = 1;                   ///< share of time of this segment
+  double reversal_reach_s = 0;        ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
+  double least_away = 0;              ///< share of the period that every drive is away from reversals, at least
 };
 
 /// Variables v: the coefficients in units of the largest amplitude that the limits allow them, then the base frequency between
@@ -33,16 +35,19 @@ class DesignProblem {
     bool regular = false;         ///< false: a pose is out of reach or the information singular
     double value = 0;             ///< criterion + velocity term, to be made large
     Eigen::VectorXd gradient;     ///< by v
-    Eigen::VectorXd constraints;  ///< one a limit and window, kept if <= 0
+    Eigen::VectorXd constraints;  ///< one a limit and window, then one a drive for its reversals; kept if <= 0
     Eigen::MatrixXd jacobian;     ///< variables x constraints
     double worst = 0;             ///< largest load of any limit at the samples
+    double lacks_away = 0;        ///< by how much some drive misses its share away from reversals
     Eigen::MatrixXd information;  ///< of this segment alone
   };
 
   DesignProblem(const DesignSpace& space, const MotionLimits& limits, const ProblemSettings& settings);
 
   [[nodiscard]] int variables() const { return static_cast<int>(scale_.size()) + 1; }
-  [[nodiscard]] int constraints() const { return static_cast<int>(list_.size()) * settings_.windows; }
+  [[nodiscard]] int constraints() const {
+    return static_cast<int>(list_.size()) * settings_.windows + (minds_reversals() ? space_.regressor->drives() : 0);
+  }
   [[nodiscard]] FourierSeries series(const Eigen::VectorXd& v) const;
   [[nodiscard]] Eigen::VectorXd variables_of(const FourierSeries& series) const;
   /// \param derivatives  false leaves gradient and jacobian empty
@@ -52,6 +57,8 @@ class DesignProblem {
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Samples;
+  [[nodiscard]] bool minds_reversals() const { return settings_.reversal_reach_s > 0 && settings_.least_away > 0; }
+  void add_reversals(const Samples& samples, bool derivatives, Evaluation& out) const;
   /// Adds the gradient by v of a quantity with the gradient g by the state of sample i.
   template <class Out>
   void chain(const Samples& samples, Eigen::Index i, const Eigen::VectorXd& g, Out&& out) const;
@@ -64,7 +71,8 @@ class DesignProblem {
   Eigen::MatrixXd scale_matrix_;
   Eigen::VectorXd scale_;  ///< of the coefficients, column after column
   Eigen::VectorXd sign_width_;
-  Eigen::MatrixXd basis_[3];  ///< samples x (1 + 2 harmonics)
+  Eigen::VectorXd rate_unit_;  ///< of the drives: their limit, else the states' scale
+  Eigen::MatrixXd basis_[3];   ///< samples x (1 + 2 harmonics)
 };
 
 }  // namespace deltadyn::detail

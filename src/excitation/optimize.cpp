@@ -45,6 +45,8 @@ constexpr double kPreparation_s = 2;        // before the starts and after them
 constexpr double kShareOfTime = 0.6;        // of the time limit that the starts may plan for
 constexpr double kTimeForTwoRounds_s = 10;  // a segment: with less time it is not taken up a second time
 
+constexpr double kAwayRoom = 0.03;  // the smooth share away from reversals differs from the true one by about as much
+
 int search_samples(int harmonics) {
   return std::max(60, 20 * harmonics);
 }
@@ -190,6 +192,8 @@ class SegmentSearch {
     s.sign_share = polish ? 0.01 : 0.02;
     s.other_information = other_;
     s.share = share_;
+    s.reversal_reach_s = options_.reversal_reach_s;
+    s.least_away = options_.least_away + kAwayRoom;
     return s;
   }
 
@@ -201,7 +205,9 @@ class SegmentSearch {
     const DesignProblem problem(space_, limits_, s);
     DesignProblem::Evaluation e;
     problem.evaluate(problem.variables_of(series), false, e);
-    return e.regular ? e.value : -std::numeric_limits<double>::infinity();
+    // A motion that lacks rows away from reversals falls behind one that has them, whatever else it shows.
+    const double price = 2.0 * space_.base_parameters() * detail::kPriceOfReversals * e.lacks_away;
+    return e.regular ? e.value - price : -std::numeric_limits<double>::infinity();
   }
 
   [[nodiscard]] std::optional<FourierSeries> random_start(std::uint64_t seed) const {
@@ -211,7 +217,9 @@ class SegmentSearch {
       VectorXd v(problem.variables());
       constexpr double kSpread = 0.3;  // of the coefficients, in units of the largest single amplitudes
       for (Index k = 0; k < v.size(); ++k) v(k) = kSpread * random.normal();
-      v(v.size() - 1) = 0.5 + 0.5 * random.uniform();  // information grows with speed
+      // Information grows with speed, and so do reversals.
+      const double lowest = options_.reversal_reach_s > 0 ? 0.0 : 0.5;
+      v(v.size() - 1) = lowest + (1 - lowest) * random.uniform();
       FourierSeries series = problem.series(v);
       series.coefficients.row(0) = space_.states.centre.transpose();
       if (auto found = fitted(space_, limits_, series, 1.0, kRankSamples)) return found;
@@ -323,6 +331,9 @@ void ExcitationOptions::validate() const {
            fmt::format("give at least {} Hz, twenty samples in the fastest harmonic", 20 * harmonics * highest_hz));
   if (!(time_limit_s > 0)) refuse("the time limit must be positive", "--time-limit-s", "give seconds, e.g. 60");
   if (starts < 0) refuse("the number of starts is negative", "--starts", "give 1 or more, or 0 for as many as the time allows");
+  if (!(reversal_reach_s >= 0) || !(least_away >= 0 && least_away < 1))
+    refuse(fmt::format("a share of {} away from velocity reversals cannot be", least_away), "--away-from-reversals",
+           "give 0 to 0.9; 0 leaves reversals out of account");
   if (!(velocity_weight >= 0) || !std::isfinite(velocity_weight))
     refuse("the velocity weight is negative", "--velocity-weight", "give 0 or more");
   if (speeds.empty()) refuse("there is no segment", "--segments", "give 1 or more");

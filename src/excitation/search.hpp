@@ -10,6 +10,10 @@
 
 namespace deltadyn::detail {
 
+/// What a share of the time that a drive lacks away from reversals costs, in units of the share of its amplitude that a motion over
+/// its limits must give up: dear enough that a motion with its share wins.
+constexpr double kPriceOfReversals = 5;
+
 struct SearchResult {
   Eigen::VectorXd best;  ///< by value, less what the violation of the limits will cost when the motion is made smaller
   int evaluations = 0;

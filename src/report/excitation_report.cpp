@@ -21,6 +21,8 @@ namespace {
 constexpr double kWell = 0.05, kNot = 0.5;
 constexpr double kGoodEfficiency = 0.6, kFairEfficiency = 0.4;
 constexpr double kBinding = 0.99;
+// Share of base parameters that any usual motion hardly shows.
+constexpr double kFewBlind = 0.25;
 
 double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
   return input.predicted_std(k) / std::max(input.base_scale(k), 1e-300);
@@ -38,23 +40,43 @@ Counts counts(const ExcitationReportInput& input) {
   return c;
 }
 
+Check check_efficiency(const ExcitationReportInput& input) {
+  const double efficiency = input.excitation.d_efficiency;
+  Check check{"Information", fmt::format("D-efficiency {}", format_percent(efficiency, 3)), Verdict::good, ""};
+  // The bound may be out of reach for any motion: what the motion will leave unknown decides whether little information is too little.
+  const bool blind = counts(input).not_at_all > kFewBlind * static_cast<double>(input.base.count());
+  if (efficiency < kGoodEfficiency) check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
+  check.meaning = "That share of the information which any states inside these limits could give.";
+  if (check.verdict != Verdict::good)
+    check.meaning += " More time (--time-limit-s), a larger workspace or a wider --base-frequency-hz may give more.";
+  return check;
+}
+
+Check check_reversals(const ExcitationReportInput& input) {
+  Check check{"Rows that an identification can use", "velocity reversals were not looked at", Verdict::good, ""};
+  if (input.away_from_reversals.size() == 0) return check;
+  const Eigen::VectorXd least = input.away_from_reversals.rowwise().minCoeff();
+  Eigen::Index worst = 0;
+  const double share = least.minCoeff(&worst);
+  check.figure = fmt::format("{} of the rows of {} are away from velocity reversals", format_percent(share, 2),
+                             drive_name(static_cast<int>(worst)));
+  check.meaning = fmt::format("In every segment, for an identification at a cut-off of {}.",
+                              format_number(input.reversal_cutoff_hz, "Hz", 3));
+  // What the smooth share of the search is off by.
+  constexpr double kRounding = 0.02;
+  if (share < input.least_away - kRounding) {
+    check.verdict = Verdict::caution;
+    check.meaning += fmt::format(
+        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a "
+        "wider workspace.",
+        format_percent(input.least_away, 2));
+  }
+  return check;
+}
+
 void add_verdict(HtmlReport& report, const ExcitationReportInput& input) {
-  const Excitation& e = input.excitation;
-  const Counts c = counts(input);
-  const bool good = e.d_efficiency >= kGoodEfficiency, fair = e.d_efficiency >= kFairEfficiency;
-  std::vector<std::string> lines;
-  lines.push_back(
-      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} "
-                  "to spare.",
-                  input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
-  lines.push_back(fmt::format("It gives {} of the information (D-efficiency) that any motion inside these limits could give.",
-                              format_percent(e.d_efficiency, 3)));
-  lines.push_back(fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
-                              input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
-  if (e.out_of_time) lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
-  if (e.interrupted) lines.emplace_back("The search was interrupted; more time may find a better motion.");
-  report.verdict(good ? Verdict::good : (fair ? Verdict::caution : Verdict::bad),
-                 good ? "A good excitation" : (fair ? "A usable excitation" : "A weak excitation"), lines);
+  const Assessment assessment = assess_excitation(input);
+  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
 }
 
 void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
@@ -167,6 +189,34 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
 }
 
 }  // namespace
+
+Assessment assess_excitation(const ExcitationReportInput& input) {
+  const Excitation& e = input.excitation;
+  const Counts c = counts(input);
+  Assessment out;
+  out.checks = {check_efficiency(input), check_reversals(input)};
+  for (const Check& check : out.checks) out.verdict = std::max(out.verdict, check.verdict);
+  const char* words = out.verdict == Verdict::good
+                          ? "A good excitation"
+                          : (out.verdict == Verdict::caution ? "A usable excitation" : "A weak excitation");
+  out.headline = words;
+  for (const Check& check : out.checks) {
+    if (check.verdict != out.verdict || check.verdict == Verdict::good) continue;
+    out.headline += fmt::format(": {}", check.figure);
+    break;
+  }
+  out.lines.push_back(
+      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} "
+                  "to spare.",
+                  input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
+  for (const Check& check : out.checks)
+    out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
+  out.lines.push_back(fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
+                                  input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
+  if (e.out_of_time) out.lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
+  if (e.interrupted) out.lines.emplace_back("The search was interrupted; more time may find a better motion.");
+  return out;
+}
 
 std::string excitation_report(const ExcitationReportInput& input, const ReportContext& context) {
   const auto p = static_cast<Eigen::Index>(input.base.count());

@@ -77,6 +77,57 @@ TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
   }
 }
 
+// Everything that is seen of a plan is one judgement: the word of the summary and the line on the terminal.
+TEST(Excite, SlowAndFastSegmentsHaveFilesOfTheirOwnAndRowsAwayFromReversals) {
+  const testing::TemporaryFolder folder;
+  const ToolResult result =
+      run(excite("mujoco_delta4.urdf") + kMainCase +
+              Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--segments", "2", "--segment-speeds", "0.3,1",
+                    "--segment-files", "--starts", "4", "--time-limit-s", "500"},
+          {600});
+  EXPECT_EQ(result.code, 0) << result.err;
+  const auto summary = read_summary(folder.path("s.csv"));
+  EXPECT_THAT(result.out + result.err, HasSubstr(summary.at("verdict") == "trusted" ? "A good excitation" : " excitation: "));
+  for (const char* segment : {"1", "2"}) {
+    for (const char* drive : {"1", "2", "3", "4"})
+      EXPECT_GT(number(summary, fmt::format("away_from_reversals_segment{}_drive{}", segment, drive)), 0.43);
+  }
+  const auto largest = [&](const char* file, std::size_t column) {
+    const Lines lines = to_lines(folder.read(file));
+    double most = 0;
+    for (std::size_t k = 2; k <= lines.size(); ++k) most = std::max(most, std::abs(field(lines, k, column)));
+    return most;
+  };
+  EXPECT_LT(largest("t_1.csv", 18), 0.3 * 6 * 1.001);         // drive 1, velocity
+  EXPECT_LT(largest("t_1.csv", 22), 0.3 * 0.3 * 60 * 1.001);  // and acceleration
+  EXPECT_GT(largest("t_2.csv", 22), 30);
+}
+
+TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
+  const testing::TemporaryFolder folder;
+  const std::string truth = installed("logs/mujoco_delta4/truth.csv");
+  const Lines lines = to_lines(read_text(truth));
+  std::string light = lines[0] + "\n";
+  for (std::size_t k = 2; k <= lines.size(); ++k) {
+    const std::string& line = lines[k - 1];
+    const auto name_end = line.find(','), value_end = line.find(',', name_end + 1);
+    light += fmt::format("{},{:.9g}{}\n", line.substr(0, name_end), 0.7 * field(lines, k, 2), line.substr(value_end));
+  }
+  folder.write("light.csv", light);
+  succeed(excite("mujoco_delta4.urdf") + kMainCase +
+              Words{"-o", folder.path("t.csv"), "--params", folder.path("light.csv"), "--drive-torque-n-m", "40,40,40,4",
+                    "--starts", "3", "--time-limit-s", "500"},
+          {600});
+  succeed({"delta-simulate", installed("robots/mujoco_delta4.urdf"), "--params", truth, "--trajectory", folder.path("t.csv"),
+           "--encoder-bits", "19", "-o", folder.path("log.csv")});
+  const Lines log = to_lines(folder.read("log.csv"));
+  double most = 0;
+  for (std::size_t k = 2; k <= log.size(); ++k)
+    for (std::size_t c = 6; c < 9; ++c) most = std::max(most, std::abs(field(log, k, c)));
+  EXPECT_LT(most, 40);
+  EXPECT_GT(most, 25) << "a margin that leaves nothing to move with is none";
+}
+
 TEST(Excite, SameSeedSameBytesWhateverTheThreads) {
   const testing::TemporaryFolder folder;
   const Words flags =
@@ -120,7 +171,7 @@ TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
       {"linear_delta3.urdf", {"--periodic"}, "q1_m,q2_m,q3_m,qd1_m_s"},
       {"irb360_6_1600.urdf",
        {"--workspace", "cylinder", "--workspace-center-m", "0,0,-0.95", "--workspace-radius-m", "0.3", "--workspace-height-m",
-        "0.2", "--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "40,40,40,3"},
+        "0.2", "--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "60,60,60,4"},
        "psi_rad"},
       {"emps.urdf",
        {"--drive-range-m", "0,0.4", "--drive-velocity-m-s", "0.5", "--drive-acceleration-m-s2", "5"},
@@ -151,6 +202,8 @@ TEST(Excite, LimitsThatCannotBeMetAreNamedWithExitCodeFour) {
                                                                      installed("logs/mujoco_delta4/truth.csv"),
                                                                      "--drive-torque-n-m",
                                                                      "12,12,12,4",
+                                                                     "--torque-margin",
+                                                                     "0",
                                                                      "--drive-velocity-rad-s",
                                                                      "0.5",
                                                                      "--drive-acceleration-rad-s2",
@@ -213,6 +266,15 @@ TEST(Excite, BadInputIsNamedAtOnce) {
       {{"--drive-velocity-m-s", "1"}, 2, "not the unit of the drives"},
       {{"--drive-range-rad", "1.5,1.6;1.5,1.6;1.5,1.6;-1,1"}, 3, "the limits leave no motion"},
       {{"--drive-torque-n-m", "60"}, 2, "needs a model"},
+      {{"--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "60,60,60,4", "--torque-margin", "1"},
+       2,
+       "--torque-margin is out of range"},
+      {{"--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "4,60,60,4"},
+       3,
+       "Coulomb friction of drive 1"},
+      {{"--cutoff-hz", "600"}, 2, "--cutoff-hz"},
+      {{"--away-from-reversals", "1"}, 2, "--away-from-reversals"},
+      {{"--segment-files"}, 2, "--segment-files"},
       {{"--criterion", "volume"}, 2, "--criterion"},
       {{"--segments", "2", "--periodic"}, 2, "one segment"},
       {{"--segments", "3", "--segment-speeds", "1,0.5"}, 2, "2 speeds for 3 segments"},

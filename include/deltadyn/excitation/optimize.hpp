@@ -30,7 +30,9 @@ struct ExcitationOptions {
   /// Random starts of each segment; 0: as many as two threads of a desktop machine finish in 60 % of the planned time.
   /// The work is counted in evaluations, so that the result does not depend on the machine unless the time runs out.
   int starts = 0;
-  double rate_hz = 1000;  ///< the period becomes a whole number of samples
+  double rate_hz = 1000;        ///< the period becomes a whole number of samples
+  double reversal_reach_s = 0;  ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
+  double least_away = 0.4;      ///< share of the time that every drive is away from them in every segment, at least
   std::uint64_t seed = 1;
   const std::atomic<bool>* stop = nullptr;  ///< set by Ctrl-C: end soon with the best motion so far
   std::function<void(double share)> progress;

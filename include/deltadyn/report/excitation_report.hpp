@@ -8,6 +8,7 @@
 
 #include "deltadyn/excitation/optimize.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/report_context.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
@@ -30,7 +31,14 @@ struct ExcitationReportInput {
   Eigen::VectorXd base_scale = {};
   bool values_are_nominal = true;  ///< from simple shapes, not from a known model
   const TrajectorySamples* validation = nullptr;
+  /// Share of the samples of each segment away from velocity reversals, drives x segments; empty: not looked at.
+  Eigen::MatrixXd away_from_reversals = {};
+  double least_away = 0;          ///< that was asked for
+  double reversal_cutoff_hz = 0;  ///< cut-off of the identification that these are shares for
 };
+
+/// What the motion is worth: one judgement for page, terminal and summary.
+[[nodiscard]] Assessment assess_excitation(const ExcitationReportInput& input);
 
 /// \return the page as HTML
 /// Throws deltadyn::Error if the parts do not belong together, or gnuplot cannot draw.
