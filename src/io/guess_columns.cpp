@@ -110,13 +110,29 @@ std::vector<long> places_of(const std::vector<Candidate>& members) {
   return places;
 }
 
+/// Named as in a log of these tools, q1_rad, tau1_Nm: the number is the drive, and those beyond the robot's are not used.
+bool is_log_name(const Candidate& candidate) {
+  const std::string& stem = candidate.words.stem;
+  const auto digits = stem.find_first_of("0123456789");
+  if (digits == std::string::npos || stem.find_first_not_of("0123456789", digits) != std::string::npos) return false;
+  const std::string letters = stem.substr(0, digits);
+  const bool known = letters == "q" || letters == "qd" || letters == "qdd" || letters == "tau";
+  return known && candidate.channel->name.compare(0, stem.size() + 1, stem + "_") == 0;
+}
+
 /// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six joints and four
 /// drives nobody but the user knows which are meant.
 std::optional<Set> set_of(const std::vector<Candidate>& members, const RobotDescription& robot, Quantity quantity,
                           const MapDefaults& defaults) {
   const auto drives = static_cast<std::size_t>(robot.drives());
-  if (members.size() != drives) return std::nullopt;
-  std::vector<long> places = drives == 1 ? std::vector<long>{1} : places_of(members);
+  std::vector<long> places;
+  if (std::all_of(members.begin(), members.end(), is_log_name)) {
+    for (const Candidate& member : members) places.push_back(member.words.numbers.back());
+  } else if (members.size() != drives) {
+    return std::nullopt;
+  } else {
+    places = drives == 1 ? std::vector<long>{1} : places_of(members);
+  }
   if (places.empty() && std::all_of(members.begin(), members.end(), [](const Candidate& m) { return m.channel->place > 0; })) {
     for (const Candidate& member : members) places.push_back(member.channel->place);
   }

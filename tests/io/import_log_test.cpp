@@ -383,6 +383,19 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"NoHeader", "", "{t},{q},{tau}", 1, {"line 1", "header line is missing", "source = 2"}}),
     [](const auto& one) { return std::string(one.param.name); });
 
+TEST(LogImport, NamesOfALogOfTheseToolsMeanTheirDrive) {
+  const TemporaryFolder folder;
+  const auto row = [](int, double t) { return fmt::format("{:.3f};1;2;3;11;12;13\n", t); };
+  const std::string file = folder.write("a.csv", recorded("t_s;q3_rad;q1_rad;q2_rad;tau3_Nm;tau1_Nm;tau2_Nm\n", row));
+  const RobotDescription two = drives(2);
+  const Log log = LogImport({file}, two, {}).log().log;  // the third is not used
+  EXPECT_EQ(log.q(5, 0), 2.0);
+  EXPECT_EQ(log.q(5, 1), 3.0);
+  EXPECT_EQ(log.tau(5, 1), 13.0);
+  const RobotDescription four = drives(4);
+  EXPECT_THAT(words_of_error([&] { (void)LogImport({file}, four, {}).log(); }), HasSubstr("4 drives"));
+}
+
 TEST(LogImport, PrefersTorqueToCurrentAndMeasuredToCommandedAndSaysWhenItTakesACommand) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
