@@ -22,6 +22,7 @@ constexpr double kJumpNearby = 3.0;  // or times the changes just outside the ru
 constexpr double kCoarseShare =
     0.5;  // of the rows that repeat: then steps are coarser than the noise, and runs are long by nature
 constexpr double kCoarseRuns = 30.0;   // times the usual run
+constexpr double kNoiseFree = 1e-3;    // of the travel: kinks of a torque without noise look like as much
 constexpr double kMostConstant = 0.9;  // of the samples; then nothing is left
 
 struct Run {
@@ -67,6 +68,8 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
   const double usual_change = median(std::move(changes));
   const double usual_run = rows > repeats ? rows / (rows - repeats) : 1.0;
   const bool coarse = repeats > kCoarseShare * rows;
+  const ChannelQuality quality = measure_channel(tau);
+  const bool noise_free = quality.noise < std::max(0.7 * quality.step, kNoiseFree * quality.travel);
   const double highest = tau.maxCoeff(), lowest = tau.minCoeff();
   const auto is_chance_or_limit = [&](Run& run) {
     const auto length = static_cast<double>(run.end - run.begin);
@@ -74,7 +77,8 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
     for (Index i = run.begin; i < run.end && log.torque_out.size() > 0; ++i) rest += log.torque_out(i, d) ? 1 : 0;
     run.resting = static_cast<double>(rest) > 0.9 * length;
     // Without noise a drive at rest needs a constant torque.
-    if (coarse && (run.resting || length < kCoarseRuns * usual_run)) return true;
+    if (run.resting && (coarse || noise_free)) return true;
+    if (coarse && length < kCoarseRuns * usual_run) return true;
     const bool jumps = jumps_at_an_end(tau, run.begin, run.end, usual_change);
     const bool extreme = run.value == highest || run.value == lowest;
     return !jumps && (coarse || (extreme && length * h < kLongest_s));

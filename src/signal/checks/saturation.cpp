@@ -22,8 +22,16 @@ struct Cut {
   std::vector<Index> rows;
 };
 
+/// The top of a smooth torque in steps: the levels just below hold as many rows, where a cut leaves few.
+bool is_rounded_top(const Eigen::Ref<const Eigen::VectorXd>& tau, const Cut& cut, double sign, double step) {
+  if (step <= 0) return false;
+  const Eigen::ArrayXd below = sign * (cut.level - tau.array());
+  const auto near = (below > 0.5 * step && below < 2.5 * step).count();
+  return static_cast<Index>(cut.rows.size()) < 3 * near;
+}
+
 /// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for spikes.
-Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double sign) {
+Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double step, double sign) {
   Cut best;
   const Index n = tau.size();
   const auto counts = [&](Index begin, Index end) {
@@ -52,7 +60,7 @@ Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>
     }
     begin = end;
   }
-  if (beyond > kMostBeyond) best.rows.clear();
+  if (beyond > kMostBeyond || is_rounded_top(tau, best, sign, step)) best.rows.clear();
   return best;
 }
 
@@ -68,8 +76,9 @@ void check_saturation(CheckRoom& room) {
     // A servo that is off also repeats a value; it was found before.
     std::vector<char> out(static_cast<std::size_t>(n), 0);
     for (Index i = 0; i < n && log.torque_out.size() > 0; ++i) out[static_cast<std::size_t>(i)] = log.torque_out(i, d) ? 1 : 0;
-    const Cut above = cut_of(tau, out, 1.0);
-    const Cut below = cut_of(tau, out, -1.0);
+    const double step = measure_channel(tau).step;
+    const Cut above = cut_of(tau, out, step, 1.0);
+    const Cut below = cut_of(tau, out, step, -1.0);
     std::vector<Index> rows;
     std::merge(above.rows.begin(), above.rows.end(), below.rows.begin(), below.rows.end(), std::back_inserter(rows));
     const auto clipped = static_cast<Index>(rows.size());

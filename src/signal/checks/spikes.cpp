@@ -11,6 +11,7 @@
 namespace deltadyn::checks {
 namespace {
 
+constexpr double kRounding = 1e-9;    // of the value: what the digits of a file leave of a constant
 constexpr Index kWindow = 25;         // samples on either side that tell what is usual here
 constexpr double kManySpikes = 0.01;  // of the samples: then the recording itself is in doubt
 constexpr Index kLongestSpike = 5;    // samples; longer is an event of its own
@@ -38,7 +39,7 @@ class SpikeSearch {
     for (const auto& [begin, end] : sample_stretches(n, 512)) {
       for (Index i = begin; i < end; ++i) {
         const double s = size_[static_cast<std::size_t>(i)];
-        if (s > 0) moving.push_back(s);
+        if (s > kRounding * largest_) moving.push_back(s);
       }
     }
     usual_ = median(std::move(moving));
