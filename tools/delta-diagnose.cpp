@@ -100,7 +100,13 @@ class Diagnose {
     std::optional<Log> holdout;
     if (!holdout_file_.empty()) {
       // The proof rests on one stretch of motion; of a log with gaps, the longest.
-      const std::vector<Log> parts = processing_.read_logs({holdout_file_}, description);
+      const GateResult proof = gate_.run(*robot, processing_.read_logs({holdout_file_}, description), {}, {}, false,
+                                         !processing_.options().filter, run.summary, true);
+      if (proof.stop()) {
+        tools::LogGate::refuse(proof);
+        return ExitCode::not_trusted;
+      }
+      const std::vector<Log>& parts = proof.logs;
       holdout =
           *std::max_element(parts.begin(), parts.end(), [](const Log& a, const Log& b) { return a.samples() < b.samples(); });
     }

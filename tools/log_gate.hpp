@@ -36,6 +36,20 @@ inline const char* level_word(FindingLevel level) {
   return "";
 }
 
+/// Those that the reader's notes have not said already.
+inline std::vector<LogFinding> without_notes(const GateResult& gate) {
+  std::vector<LogFinding> out;
+  for (const Log& log : gate.logs) {
+    for (const LogFinding& f : log.findings) {
+      const bool said = std::any_of(log.notes.begin(), log.notes.end(),
+                                    [&](const std::string& note) { return note.find(f.text) != std::string::npos; });
+      if (!said) out.push_back(f);
+    }
+  }
+  out.insert(out.end(), gate.findings.begin(), gate.findings.end());
+  return out;
+}
+
 /// Findings as lines, the worst first; what is in order only if asked.
 inline void print_findings(const std::vector<LogFinding>& findings, bool with_fine) {
   for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
@@ -88,7 +102,7 @@ class LogGate {
     options.given_derivatives = given_derivatives;
     options.prior_given = prior_given;
     GateResult result = examine_logs(robot, std::move(logs), prior, prior_std, options);
-    print_findings(all_findings(result), false);
+    print_findings(without_notes(result), false);
     summarise_findings(all_findings(result), summary);
     return result;
   }

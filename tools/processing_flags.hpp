@@ -60,6 +60,7 @@ class ProcessingFlags {
     LogReadOptions options;
     options.need_derivatives = no_filter_;
     options.checks.motion = !no_filter_;
+    options.checks.refuse_positions = false;  // the gate behind the reader says what they are
     options.map = map_;
     std::vector<Log> logs;
     for (const std::string& path : paths) {

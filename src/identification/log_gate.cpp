@@ -21,9 +21,11 @@ namespace {
 using namespace gate;
 using Eigen::Index;
 
-constexpr Index kPoints = 500;         // of all logs, for signs, orders and units
-constexpr double kLeastDelay = 0.05;   // of a sample: less is no matter
-constexpr double kSoundFit = 0.05;     // relative residual below which a delay is certain enough to be removed
+constexpr Index kPoints = 500;        // of all logs, for signs, orders and units
+constexpr double kLeastDelay = 0.05;  // of a sample: less is no matter
+constexpr double kSoundFit = 0.05;    // relative residual below which a delay is certain enough to be removed
+constexpr double kWorthRemoving =
+    0.98;  // of the residual: delays of single drives and lags must show in it, as noise can feign them
 constexpr double kOutOfReach = 0.01;   // share of poses
 constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
 
@@ -42,9 +44,9 @@ class Gate {
         return std::move(out_);  // others refuse it better
       add(examine_derivatives(robot_.description(), log, options_.given_derivatives));
     }
-    add(limit_findings(robot_.description(), out_.logs));
     base_ = find_base_parameters(robot_);
     if (options_.given_derivatives) {
+      if (out_.stop()) return std::move(out_);  // rows with wrong rates tell nothing else
       judge_positions(points_as_given());
       if (!out_.stop()) judge_scale(points_as_given());
       return std::move(out_);
@@ -52,6 +54,7 @@ class Gate {
     const Sample sample = take_sample(out_.logs);
     if (sample.stretches.empty()) return std::move(out_);
     const Points points = pick_points(sample, kPoints);
+    coarse_ = sample.coarse;
     judge_positions(points);
     if (out_.stop()) return std::move(out_);
     judge_timing(sample);
@@ -77,12 +80,14 @@ class Gate {
     }
     const auto N = static_cast<Index>(rows.size());
     for (Eigen::MatrixXd* m : {&out.q, &out.qd, &out.qdd, &out.tau}) m->resize(N, robot_.drives());
+    out.torque_out.setConstant(N, robot_.drives(), false);
     for (Index k = 0; k < N; ++k) {
       const auto& [log, row] = rows[static_cast<std::size_t>(k)];
       out.q.row(k) = log->q.row(row);
       out.qd.row(k) = log->qd.row(row);
       out.qdd.row(k) = log->qdd.row(row);
       out.tau.row(k) = log->tau.row(row);
+      if (log->torque_out.size() > 0) out.torque_out.row(k) = log->torque_out.row(row);
       out.at.push_back({0, k});
     }
     return out;
@@ -90,10 +95,14 @@ class Gate {
 
   void judge_positions(const Points& points) {
     const Judgement judgement = judge(robot_, base_, points);
+    std::vector<LogFinding> limits = limit_findings(robot_.description(), out_.logs);
+    // Positions far beyond the limits are the same fault seen from another side.
+    if (!judgement.winners.empty()) std::erase_if(limits, [](const LogFinding& l) { return l.key == "position_range"; });
     LogFinding f;
     f.level = FindingLevel::fault;
     f.value = judgement.as_given.residual;
     if (judgement.winners.empty()) {
+      add(std::move(limits));
       tell_unexplained(judgement);
       return;
     }
@@ -111,6 +120,7 @@ class Gate {
     }
     f.mend = first.mend;
     out_.findings.push_back(std::move(f));
+    add(std::move(limits));
   }
 
   static std::string as_given_in_words(const Judgement& judgement) {
@@ -132,7 +142,7 @@ class Gate {
           "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives explains it",
           100 * judgement.as_given.unreachable);
       f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
-    } else if (judgement.as_given.residual > kUnexplained) {
+    } else if (judgement.as_given.residual > kUnexplained && !coarse_) {
       f.level = FindingLevel::warning;
       f.key = "unexplained";
       f.text = fmt::format(
@@ -147,8 +157,11 @@ class Gate {
 
   void judge_timing(const Sample& sample) {
     const Rows rows = low_passed_rows(robot_, base_, sample, Reading::as_given(robot_.drives()));
+    const std::vector<int> files = file_numbers(out_.logs);
     std::vector<double> least;
-    for (const Log& log : out_.logs) least.push_back(kLeastDelay * log.sample_time_s());
+    for (std::size_t l = 0; l < files.size(); ++l) {
+      if (files[l] == static_cast<int>(least.size())) least.push_back(kLeastDelay * out_.logs[l].sample_time_s());
+    }
     const Timing timing = estimate_timing(sample, rows, least);
     if (!timing.significant) {
       LogFinding f;
@@ -160,8 +173,9 @@ class Gate {
       if (f.std > 0) out_.findings.push_back(std::move(f));
       return;
     }
+    const bool simple = timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
     const bool certain = timing.rms_after < kSoundFit || timing.rms_after < 0.5 * timing.rms_before;
-    if (!certain) return;
+    if (!certain || (!simple && timing.rms_after > kWorthRemoving * timing.rms_before)) return;
     const bool remove = !options_.keep_delay;
     tell_timing(timing.delay_s, timing.delay_std, timing, "delay", remove);
     tell_timing(timing.lag_s, timing.lag_std, timing, "lag", remove);
@@ -180,7 +194,7 @@ class Gate {
         LogFinding f;
         f.level = removed ? FindingLevel::mended : FindingLevel::warning;
         f.key = key;
-        if (!same_logs) f.file = out_.logs[static_cast<std::size_t>(l)].file;
+        if (!same_logs) f.file = name_of_file(static_cast<int>(l));
         if (!same_drives) f.drive = static_cast<int>(j);
         f.value = value(l, j);
         f.std = std(l, j);
@@ -202,11 +216,17 @@ class Gate {
                      : fmt::format("{} is a command, which the motor follows with a lag of {:.2f} ms", who, ms);
   }
 
+  [[nodiscard]] std::string name_of_file(int number) const {
+    const std::vector<int> files = file_numbers(out_.logs);
+    return out_.logs[static_cast<std::size_t>(std::find(files.begin(), files.end(), number) - files.begin())].file;
+  }
+
   void mend(const Timing& timing) {
+    const std::vector<int> files = file_numbers(out_.logs);
     for (std::size_t l = 0; l < out_.logs.size(); ++l) {
       Log& log = out_.logs[l];
       const double step = log.sample_time_s();
-      const auto row = static_cast<Index>(l);
+      const auto row = static_cast<Index>(files[l]);
       double farthest = 0;
       for (Index j = 0; j < log.drives(); ++j) {
         const double delay = timing.delay_s(row, j), lag = timing.lag_s(row, j);
@@ -217,11 +237,11 @@ class Gate {
       // Where the moved torque reaches beyond the record, there is none.
       const auto lost = std::min<Index>(log.samples(), static_cast<Index>(std::ceil(std::abs(farthest) / step)));
       if (lost == 0) continue;
-      if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), 0);
+      if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), Log::kMeasured);
       if (farthest > 0) {
-        std::fill(log.filled.end() - lost, log.filled.end(), 1);
+        std::fill(log.filled.end() - lost, log.filled.end(), Log::kLeftOut);
       } else {
-        std::fill(log.filled.begin(), log.filled.begin() + lost, 1);
+        std::fill(log.filled.begin(), log.filled.begin() + lost, Log::kLeftOut);
       }
     }
   }
@@ -238,6 +258,7 @@ class Gate {
   const Eigen::VectorXd& prior_std_;
   GateOptions options_;
   BaseParameters base_;
+  bool coarse_ = false;  ///< Sample::coarse
   GateResult out_;
 };
 

@@ -221,8 +221,8 @@ std::vector<Row> motions() {
            });
          }));
        },
-       3,
-       {"bad\\.csv, line [0-9]+, column q1_rad", "degrees", "mend: name the column q1_deg"}},
+       5,
+       {"check: fault: the position of .*drives.* looks like degrees", "mend: name the columns with their unit \\(q1_deg"}},
       {"LostCounts",
        [](const W& w) {
          return w.identify(w.log("bad.csv", [](Lines& l) {

@@ -15,6 +15,9 @@ struct LogCheckOptions {
   /// false: the rows are states of their own, not a motion recorded evenly in time (a table of poses); only missing numbers,
   /// implausible positions and limits are looked at.
   bool motion = true;
+  /// false: arm angles and carriage positions that the robot cannot have are let through, because examine_logs() names what they
+  /// are (degrees, a gear, a zero).
+  bool refuse_positions = true;
   int max_filled_gap = 3;              ///< longest run of missing samples that is filled in,
   double max_filled_gap_s = 0.004;     ///< or as many as fit into this time; at longer gaps the log is split
   double max_filled_share = 0.3;       ///< largest share of samples that may be missing or spoilt

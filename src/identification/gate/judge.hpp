@@ -19,9 +19,11 @@ struct Explanation {
   Eigen::VectorXd factor;
   double residual = 1;     ///< relative, over all drives
   double unreachable = 0;  ///< share of the poses
+  double alone = 0;        ///< residual of each drive with parameters of its own: what one machine for all drives could reach
   double changes = 0;
   std::string key, words, mend;
   int drive = -1;
+  bool odd = false;  ///< a factor that is neither a unit nor a whole ratio: a wrong length of the robot file looks like that, too
   double value = 0, std = 0;  ///< of a scale
 };
 

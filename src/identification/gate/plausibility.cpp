@@ -16,9 +16,10 @@ using Eigen::Index;
 // factor of 3.3, with parts weighed to 2 % a factor of 1.27; a prior that is 30 % off raises nothing.
 constexpr double kFault = 0.2, kFaultTrust = 2.0;
 constexpr double kWarning = 0.12, kWarningTrust = 1.3;
-constexpr double kCertain = 5.0;   // standard deviations of the data for a sign
-constexpr double kKnown = 0.3;     // relative deviation of the data above which a ratio says nothing
-constexpr double kWeighed = 0.15;  // relative deviation of a prior whose parts were weighed
+constexpr double kCertain = 5.0;     // standard deviations of the data for a sign
+constexpr double kKnown = 0.3;       // relative deviation of the data above which a ratio says nothing
+constexpr double kHeavyRotor = 4.5;  // inertia over gravity, beside the prior's: reflected rotors triple a link's inertia
+constexpr double kWeighed = 0.15;    // relative deviation of a prior whose parts were weighed
 constexpr double kSpread =
     0.5;  // gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
 constexpr double kFaultEffort =
@@ -72,7 +73,7 @@ bool add_sign_findings(const RobotDescription& robot, const TorqueScale& scale, 
     if (!r.known) continue;
     ++known;
     if (r.value < -kCertain * r.data_std && r.value < -0.02) {
-      if (negative.empty() || r.value < worst) {
+      if (negative.empty()) {
         worst = r.value;
         worst_std = r.data_std;
       }

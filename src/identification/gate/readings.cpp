@@ -62,19 +62,24 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
   }
 }
 
-std::string unit_in_words(const RobotDescription& robot, int drive, double factor, double tolerance) {
-  struct Unit {
-    double factor;
-    const char* words;
-  };
+struct Unit {
+  double factor;
+  const char* words;
+};
+
+/// Units that positions of this drive may be in.
+const std::vector<Unit>& units_of(const RobotDescription& robot, int drive) {
   static const std::vector<Unit> angles = {{kPi / 180, "degrees"}, {2 * kPi, "turns"},
                                            {1e-3, "mrad"},         {180 / kPi, "rad converted twice"},
-                                           {kPi / 200, "gon"},     {1.0 / 60 * kPi / 180, "minutes of arc"}};
+                                           {kPi / 200, "gon"},     {kPi / 180 / 60, "minutes of arc"}};
   static const std::vector<Unit> lengths = {
       {1e-3, "millimetres"}, {1e-2, "centimetres"}, {1e-6, "micrometres"}, {0.0254, "inches"}, {1e3, "kilometres"}};
-  const bool turns = robot.kind_of_drive(drive) == DriveKind::revolute;
-  for (const Unit& unit : turns ? angles : lengths) {
-    if (std::abs(factor / unit.factor - 1) < std::max(tolerance, 0.01)) return unit.words;
+  return robot.kind_of_drive(drive) == DriveKind::revolute ? angles : lengths;
+}
+
+std::string unit_in_words(const RobotDescription& robot, int drive, double factor, double tolerance) {
+  for (const Unit& unit : units_of(robot, drive)) {
+    if (std::abs(factor / unit.factor - 1) < std::max(tolerance, 0.005)) return unit.words;
   }
   return "";
 }
@@ -98,6 +103,8 @@ PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& 
   const double ratio = 1 / value;
   const double whole = std::round(ratio);
   const bool gear = ratio > 1.5 && std::abs(ratio / whole - 1) < std::max(tolerance, 0.01);
+  h.odd = !gear;
+  if (!gear) h.changes += 0.7;  // no unit and no whole ratio: less likely than any of these
   h.words = fmt::format("the position of {} is {:.4g} times the joint's: motor side of a gear{}?", who, gear ? whole : ratio,
                         gear ? "" : ", or another unit");
   h.mend = "divide the positions by the gear ratio and multiply the torque by it (delta-log import: gear_ratio in the map)";
@@ -127,6 +134,22 @@ Reading compose(const Reading& outer, const Reading& inner) {
   return out;
 }
 
+std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot, double value) {
+  constexpr double kNear = 0.03;
+  std::vector<double> out;
+  if (!family.geometric) {
+    const double quarter = std::round(value / (kPi / 2)) * (kPi / 2);
+    if (std::abs(value - quarter) < kNear * 2) out.push_back(quarter);
+    return out;
+  }
+  for (const Unit& unit : units_of(robot, family.drives.front())) {
+    if (std::abs(value / unit.factor - 1) < kNear) out.push_back(unit.factor);
+  }
+  const double ratio = 1 / value, whole = std::round(ratio);
+  if (ratio > 1.5 && std::abs(ratio / whole - 1) < kNear) out.push_back(1 / whole);
+  return out;
+}
+
 std::vector<PositionHypothesis> position_hypotheses(const RobotDescription& robot) {
   std::vector<PositionHypothesis> out;
   add_signs(robot, out);
@@ -142,8 +165,12 @@ std::vector<PositionFamily> position_families(const RobotDescription& robot) {
   for (double f = 1.0 / 400; f < 400; f *= 1.05) {
     if (f < 0.8 || f > 1.25) factors.push_back(f);
   }
+  std::vector<double> coarse;
+  for (double f = 1.0 / 400; f < 400; f *= 1.08) {
+    if (f < 0.8 || f > 1.25) coarse.push_back(f);
+  }
   out.push_back({"position_scale", limbs, factors, true, 0.05, {}, 1});
-  for (const int limb : limbs) out.push_back({"position_scale", {limb}, factors, true, 0.05, {}, 1.5});
+  for (const int limb : limbs) out.push_back({"position_scale", {limb}, coarse, true, 0.08, {}, 1.5});
   if (robot.drive_kind != DriveKind::revolute) return out;
   std::vector<double> angles;
   for (int degrees = -180; degrees < 180; degrees += 10) angles.push_back(degrees * kPi / 180);
@@ -169,6 +196,7 @@ PositionHypothesis member(const PositionFamily& family, const RobotDescription& 
   const double quarter = std::round(degrees / 90) * 90;
   const bool right_angle = std::abs(degrees - quarter) < std::max(1.0, tolerance * 180 / kPi);
   if (right_angle) degrees = quarter;
+  if (!right_angle) h.changes += 0.5;
   const std::string who = drives_in_words(family.drives, robot.drives());
   h.words =
       sign > 0

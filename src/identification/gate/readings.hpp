@@ -19,6 +19,7 @@ struct PositionHypothesis {
   std::string words;  ///< "the position of drive 2 has the wrong sign"
   std::string mend;
   int drive = -1;      ///< from 0; -1: several
+  bool odd = false;    ///< a factor that is neither a unit nor a whole ratio
   double changes = 0;  ///< how much is assumed: of two that explain alike, the one with less comes first
 };
 
@@ -39,6 +40,9 @@ struct PositionFamily {
 /// One member of a family with its words; named units are recognised within `tolerance` of the value.
 [[nodiscard]] PositionHypothesis member(const PositionFamily& family, const RobotDescription& robot, double value,
                                         double tolerance);
+
+/// Units, whole ratios or right angles near a value of a family, the likeliest first.
+[[nodiscard]] std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot, double value);
 
 /// First `inner`, then `outer` on what it gives.
 [[nodiscard]] Reading compose(const Reading& outer, const Reading& inner);

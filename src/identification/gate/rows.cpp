@@ -163,6 +163,7 @@ Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sampl
       if (any_within(regressor.out_of_reach, k, reach) || any_within(stretch.spoilt, k, reach)) continue;
       for (int j = 0; j < n; ++j) {
         const auto at = static_cast<std::size_t>(j);
+        if (stretch.torque_out.col(j).segment(k - reach, 2 * reach + 1).any()) continue;
         const int bin = any_within(regressor.reversal[at], k, reach) ? 1 : 0;
         bins[at].at[bin].push_back({static_cast<int>(s), k});
         bins[at].Y[bin].push_back(kernel.weight[0].transpose() *
@@ -191,6 +192,7 @@ Points pick_points(const Sample& sample, Index count) {
   const auto N = static_cast<Index>(out.at.size());
   const Index n = sample.stretches.empty() ? 0 : sample.stretches.front().q.cols();
   for (Eigen::MatrixXd* m : {&out.q, &out.qd, &out.qdd, &out.tau}) m->resize(N, n);
+  out.torque_out.setConstant(N, n, false);
   for (Index row = 0; row < N; ++row) {
     const Place& place = out.at[static_cast<std::size_t>(row)];
     const Stretch& stretch = sample.stretches[static_cast<std::size_t>(place.stretch)];
@@ -202,6 +204,8 @@ Points pick_points(const Sample& sample, Index count) {
     out.qd.row(row) = smooth(stretch.qd);
     out.qdd.row(row) = smooth(stretch.qdd);
     out.tau.row(row) = smooth(stretch.tau);
+    const Index reach = reach_of(sample, stretch);
+    out.torque_out.row(row) = stretch.torque_out.middleRows(place.point - reach, 2 * reach + 1).colwise().any();
   }
   return out;
 }
@@ -222,7 +226,7 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
       continue;
     }
     for (int j = 0; j < n; ++j) {
-      if (std::abs(vk(j)) < floor(j)) continue;
+      if (std::abs(vk(j)) < floor(j) || points.torque_out.row(k).any()) continue;
       Eigen::RowVectorXd row(base.count());
       for (int b = 0; b < base.count(); ++b) row(b) = full(j, base.independent[static_cast<std::size_t>(b)]);
       found[static_cast<std::size_t>(j)].push_back(row);
@@ -243,7 +247,7 @@ Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorX
   Eigen::MatrixXd out(static_cast<Index>(at.size()), 1 + derivatives);
   std::vector<Kernel> kernels;  // one a stretch: steps and shifts may differ
   for (const Stretch& stretch : sample.stretches) {
-    kernels.emplace_back(sigma_s, stretch.step_s, shift_s_of_log[static_cast<std::size_t>(stretch.log)]);
+    kernels.emplace_back(sigma_s, stretch.step_s, shift_s_of_log[static_cast<std::size_t>(stretch.file)]);
   }
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto s = static_cast<std::size_t>(at[k].stretch);

@@ -50,8 +50,9 @@ struct Rows {
 /// Motion under the Gaussian at few points: cheap, good to some per cent, for signs, orders and units.
 struct Points {
   std::vector<Place> at;
-  Eigen::MatrixXd q, qd, qdd;  ///< points x columns, as recorded
-  Eigen::MatrixXd tau;         ///< points x drives, under the same low pass
+  Eigen::MatrixXd q, qd, qdd;                                     ///< points x columns, as recorded
+  Eigen::MatrixXd tau;                                            ///< points x drives, under the same low pass
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< points x drives: this torque is no evidence
 };
 [[nodiscard]] Points pick_points(const Sample& sample, Eigen::Index count);
 [[nodiscard]] Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points& points, const Reading& reading);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
@@ -20,7 +21,6 @@ constexpr double kPerPeriod = 13;   // grid points a period of the band
 // look like a lag.
 constexpr double kMotionRatio = 2.0;
 constexpr Index kFewestSamples = 60;  // of a stretch
-constexpr Index kHarmlessRun = 3;     // filled samples in a row that a cubic bridges well enough for a hypothesis
 
 /// Rows [from, from + count) of a log, without derivatives.
 Log piece_of(const Log& log, Index from, Index count) {
@@ -29,20 +29,9 @@ Log piece_of(const Log& log, Index from, Index count) {
   piece.t_s = log.t_s.segment(from, count);
   piece.q = log.q.middleRows(from, count);
   piece.tau = log.tau.middleRows(from, count);
+  if (log.torque_out.size() > 0) piece.torque_out = log.torque_out.middleRows(from, count);
   if (!log.filled.empty()) piece.filled.assign(log.filled.begin() + from, log.filled.begin() + from + count);
   return piece;
-}
-
-/// Marks the runs of filled samples that are too long to be harmless.
-std::vector<char> spoilt_samples(const Log& piece) {
-  std::vector<char> spoilt(static_cast<std::size_t>(piece.samples()), 0);
-  for (Index begin = 0; begin < piece.samples();) {
-    Index end = begin;
-    while (end < piece.samples() && piece.is_filled(end)) ++end;
-    if (end - begin >= kHarmlessRun) std::fill(spoilt.begin() + begin, spoilt.begin() + end, 1);
-    begin = end + 1;
-  }
-  return spoilt;
 }
 
 /// Every `factor`-th row of a Gaussian mean over about one step of the coarse grid.
@@ -70,13 +59,13 @@ Eigen::MatrixXd every(const Eigen::MatrixXd& columns, Index factor) {
   return out;
 }
 
-Stretch stretch_of(const Log& piece, int log, double band_hz) {
+Stretch stretch_of(const Log& piece, int file, double band_hz) {
   const double rate_hz = 1.0 / piece.sample_time_s();
   const double cutoff_hz = std::min(kMotionRatio * band_hz, 0.4 * rate_hz);
   const DriveMotion motion = differentiate_log(piece, cutoff_hz, 4, kMargin / band_hz);
   const Index factor = std::max<Index>(1, static_cast<Index>(rate_hz / (kPerPeriod * band_hz)));
   Stretch out;
-  out.log = log;
+  out.file = file;
   out.step_s = static_cast<double>(factor) / rate_hz;
   out.q = every(motion.q, factor);
   out.qd = every(motion.qd, factor);
@@ -84,18 +73,19 @@ Stretch stretch_of(const Log& piece, int log, double band_hz) {
   out.tau = thin(piece.tau, factor);
   out.first = (motion.first + factor - 1) / factor;
   out.last = std::min<Index>(out.points(), motion.last / factor);
-  const std::vector<char> spoilt = spoilt_samples(piece);
   out.spoilt.assign(static_cast<std::size_t>(out.points()), 0);
+  out.torque_out.setConstant(out.points(), piece.drives(), false);
   for (Index k = 0; k < piece.samples(); ++k) {
-    if (spoilt[static_cast<std::size_t>(k)] != 0)
-      out.spoilt[static_cast<std::size_t>(std::min(k / factor, out.points() - 1))] = 1;
+    const Index at = std::min(k / factor, out.points() - 1);
+    if (piece.is_left_out(k)) out.spoilt[static_cast<std::size_t>(at)] = 1;
+    if (piece.torque_out.size() > 0) out.torque_out.row(at) = out.torque_out.row(at) || piece.torque_out.row(k);
   }
   return out;
 }
 
 }  // namespace
 
-double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options) {
+double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options, bool* coarse) {
   double rate_hz = 1e300;
   for (const Log& piece : pieces) rate_hz = std::min(rate_hz, 1.0 / piece.sample_time_s());
   const double highest = std::min(options.highest_band_hz, 0.15 * rate_hz);
@@ -119,12 +109,25 @@ double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions
     return false;
   };
   while (cutoff > lowest && too_noisy(cutoff)) cutoff = std::max(lowest, cutoff / 1.26);
+  if (coarse != nullptr) *coarse = too_noisy(cutoff);
   return cutoff;
+}
+
+std::vector<int> file_numbers(const std::vector<Log>& logs) {
+  std::vector<std::string> names;
+  std::vector<int> out;
+  for (const Log& log : logs) {
+    const auto found = std::find(names.begin(), names.end(), log.file);
+    out.push_back(static_cast<int>(found - names.begin()));
+    if (found == names.end()) names.push_back(log.file);
+  }
+  return out;
 }
 
 Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
   std::vector<Log> pieces;
   std::vector<int> owner;
+  const std::vector<int> files = file_numbers(logs);
   const double margin_s = kMargin / options.highest_band_hz + kSearch_s;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const Log& log = logs[l];
@@ -138,12 +141,12 @@ Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
     for (int k = 0; k < count; ++k) {
       const Index from = count == 1 ? 0 : k * (log.samples() - samples) / (count - 1);
       pieces.push_back(piece_of(log, from, samples));
-      owner.push_back(static_cast<int>(l));
+      owner.push_back(files[l]);
     }
   }
   Sample out;
   if (pieces.empty()) return out;
-  out.band_hz = noise_limited_band_hz(pieces, options);
+  out.band_hz = noise_limited_band_hz(pieces, options, &out.coarse);
   out.sigma_s = std::sqrt(2 * std::numbers::ln2) / (2 * std::numbers::pi * out.band_hz);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const double length_s = static_cast<double>(pieces[k].samples()) * pieces[k].sample_time_s();

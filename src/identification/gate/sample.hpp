@@ -14,12 +14,13 @@ namespace deltadyn::gate {
 
 /// Consecutive samples of one log on a grid of their own, some 13 points a period of the band.
 struct Stretch {
-  int log = 0;                       ///< place of the log in the list
-  double step_s = 0;                 ///< of the grid
-  Eigen::MatrixXd q, qd, qdd;        ///< N x drives, low-passed at twice Sample::band_hz
-  Eigen::MatrixXd tau;               ///< N x drives; a mean over the grid's step where the log is sampled finer
-  std::vector<char> spoilt;          ///< 1: in a run of samples that the reader filled in or marked
-  Eigen::Index first = 0, last = 0;  ///< [first, last): not disturbed by the ends of the filter
+  int file = 0;                ///< of file_numbers()
+  double step_s = 0;           ///< of the grid
+  Eigen::MatrixXd q, qd, qdd;  ///< N x drives, low-passed at twice Sample::band_hz
+  Eigen::MatrixXd tau;         ///< N x drives; a mean over the grid's step where the log is sampled finer
+  std::vector<char> spoilt;    ///< 1: filled in or spoilt, no evidence
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< N x drives: Log::torque_out
+  Eigen::Index first = 0, last = 0;                               ///< [first, last): not disturbed by the ends of the filter
 
   [[nodiscard]] Eigen::Index points() const { return q.rows(); }
 };
@@ -28,6 +29,8 @@ struct Sample {
   std::vector<Stretch> stretches;
   double band_hz = 0;  ///< -6 dB point of the Gaussian low pass that regressor and torque share
   double sigma_s = 0;  ///< of that Gaussian
+  bool coarse =
+      false;  ///< even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
 };
 
 struct SampleOptions {
@@ -40,7 +43,11 @@ struct SampleOptions {
 
 /// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the log with
 /// the strongest motion. No torque takes part, so that a fault of the torque cannot move it.
-[[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options);
+/// \param coarse  set if the noise is too large even in the lowest band
+[[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options, bool* coarse = nullptr);
+
+/// The number of each log's file, from 0 in the order of the list: parts of one file share its delays.
+[[nodiscard]] std::vector<int> file_numbers(const std::vector<Log>& logs);
 
 /// Logs too short for a stretch are left out; the result may be empty.
 [[nodiscard]] Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options = {});

@@ -76,7 +76,10 @@ Eigen::VectorXd own_residuals(const std::vector<TorqueBlock>& blocks) {
     const auto solver = factorise(block.YtY, scale);
     const Eigen::VectorXd rhs = scale.asDiagonal() * block.Ytau.col(j);
     const double left = block.tau2(j) - rhs.dot(Eigen::VectorXd(solver.solve(rhs)));
-    out(j) = std::sqrt(std::max(0.0, left) / std::max(block.tau2(j), 1e-300));
+    // Parameters of its own follow the noise of few rows.
+    const double rows = static_cast<double>(block.rows), free = static_cast<double>(block.YtY.cols());
+    const double freedom = rows > 1.5 * free ? rows / (rows - free) : 3.0;
+    out(j) = std::sqrt(freedom * std::max(0.0, left) / std::max(block.tau2(j), 1e-300));
   }
   return out;
 }

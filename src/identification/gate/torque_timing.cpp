@@ -19,13 +19,15 @@ using Eigen::Index;
 constexpr double kScanStep_s = 0.002;  // fine enough for Gauss-Newton to start in the right valley
 constexpr double kLongestDelay_s = 0.04;
 constexpr double kLongestLag_s = 0.02;
-constexpr double kFarthest_s = 0.048;  // the rows leave this margin to the ends of their stretch
-constexpr double kCalm = 3.0;          // times the Gaussian of the sample: instruments see the motion, not the encoders' noise
-constexpr int kParts = 10;             // of the rows for the jackknife
-constexpr double kSigmas = 4.5;        // a delay within this many of its standard deviations is chance
-constexpr double kWorth = 25.0;        // fall of chi^2 that pays for a further parameter: five standard deviations
-constexpr double kShare = 0.01;        // of the residual's mean square: a delay that explains less is no matter to the fit
-constexpr double kMostOfDelay = 1e-6;  // s; Gauss-Newton ends below this step
+constexpr double kFarthest_s = 0.048;   // the rows leave this margin to the ends of their stretch
+constexpr double kCalm = 3.0;           // times the Gaussian of the sample: instruments see the motion, not the encoders' noise
+constexpr int kParts = 10;              // of the rows for the jackknife
+constexpr double kSigmas = 4.5;         // a delay within this many of its standard deviations is chance
+constexpr double kWorth = 25.0;         // fall of chi^2 that pays for a further parameter: five standard deviations
+constexpr double kShare = 0.01;         // of the residual's mean square: a delay that explains less is no matter to the fit
+constexpr double kShareOfSplit = 0.03;  // the same for delays that differ between drives or logs
+constexpr double kFails = 3.0;          // standard deviations
+constexpr double kMostOfDelay = 1e-6;   // s; Gauss-Newton ends below this step
 
 /// Which delays and lags are free, and which are tied together.
 struct Freedom {
@@ -245,7 +247,7 @@ class TimingProblem {
           twice = weight_(j) * values_at(sample_, behind_low_pass(y, lag.col(j)), places(j), shift, 1, sample_.sigma_s);
       }
       for (Index k = 0; k < count; ++k) {
-        const int log = sample_.stretches[static_cast<std::size_t>(places(j)[static_cast<std::size_t>(k)].stretch)].log;
+        const int log = sample_.stretches[static_cast<std::size_t>(places(j)[static_cast<std::size_t>(k)].stretch)].file;
         const double T = lag(log, j);
         tau(row + k) = T < 0 ? once(k, 0) : t(k, 0) + T * t(k, 1);
         if (!with_slopes) continue;
@@ -263,7 +265,7 @@ class TimingProblem {
     std::vector<Eigen::VectorXd> out;
     for (std::size_t s = 0; s < columns.size(); ++s) {
       const Stretch& stretch = sample_.stretches[s];
-      const double T = -lag_of_log(stretch.log);
+      const double T = -lag_of_log(stretch.file);
       out.push_back(T > 0 ? first_order_low_pass(columns[s], stretch.step_s, T) : columns[s]);
     }
     return out;
@@ -286,7 +288,7 @@ class TimingProblem {
     Index row = 0;
     for (int j = 0; j < drives_; ++j) {
       for (const Place& place : places(j)) {
-        const int log = sample_.stretches[static_cast<std::size_t>(place.stretch)].log;
+        const int log = sample_.stretches[static_cast<std::size_t>(place.stretch)].file;
         const auto at = static_cast<std::size_t>(log * drives_ + j);
         for (const auto& [parameter, kind] : {std::pair(free.delay[at], 0), std::pair(free.lag[at], 1)}) {
           if (parameter < 0) continue;
@@ -422,7 +424,7 @@ Solution split_if_different(const TimingProblem& problem, const Solution& common
   for (const auto& group : finer) {
     Solution split = fit(problem, delay, group, common.theta(0));
     const double gain = common.chi2 - split.chi2;
-    if (!split.converged || split.chi2 > best.chi2 || gain < std::max(kWorth, kShare * common.chi2)) continue;
+    if (!split.converged || split.chi2 > best.chi2 || gain < std::max(kWorth, kShareOfSplit * common.chi2)) continue;
     problem.add_deviations(split);
     if (differ(split.theta, split.std, least)) best = split;
   }
@@ -448,7 +450,8 @@ Solution choose(const TimingProblem& problem, double start, double least) {
   const auto [bend_delay, std_delay] = curvature_of(problem, delay);
   const auto [bend_lag, std_lag] = curvature_of(problem, lag);
   const double off_delay = std::abs(bend_delay) / std_delay, off_lag = std::abs(bend_lag) / std_lag;
-  const bool is_delay = !lag.converged || off_delay <= off_lag;
+  // A delay is the simpler one: it must clearly fail before a lag takes its place.
+  const bool is_delay = !lag.converged || off_delay <= std::max(off_lag, kFails);
   Solution best = split_if_different(problem, is_delay ? delay : lag, is_delay, least);
   if (best.free.parameters == 1 && std::min(off_delay, off_lag) > kSigmas) {
     const Solution both = both_at_once(problem, delay, bend_delay);

@@ -44,11 +44,12 @@ void check_positions(CheckRoom& room) {
     Index at = 0;
     const double largest = log.q.col(d).cwiseAbs().maxCoeff(&at);
     const double value = log.q(at, d);
-    if (limb && delta && room.turns(d) && largest > kLargestLimbAngle) {
+    const bool refuse = room.options.refuse_positions && limb && delta;
+    if (refuse && room.turns(d) && largest > kLargestLimbAngle) {
       throw Error(fmt::format("an arm angle of {:.9g} rad is beyond half a turn; it looks like degrees", value),
                   room.where(at, column), fmt::format("name the column q{}_deg, or convert it to rad", d + 1));
     }
-    if (limb && delta && !room.turns(d)) {
+    if (refuse && !room.turns(d)) {
       const auto& geometry = robot.limbs[static_cast<std::size_t>(d)];
       const double reach = 10.0 * (geometry.strut + geometry.p_WD.norm() + geometry.p_DE_0.norm());
       if (largest > reach) {

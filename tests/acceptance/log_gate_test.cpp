@@ -1,0 +1,144 @@
+// Faulty logs given to the installed tools: each is mended and right, or ends with the name of its fault.
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "deltadyn/io/log_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+#include "deltadyn/io/robot_file.hpp"
+
+#include "acceptance/tool_run.hpp"
+#include "identification/faulty_logs.hpp"
+
+namespace deltadyn::acceptance {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+const std::string kLogs = "logs/mujoco_delta4/";
+
+/// The two identification logs of the installed robot, spoilt, and what delta-identify makes of them.
+class Spoilt {
+ public:
+  explicit Spoilt(const std::function<void(Log&)>& spoil) : robot_(read_robot_file(robot_file())) {
+    for (const char* name : {"identification_fast.csv", "identification_slow.csv"}) {
+      Log log = read_log(installed(kLogs + name), robot_);
+      spoil(log);
+      write_log(folder_.path(name), log, robot_);
+      logs_.push_back(folder_.path(name));
+    }
+  }
+
+  static std::string robot_file() { return installed("robots/mujoco_delta4.urdf"); }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
+  [[nodiscard]] ToolResult identify(const Words& flags = {}) const {
+    return run(Words{"delta-identify", robot_file()} + logs_ + Words{"-o", path("params.csv"), "--summary", path("summary.csv")} +
+               flags);
+  }
+  [[nodiscard]] ToolResult check(const Words& flags = {}) const {
+    return run(Words{"delta-log", "check"} + logs_ +
+               Words{"--robot", robot_file(), "--summary", path("summary.csv"), "--report", path("check.html")} + flags);
+  }
+  [[nodiscard]] std::map<std::string, std::string> summary() const { return read_summary(path("summary.csv")); }
+
+  /// Largest relative error of the drives' friction.
+  [[nodiscard]] double friction_error() const {
+    const auto values = [](const std::string& file) {
+      std::map<std::string, double> out;
+      for (const ParameterEntry& entry : read_parameters(file).entries) out[entry.name] = entry.value;
+      return out;
+    };
+    const auto truth = values(installed(kLogs + "truth.csv"));
+    const auto found = values(path("params.csv"));
+    double worst = 0;
+    for (const auto& [name, value] : truth) {
+      if (name.rfind("drive", 0) == 0) worst = std::max(worst, std::abs(found.at(name) / value - 1));
+    }
+    return worst;
+  }
+
+ private:
+  testing::TemporaryFolder folder_;
+  RobotDescription robot_;
+  Words logs_;
+};
+
+TEST(FaultyLogs, ADelayIsRemovedAndSaid) {
+  for (const double delay : {2e-3, -1.5e-3}) {
+    const Spoilt logs([&](Log& log) { testing_support::make_late(log, delay, 0); });
+    const ToolResult result = logs.identify();
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    EXPECT_THAT(result.out, ContainsRegex("check: mended: torque is [0-9.]+ ms (late|early) .*removed"));
+    EXPECT_NEAR(std::stod(logs.summary().at("check_delay")), delay, 1e-4);
+    EXPECT_LT(logs.friction_error(), 0.01);
+  }
+}
+
+TEST(FaultyLogs, ALowPassOfTheTorqueIsRemoved) {
+  const Spoilt logs([](Log& log) { testing_support::make_late(log, 0, 3e-3); });
+  EXPECT_EQ(logs.identify().code, 0);
+  EXPECT_LT(logs.friction_error(), 0.01);
+}
+
+TEST(FaultyLogs, ADelayThatIsKeptIsAWarning) {
+  const Spoilt logs([](Log& log) { testing_support::make_late(log, 2e-3, 0); });
+  const ToolResult result = logs.identify({"--keep-delay"});
+  EXPECT_THAT(result.err, HasSubstr("left in place"));
+  EXPECT_GT(logs.friction_error(), 0.02);
+  EXPECT_NE(logs.summary().at("verdict"), "trusted");
+}
+
+TEST(FaultyLogs, FaultsEndWithTheirNameAndNoParameters) {
+  const std::vector<double> degrees = testing_support::for_limbs(4, 57.29577951308232, 57.29577951308232);
+  const std::vector<std::pair<std::function<void(Log&)>, std::string>> faults = {
+      {[](Log& log) { log.tau.col(1) *= -1; }, "torque of drive 2 has the wrong sign: residual [0-9.]+ % as given, [0-9.]+ % so"},
+      {[](Log& log) { log.tau *= -1; }, "torque of all drives has the wrong sign"},
+      {[](Log& log) { log.tau.col(1).swap(log.tau.col(2)); }, "torques of drives 2 and 3 are swapped"},
+      {[&](Log& log) {
+         testing_support::remap(log.q, {0, 1, 2, 3}, degrees);
+       },
+       "looks like degrees"},
+      {[](Log& log) {
+         log.q.leftCols(3) *= 20;
+         log.tau.leftCols(3) /= 20;
+       },
+       "is 20 times the joint's: motor side of a gear"}};
+  for (const auto& [spoil, words] : faults) {
+    const Spoilt logs(spoil);
+    const ToolResult result = logs.identify();
+    EXPECT_EQ(result.code, 5) << result.out << result.err;
+    EXPECT_THAT(result.err, ContainsRegex(words));
+    EXPECT_FALSE(fs::exists(logs.path("params.csv")));
+    EXPECT_EQ(logs.summary().at("check_verdict"), "fault");
+  }
+}
+
+TEST(FaultyLogs, TheScaleOfTheTorqueIsNotTrusted) {
+  const Spoilt logs([](Log& log) {
+    testing_support::remap(log.tau, {0, 1, 2, 3}, {1000.0 / 60, 1000.0 / 60, 1000.0 / 60, 250});
+  });
+  const ToolResult result = logs.identify();
+  EXPECT_EQ(result.code, 5);
+  EXPECT_THAT(result.err, ContainsRegex("torque is [0-9.]+ .* times what the masses of the prior need"));
+  EXPECT_EQ(logs.summary().at("verdict"), "not-trusted");
+}
+
+TEST(FaultyLogs, CheckSaysWhatIdentifyWouldAndWritesAPage) {
+  const Spoilt sound([](Log&) {});
+  const ToolResult fine = sound.check();
+  EXPECT_EQ(fine.code, 0) << fine.out << fine.err;
+  EXPECT_THAT(fine.out, HasSubstr("no fault was found"));
+  EXPECT_THAT(read_text(sound.path("check.html")), HasSubstr("Nothing was found that speaks against these logs"));
+  const Spoilt turned([](Log& log) { log.tau.col(0) *= -1; });
+  const ToolResult fault = turned.check();
+  EXPECT_EQ(fault.code, 5);
+  EXPECT_THAT(read_text(turned.path("check.html")), HasSubstr("the torque of drive 1 has the wrong sign"));
+}
+
+}  // namespace
+}  // namespace deltadyn::acceptance

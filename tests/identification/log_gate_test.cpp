@@ -1,0 +1,217 @@
+#include "deltadyn/identification/log_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "identification/faulty_logs.hpp"
+#include "identification/synthetic_log.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+struct Recording {
+  double rate_hz = 1000, noise = 0.1, encoder_bits = 19, duration_s = 8;
+  std::uint64_t seed = 1;
+};
+
+/// A fast log and a slow one, as a drive records them.
+std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
+  std::vector<Log> logs;
+  for (const std::uint64_t part : {0, 1}) {
+    SyntheticOptions synthetic;
+    synthetic.duration_s = how.duration_s;
+    synthetic.rate_hz = how.rate_hz;
+    synthetic.torque_noise = how.noise;
+    const bool turns = robot.description().drive_kind == DriveKind::revolute;
+    synthetic.encoder_step = (turns ? 6.283 : 0.5) / std::pow(2.0, how.encoder_bits);
+    synthetic.with_derivatives = false;
+    synthetic.seed = 10 * how.seed + part;
+    synthetic.base_frequency_hz = part == 0 ? 0.35 : 0.15;
+    logs.push_back(synthetic_log(robot, delta_truth(robot), synthetic));
+    logs.back().file = part == 0 ? "fast" : "slow";
+  }
+  return logs;
+}
+
+GateResult examine(const Robot& robot, std::vector<Log> logs, double prior = 1.3) {
+  const Eigen::VectorXd value = prior * delta_truth(robot);
+  Eigen::VectorXd std = 0.5 * value.cwiseAbs();
+  for (Eigen::Index k = 0; k < std.size(); ++k) std(k) = std::max(std(k), 0.001);
+  return examine_logs(robot, std::move(logs), value, std);
+}
+
+std::string told(const GateResult& result) {
+  std::string text;
+  for (const LogFinding& f : result.findings) text += "  [" + f.key + "] " + f.text + "\n";
+  return text;
+}
+
+const LogFinding* find(const GateResult& result, const std::vector<std::string>& keys, FindingLevel level) {
+  for (const LogFinding& f : result.findings) {
+    if (f.level == level && std::find(keys.begin(), keys.end(), f.key) != keys.end()) return &f;
+  }
+  return nullptr;
+}
+
+class LogGate : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Robots, LogGate, testing::Values("delta3", "linear-delta3", "delta4"),
+                         [](const auto& info) { return std::string(info.param) == "linear-delta3" ? "linear" : info.param; });
+
+TEST_P(LogGate, CallsEveryFaultByItsName) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  const std::vector<Log> sound = recorded(*robot);
+  for (const FaultyLog& fault : faulty_logs(robot->description())) {
+    std::vector<Log> logs = sound;
+    for (Log& log : logs) fault.spoil(log);
+    const GateResult result = examine(*robot, logs);
+    const LogFinding* finding = find(result, fault.keys, FindingLevel::fault);
+    EXPECT_NE(finding, nullptr) << fault.name << "\n" << told(result);
+    if (finding != nullptr && fault.value != 0)
+      EXPECT_NEAR(finding->value / fault.value, 1.0, 0.03) << fault.name << "\n" << told(result);
+  }
+}
+
+TEST_P(LogGate, LeavesSoundLogsAlone) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  std::uint64_t seed = 3;
+  for (const double rate : {250.0, 1000.0, 4000.0}) {
+    for (const double noise : {0.03, 0.1, 0.5}) {
+      for (const double bits : {13.0, 24.0}) {
+        Recording how;
+        how.rate_hz = rate;
+        how.noise = noise;
+        how.encoder_bits = bits;
+        how.seed = ++seed;
+        for (const double prior : {0.7, 1.3}) {
+          const GateResult result = examine(*robot, recorded(*robot, how), prior);
+          for (const LogFinding& f : result.findings) {
+            EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  std::uint64_t seed = 1;
+  for (const double delay : {-5e-3, -2e-3, -0.5e-3, 0.5e-3, 1e-3, 2e-3, 3.3e-3, 5e-3, 7e-3, 10e-3}) {
+    Recording how;
+    how.seed = ++seed;
+    std::vector<Log> logs = recorded(*robot, how);
+    const std::vector<Log> sound = logs;
+    for (Log& log : logs) make_late(log, delay, 0);
+    const GateResult result = examine(*robot, logs);
+    EXPECT_FALSE(result.fault()) << told(result);
+    const LogFinding* finding = find(result, {"delay"}, FindingLevel::mended);
+    if (finding == nullptr && std::abs(delay) < 1e-3) finding = find(result, {"lag"}, FindingLevel::mended);  // alike if short
+    ASSERT_NE(finding, nullptr) << delay << "\n" << told(result);
+    EXPECT_NEAR(finding->value, delay, 1e-4) << told(result);
+    EXPECT_LT(std::abs(finding->value - delay), 4 * finding->std) << told(result);
+    const Eigen::Index inner = sound[0].samples() - 200;
+    const Eigen::VectorXd left = (result.logs[0].tau - sound[0].tau).col(0).segment(100, inner);
+    EXPECT_LT(left.norm(), 0.05 * sound[0].tau.col(0).norm());
+  }
+}
+
+TEST_P(LogGate, FindsALowPassOfTheTorque) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  for (const double lag : {0.5e-3, 3e-3}) {
+    std::vector<Log> logs = recorded(*robot);
+    for (Log& log : logs) make_late(log, 0, lag);
+    const GateResult result = examine(*robot, logs);
+    const LogFinding* finding = find(result, {"lag", "delay"}, FindingLevel::mended);
+    ASSERT_NE(finding, nullptr) << told(result);
+    EXPECT_NEAR(finding->value, lag, 0.1e-3 + 0.03 * lag) << told(result);
+  }
+}
+
+TEST(LogGateDelay, OfOneDriveOrOneLogOnly) {
+  const auto robot = make_robot(delta_description("delta4"));
+  std::vector<Log> one_drive = recorded(*robot), one_log = one_drive;
+  for (Log& log : one_drive) make_late(log, 3e-3, 0, 1);
+  const GateResult by_drive = examine(*robot, one_drive);
+  const LogFinding* finding = find(by_drive, {"delay"}, FindingLevel::mended);
+  ASSERT_NE(finding, nullptr) << told(by_drive);
+  EXPECT_EQ(finding->drive, 1) << told(by_drive);
+  EXPECT_NEAR(finding->value, 3e-3, 2e-4);
+  make_late(one_log[0], 3e-3, 0);  // the fast one: in the slow one 3 ms hardly show
+  const GateResult by_log = examine(*robot, one_log);
+  finding = find(by_log, {"delay"}, FindingLevel::mended);
+  ASSERT_NE(finding, nullptr) << told(by_log);
+  EXPECT_EQ(finding->file, "fast") << told(by_log);
+  EXPECT_NEAR(finding->value, 3e-3, 2e-4);
+}
+
+TEST(LogGateDelay, StaysInTheLogIfAsked) {
+  const auto robot = make_robot(delta_description("delta3"));
+  std::vector<Log> logs = recorded(*robot);
+  for (Log& log : logs) make_late(log, 2e-3, 0);
+  GateOptions options;
+  options.keep_delay = true;
+  const GateResult result = examine_logs(*robot, logs, {}, {}, options);
+  EXPECT_NE(find(result, {"delay"}, FindingLevel::warning), nullptr) << told(result);
+  EXPECT_EQ((result.logs[0].tau - logs[0].tau).norm(), 0);
+}
+
+TEST(LogGateScale, WeighedMassesMakeItCertain) {
+  const auto robot = make_robot(delta_description("delta3"));
+  const Eigen::VectorXd prior = delta_truth(*robot);
+  const Eigen::VectorXd std = (0.02 * prior.cwiseAbs()).cwiseMax(1e-4);
+  std::vector<Log> logs = recorded(*robot);
+  EXPECT_FALSE(examine_logs(*robot, logs, prior, std).fault());
+  for (Log& log : logs) log.tau *= 1.5;
+  const GateResult result = examine_logs(*robot, logs, prior, std);
+  const LogFinding* finding = find(result, {"scale"}, FindingLevel::fault);
+  ASSERT_NE(finding, nullptr) << told(result);
+  EXPECT_NEAR(finding->value, 1.5, 0.05);
+  EXPECT_FALSE(result.stop());
+}
+
+TEST(LogGateDerivatives, AreComparedWithThePositions) {
+  const auto robot = make_robot(delta_description("delta3"));
+  SyntheticOptions synthetic;
+  const Log sound = synthetic_log(*robot, delta_truth(*robot), synthetic);
+  GateOptions options;
+  options.given_derivatives = true;
+  EXPECT_FALSE(examine_logs(*robot, {sound}, {}, {}, options).fault()) << told(examine_logs(*robot, {sound}, {}, {}, options));
+  const auto text_of = [&](const std::function<void(Log&)>& spoil) {
+    Log log = sound;
+    spoil(log);
+    const GateResult result = examine_logs(*robot, {log}, {}, {}, options);
+    const LogFinding* finding = find(result, {"rate"}, FindingLevel::fault);
+    return finding == nullptr ? std::string("nothing") : finding->text;
+  };
+  EXPECT_EQ(text_of([](Log& log) { log.qd *= 30 / 3.141592653589793; }), "qd1 is 9.55 times dq1/dt: revolutions per minute?");
+  EXPECT_EQ(text_of([](Log& log) { log.qd.setZero(); }), "qd1 is zero while the drive moves");
+  EXPECT_EQ(text_of([](Log& log) { log.qd *= -1; }), "qd1 is -1 times dq1/dt: the sign is wrong");
+  EXPECT_EQ(text_of([](Log& log) {
+              const Eigen::MatrixXd before = log.qd;
+              log.qd.bottomRows(before.rows() - 5) = before.topRows(before.rows() - 5);
+            }),
+            "qd1 is 5.0 ms late");
+}
+
+TEST(LogGateLoad, AnotherLoadInOneLogIsNoFault) {
+  const auto robot = make_robot(delta_description("delta3"));
+  Eigen::VectorXd heavy = delta_truth(*robot);
+  for (int k = 0; k < robot->parameters(); ++k) {
+    if (robot->parameter_names()[static_cast<std::size_t>(k)] == "platform.m") heavy(k) += 1.5;
+  }
+  std::vector<Log> logs = recorded(*robot);
+  SyntheticOptions synthetic;
+  synthetic.torque_noise = 0.1;
+  synthetic.encoder_step = 1.2e-5;
+  synthetic.with_derivatives = false;
+  synthetic.seed = 99;
+  logs.push_back(synthetic_log(*robot, heavy, synthetic));
+  const GateResult result = examine(*robot, logs);
+  EXPECT_FALSE(result.fault()) << told(result);
+}
+
+}  // namespace
+}  // namespace deltadyn
