@@ -95,9 +95,10 @@ class Gate {
 
   void judge_positions(const Points& points) {
     const Judgement judgement = judge(robot_, base_, points);
-    std::vector<LogFinding> limits = limit_findings(robot_.description(), out_.logs);
+    std::vector<LogFinding> limits = limit_findings(robot_.description(), out_.logs, !options_.given_derivatives);
     // Positions far beyond the limits are the same fault seen from another side.
-    if (!judgement.winners.empty()) std::erase_if(limits, [](const LogFinding& l) { return l.key == "position_range"; });
+    if (!judgement.winners.empty())
+      std::erase_if(limits, [](const LogFinding& l) { return l.key == "position_range" || l.key == "position_rate"; });
     LogFinding f;
     f.level = FindingLevel::fault;
     f.value = judgement.as_given.residual;

@@ -17,8 +17,8 @@
 namespace deltadyn::acceptance {
 namespace {
 
-using testing::ContainsRegex;
-using testing::HasSubstr;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
 
 const std::string kLogs = "logs/mujoco_delta4/";
 

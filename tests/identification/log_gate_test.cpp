@@ -14,6 +14,7 @@ using namespace testing_support;
 
 struct Recording {
   double rate_hz = 1000, noise = 0.1, encoder_bits = 19, duration_s = 8;
+  double fast_hz = 0.35;  ///< base frequency of the fast log
   std::uint64_t seed = 1;
 };
 
@@ -29,7 +30,7 @@ std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
     synthetic.encoder_step = (turns ? 6.283 : 0.5) / std::pow(2.0, how.encoder_bits);
     synthetic.with_derivatives = false;
     synthetic.seed = 10 * how.seed + part;
-    synthetic.base_frequency_hz = part == 0 ? 0.35 : 0.15;
+    synthetic.base_frequency_hz = part == 0 ? how.fast_hz : 0.15;
     logs.push_back(synthetic_log(robot, delta_truth(robot), synthetic));
     logs.back().file = part == 0 ? "fast" : "slow";
   }
@@ -58,7 +59,7 @@ const LogFinding* find(const GateResult& result, const std::vector<std::string>&
 
 class LogGate : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Robots, LogGate, testing::Values("delta3", "linear-delta3", "delta4"),
-                         [](const auto& info) { return std::string(info.param) == "linear-delta3" ? "linear" : info.param; });
+                         [](const auto& robot) { return std::string(robot.param) == "linear-delta3" ? "linear" : robot.param; });
 
 TEST_P(LogGate, CallsEveryFaultByItsName) {
   const auto robot = make_robot(delta_description(GetParam()));
@@ -69,8 +70,8 @@ TEST_P(LogGate, CallsEveryFaultByItsName) {
     const GateResult result = examine(*robot, logs);
     const LogFinding* finding = find(result, fault.keys, FindingLevel::fault);
     EXPECT_NE(finding, nullptr) << fault.name << "\n" << told(result);
-    if (finding != nullptr && fault.value != 0)
-      EXPECT_NEAR(finding->value / fault.value, 1.0, 0.03) << fault.name << "\n" << told(result);
+    if (finding == nullptr || fault.value == 0) continue;
+    EXPECT_NEAR(finding->value / fault.value, 1.0, 0.03) << fault.name << "\n" << told(result);
   }
 }
 
@@ -85,11 +86,10 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
         how.noise = noise;
         how.encoder_bits = bits;
         how.seed = ++seed;
-        for (const double prior : {0.7, 1.3}) {
-          const GateResult result = examine(*robot, recorded(*robot, how), prior);
-          for (const LogFinding& f : result.findings) {
-            EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
-          }
+        const double prior = seed % 2 == 0 ? 0.7 : 1.3;  // 30 % off either way is no fault
+        const GateResult result = examine(*robot, recorded(*robot, how), prior);
+        for (const LogFinding& f : result.findings) {
+          EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
         }
       }
     }
@@ -102,6 +102,7 @@ TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
   for (const double delay : {-5e-3, -2e-3, -0.5e-3, 0.5e-3, 1e-3, 2e-3, 3.3e-3, 5e-3, 7e-3, 10e-3}) {
     Recording how;
     how.seed = ++seed;
+    how.fast_hz = 0.6;  // as a planned excitation
     std::vector<Log> logs = recorded(*robot, how);
     const std::vector<Log> sound = logs;
     for (Log& log : logs) make_late(log, delay, 0);
@@ -132,14 +133,18 @@ TEST_P(LogGate, FindsALowPassOfTheTorque) {
 
 TEST(LogGateDelay, OfOneDriveOrOneLogOnly) {
   const auto robot = make_robot(delta_description("delta4"));
-  std::vector<Log> one_drive = recorded(*robot), one_log = one_drive;
+  Recording other;
+  other.seed = 2;
+  // In a slow log 3 ms hardly show: both are fast.
+  std::vector<Log> one_drive = recorded(*robot), one_log = {one_drive[0], recorded(*robot, other)[0]};
+  one_log[1].file = "another";
   for (Log& log : one_drive) make_late(log, 3e-3, 0, 1);
   const GateResult by_drive = examine(*robot, one_drive);
   const LogFinding* finding = find(by_drive, {"delay"}, FindingLevel::mended);
   ASSERT_NE(finding, nullptr) << told(by_drive);
   EXPECT_EQ(finding->drive, 1) << told(by_drive);
   EXPECT_NEAR(finding->value, 3e-3, 2e-4);
-  make_late(one_log[0], 3e-3, 0);  // the fast one: in the slow one 3 ms hardly show
+  make_late(one_log[0], 3e-3, 0);
   const GateResult by_log = examine(*robot, one_log);
   finding = find(by_log, {"delay"}, FindingLevel::mended);
   ASSERT_NE(finding, nullptr) << told(by_log);

@@ -15,7 +15,7 @@ struct LogCheckOptions {
   /// false: the rows are states of their own, not a motion recorded evenly in time (a table of poses); only missing numbers,
   /// implausible positions and limits are looked at.
   bool motion = true;
-  /// false: arm angles and carriage positions that the robot cannot have are let through, because examine_logs() names what they
+  /// false: positions and rates that the robot cannot have are let through, because examine_logs() names what they
   /// are (degrees, a gear, a zero).
   bool refuse_positions = true;
   int max_filled_gap = 3;              ///< longest run of missing samples that is filled in,

@@ -23,7 +23,7 @@ struct Explanation {
   double changes = 0;
   std::string key, words, mend;
   int drive = -1;
-  bool odd = false;  ///< a factor that is neither a unit nor a whole ratio: a wrong length of the robot file looks like that, too
+  bool odd = false;           ///< PositionHypothesis::odd
   double value = 0, std = 0;  ///< of a scale
 };
 

@@ -25,7 +25,8 @@ constexpr double kSpread =
 constexpr double kFaultEffort =
     5.0;  // times the effort of the robot file: drives reach three times their rated torque for moments
 constexpr double kWarnEffort = 1.5;
-constexpr double kFarBeyond = 3.0;  // times the position limits
+constexpr double kFarTooFast = 10.0;  // times the velocity limit
+constexpr double kFarBeyond = 3.0;    // times the position limits
 
 double beyond(double ratio, double prior_std, double base, double trust) {
   return std::abs(std::log(std::max(ratio, 1e-12))) - base - trust * prior_std;
@@ -170,7 +171,46 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   return out;
 }
 
-std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs) {
+namespace {
+
+/// Rate of a drive that only a twentieth of the steps exceed [rad/s | m/s].
+double usual_rate(const Log& log, int drive) {
+  const Index stride = std::max<Index>(1, log.samples() / 5000);
+  std::vector<double> rates;
+  for (Index k = 1; k < log.samples(); k += stride)
+    rates.push_back(std::abs(log.q(k, drive) - log.q(k - 1, drive)) / std::max(log.t_s(k) - log.t_s(k - 1), 1e-12));
+  if (rates.empty()) return 0.0;
+  const auto place = rates.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(rates.size() - 1));
+  std::nth_element(rates.begin(), place, rates.end());
+  return *place;
+}
+
+/// A rate that no drive of this limit has: positions or time in another unit.
+void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& logs, int drive, std::vector<LogFinding>& out) {
+  const double limit = robot.limits[static_cast<std::size_t>(drive)].velocity;
+  if (!(limit > 0 && limit < 1e9)) return;
+  for (const Log& log : logs) {
+    const double rate = usual_rate(log, drive);
+    if (rate < kFarTooFast * limit) continue;
+    LogFinding f;
+    f.level = FindingLevel::fault;
+    f.key = "position_rate";
+    f.file = log.file;
+    f.drive = drive;
+    f.value = rate;
+    f.unit = robot.kind_of_drive(drive) == DriveKind::revolute ? "rad/s" : "m/s";
+    f.text = fmt::format(
+        "a velocity of {:.4g} is far beyond the limit of {:.4g} of drive {} (SI): positions or time have another unit", rate,
+        limit, drive + 1);
+    f.mend = "give positions in rad or m, or name the column _deg; give the time in seconds";
+    out.push_back(std::move(f));
+    return;
+  }
+}
+
+}  // namespace
+
+std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs, bool moving) {
   std::vector<LogFinding> out;
   for (int j = 0; j < robot.drives(); ++j) {
     const DriveLimits& limit = robot.limits[static_cast<std::size_t>(j)];
@@ -191,6 +231,7 @@ std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std:
       f.mend = "give the torque in N m at the joint (N for a carriage), or mend the effort in the robot file";
       out.push_back(std::move(f));
     }
+    if (moving) add_rate_finding(robot, logs, j, out);
     const double farthest = std::max(std::abs(limit.lower), std::abs(limit.upper));
     if (farthest > 0 && farthest < 1e9 && position > kFarBeyond * farthest) {
       LogFinding f;

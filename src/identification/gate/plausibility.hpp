@@ -15,7 +15,8 @@ namespace deltadyn::gate {
 /// Signs and sizes of inertia and weight that no machine of this prior has.
 [[nodiscard]] std::vector<LogFinding> scale_findings(const RobotDescription& robot, const TorqueScale& scale);
 
-/// Torques and positions far beyond the limits of the robot file.
-[[nodiscard]] std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs);
+/// Torques, positions and rates far beyond the limits of the robot file.
+/// \param moving  the rows follow one another in time
+[[nodiscard]] std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs, bool moving);
 
 }  // namespace deltadyn::gate

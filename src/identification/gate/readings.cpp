@@ -196,6 +196,7 @@ PositionHypothesis member(const PositionFamily& family, const RobotDescription& 
   const double quarter = std::round(degrees / 90) * 90;
   const bool right_angle = std::abs(degrees - quarter) < std::max(1.0, tolerance * 180 / kPi);
   if (right_angle) degrees = quarter;
+  h.odd = !right_angle;
   if (!right_angle) h.changes += 0.5;
   const std::string who = drives_in_words(family.drives, robot.drives());
   h.words =

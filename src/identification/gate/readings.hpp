@@ -19,7 +19,7 @@ struct PositionHypothesis {
   std::string words;  ///< "the position of drive 2 has the wrong sign"
   std::string mend;
   int drive = -1;      ///< from 0; -1: several
-  bool odd = false;    ///< a factor that is neither a unit nor a whole ratio
+  bool odd = false;    ///< a factor that is neither a unit nor a whole ratio, a zero at no right angle
   double changes = 0;  ///< how much is assumed: of two that explain alike, the one with less comes first
 };
 

@@ -17,6 +17,7 @@ constexpr double kReach = 4.5;          // standard deviations of the Gaussian t
 constexpr double kMaskFloor = 0.003;    // of a joint's largest rate: below, the sign of the friction is uncertain
 constexpr Index kFewestUnmasked = 300;  // rows of a drive; with fewer, those near reversals count, too
 constexpr double kSearch_s = 0.05;      // torque is looked up so far from a row
+constexpr double kSmear = 2.5;          // standard deviations of the Gaussian about a reversal, for rows at single points
 constexpr double kRowsPerBand = 0.4;    // spacing of rows in periods of the band: nearly independent rows
 
 Index reach_of(const Sample& sample, const Stretch& stretch) {
@@ -179,6 +180,7 @@ Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sampl
 
 Points pick_points(const Sample& sample, Index count) {
   Points out;
+  out.sigma_s = sample.sigma_s;
   Index available = 0;
   for (const Stretch& stretch : sample.stretches) available += std::max<Index>(0, stretch.last - stretch.first);
   const Index spacing = std::max<Index>(1, available / std::max<Index>(1, count));
@@ -213,7 +215,7 @@ Points pick_points(const Sample& sample, Index count) {
 Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points& points, const Reading& reading) {
   const int n = robot.drives();
   const Eigen::MatrixXd q = reading.apply(points.q, 0), qd = reading.apply(points.qd, 1), qdd = reading.apply(points.qdd, 2);
-  const Eigen::RowVectorXd floor = 0.02 * qd.cwiseAbs().colwise().maxCoeff();  // the Gaussian has smeared what is slower
+  const Eigen::RowVectorXd floor = 0.02 * qd.cwiseAbs().colwise().maxCoeff();
   Rows rows;
   rows.drives.resize(static_cast<std::size_t>(n));
   std::vector<std::vector<Eigen::RowVectorXd>> found(static_cast<std::size_t>(n));
@@ -226,7 +228,9 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
       continue;
     }
     for (int j = 0; j < n; ++j) {
-      if (std::abs(vk(j)) < floor(j) || points.torque_out.row(k).any()) continue;
+      // The Gaussian smears the friction's step over what the drive takes to reverse.
+      const double smeared = kSmear * points.sigma_s * std::abs(ak(j));
+      if (std::abs(vk(j)) < std::max(floor(j), smeared) || points.torque_out.row(k).any()) continue;
       Eigen::RowVectorXd row(base.count());
       for (int b = 0; b < base.count(); ++b) row(b) = full(j, base.independent[static_cast<std::size_t>(b)]);
       found[static_cast<std::size_t>(j)].push_back(row);

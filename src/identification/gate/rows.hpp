@@ -49,6 +49,7 @@ struct Rows {
 
 /// Motion under the Gaussian at few points: cheap, good to some per cent, for signs, orders and units.
 struct Points {
+  double sigma_s = 0;  ///< of the low pass; 0: none
   std::vector<Place> at;
   Eigen::MatrixXd q, qd, qdd;                                     ///< points x columns, as recorded
   Eigen::MatrixXd tau;                                            ///< points x drives, under the same low pass

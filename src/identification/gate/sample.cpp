@@ -34,6 +34,17 @@ Log piece_of(const Log& log, Index from, Index count) {
   return piece;
 }
 
+/// Smallest step of a recorded position: the encoder's, where it counts.
+double resolution(const Eigen::Ref<const Eigen::VectorXd>& position) {
+  const double rounding = 1e-12 * position.cwiseAbs().maxCoeff();
+  double smallest = 0;
+  for (Index k = 1; k < position.size(); ++k) {
+    const double step = std::abs(position(k) - position(k - 1));
+    if (step > rounding && (smallest == 0 || step < smallest)) smallest = step;
+  }
+  return smallest;
+}
+
 /// Every `factor`-th row of a Gaussian mean over about one step of the coarse grid.
 Eigen::MatrixXd thin(const Eigen::MatrixXd& columns, Index factor) {
   if (factor == 1) return columns;
@@ -96,9 +107,11 @@ double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions
   for (const Log& piece : pieces) {
     const DriveMotion motion = differentiate_log(piece, lowest, 4, 0.0);
     for (Index j = 0; j < drives; ++j) {
-      const double rms = std::sqrt(motion.qdd.col(j).squaredNorm() / static_cast<double>(motion.qdd.rows()));
-      acceleration(j) = std::max(acceleration(j), rms);
-      noise(j) = std::max(noise(j), position_noise(piece.q.col(j)));
+      const double square = motion.qdd.col(j).squaredNorm() / static_cast<double>(motion.qdd.rows());
+      const double own = std::max(position_noise(piece.q.col(j)), resolution(piece.q.col(j)) / std::sqrt(12.0));
+      const double unrest = derivative_noise(own, rate_hz, lowest, 4, 2);
+      acceleration(j) = std::max(acceleration(j), std::sqrt(std::max(0.0, square - unrest * unrest)));
+      noise(j) = std::max(noise(j), own);
     }
   }
   double cutoff = highest;

@@ -57,7 +57,7 @@ void check_positions(CheckRoom& room) {
                     room.where(at, column), "convert the column to m");
       }
     }
-    if (room.options.motion && log.samples() >= 3) check_rate(room, d, column);
+    if (room.options.refuse_positions && room.options.motion && log.samples() >= 3) check_rate(room, d, column);
   }
 }
 
