@@ -93,7 +93,7 @@ class Diagnose {
                                       !processing_.options().filter, run.summary, true);
     const std::vector<LogFinding> findings = tools::all_findings(gate);
     if (gate.stop()) {
-      tools::LogGate::refuse(gate);
+      tools::LogGate::refuse(gate, "delta-diagnose");
       return ExitCode::not_trusted;
     }
     const std::vector<Log>& logs = gate.logs;
@@ -103,7 +103,7 @@ class Diagnose {
       const GateResult proof = gate_.run(*robot, processing_.read_logs({holdout_file_}, description), {}, {}, false,
                                          !processing_.options().filter, run.summary, true);
       if (proof.stop()) {
-        tools::LogGate::refuse(proof);
+        tools::LogGate::refuse(proof, "delta-diagnose");
         return ExitCode::not_trusted;
       }
       const std::vector<Log>& parts = proof.logs;

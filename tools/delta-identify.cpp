@@ -126,7 +126,7 @@ class Identify {
   /// Logs with such a fault hold nothing that a fit could make sense of: the report, if one was asked for, is that of the check.
   ExitCode refuse(const Robot& robot, const GateResult& gate, const std::vector<LogFinding>& findings) const {
     if (!report_file_.empty()) write_file(report_file_, log_report(robot, gate.logs, report_context(findings)));
-    tools::LogGate::refuse(gate);
+    tools::LogGate::refuse(gate, "delta-identify");
     return ExitCode::not_trusted;
   }
 

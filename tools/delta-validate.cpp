@@ -66,7 +66,7 @@ class Validate {
     const std::vector<LogFinding> findings = tools::all_findings(gate);
     if (gate.stop()) {
       if (!report_file_.empty()) write_file(report_file_, log_report(*robot, gate.logs, report_context(findings)));
-      tools::LogGate::refuse(gate);
+      tools::LogGate::refuse(gate, "delta-validate");
       return ExitCode::not_trusted;
     }
     const std::vector<Log>& logs = gate.logs;

@@ -50,6 +50,11 @@ inline std::vector<LogFinding> without_notes(const GateResult& gate) {
   return out;
 }
 
+/// The log that a finding is about, unless its text says it.
+inline std::string where_of(const LogFinding& f) {
+  return f.file.empty() || f.text.rfind(f.file, 0) == 0 ? "" : f.file + ": ";
+}
+
 /// Findings as lines, the worst first; what is in order only if asked.
 inline void print_findings(const std::vector<LogFinding>& findings, bool with_fine) {
   for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
@@ -58,7 +63,7 @@ inline void print_findings(const std::vector<LogFinding>& findings, bool with_fi
       if (f.level != level) continue;
       const bool bad = level == FindingLevel::fault || level == FindingLevel::warning;
       std::FILE* to = bad ? stderr : stdout;
-      fmt::print(to, "check: {}: {}{}\n", level_word(level), f.file.empty() ? "" : f.file + ": ", f.text);
+      fmt::print(to, "check: {}: {}{}\n", level_word(level), where_of(f), f.text);
       if (bad && !f.mend.empty()) fmt::print(to, "  mend: {}\n", f.mend);
     }
   }
@@ -108,10 +113,10 @@ class LogGate {
   }
 
   /// Says that nothing is made of logs with such a fault.
-  static void refuse(const GateResult& gate) {
+  static void refuse(const GateResult& gate, const char* tool) {
     for (const LogFinding& f : gate.findings) {
       if (f.level != FindingLevel::fault) continue;
-      fmt::print(stderr, "warning: Not to be trusted: {}. Nothing was computed from these logs.\n", f.text);
+      fmt::print(stderr, "{}: not to be trusted: {}. Nothing was computed from these logs.\n", tool, f.text);
       return;
     }
   }

@@ -24,9 +24,13 @@ using Eigen::Index;
 constexpr Index kPoints = 500;        // of all logs, for signs, orders and units
 constexpr double kLeastDelay = 0.05;  // of a sample: less is no matter
 constexpr double kSoundFit = 0.05;    // relative residual below which a delay is certain enough to be removed
+constexpr double kWorthSaying = 0.9;  // of the residual, for a delay that stays
+constexpr double kSharp_s = 6e-4;     // a delay known no better is more likely another effect that bends the torque
+constexpr double kLongest_s = 0.036;  // near the end of the search
 constexpr double kWorthRemoving =
     0.98;  // of the residual: delays of single drives and lags must show in it, as noise can feign them
 constexpr double kOutOfReach = 0.01;   // share of poses
+constexpr double kMassesMean = 0.15;   // relative residual above which estimated masses are not compared with the prior's
 constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
 
 /// The gate at work on one set of logs.
@@ -99,6 +103,7 @@ class Gate {
     // Positions far beyond the limits are the same fault seen from another side.
     if (!judgement.winners.empty())
       std::erase_if(limits, [](const LogFinding& l) { return l.key == "position_range" || l.key == "position_rate"; });
+    residual_ = judgement.sound ? 0.0 : judgement.as_given.residual;
     LogFinding f;
     f.level = FindingLevel::fault;
     f.value = judgement.as_given.residual;
@@ -175,12 +180,37 @@ class Gate {
       return;
     }
     const bool simple = timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
-    const bool certain = timing.rms_after < kSoundFit || timing.rms_after < 0.5 * timing.rms_before;
-    if (!certain || (!simple && timing.rms_after > kWorthRemoving * timing.rms_before)) return;
+    const double longest = std::max(timing.delay_s.cwiseAbs().maxCoeff(), timing.lag_s.cwiseAbs().maxCoeff());
+    const bool sharp = longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
+    const bool sound = timing.rms_after < kSoundFit || timing.rms_after < 0.5 * timing.rms_before;
+    if (!sharp || (!simple && timing.rms_after > kWorthRemoving * timing.rms_before)) return;
+    if (!sound) {
+      tell_doubtful(timing);
+      return;
+    }
     const bool remove = !options_.keep_delay;
     tell_timing(timing.delay_s, timing.delay_std, timing, "delay", remove);
     tell_timing(timing.lag_s, timing.lag_std, timing, "lag", remove);
     if (remove) mend(timing);
+  }
+
+  /// A delay that explains part of the residual, but where much is left, stays where it is.
+  void tell_doubtful(const Timing& timing) {
+    if (timing.rms_after > kWorthSaying * timing.rms_before) return;
+    Index row = 0, column = 0;
+    const bool lag = timing.delay_s.cwiseAbs().maxCoeff(&row, &column) == 0;
+    if (lag) timing.lag_s.cwiseAbs().maxCoeff(&row, &column);
+    LogFinding f;
+    f.level = FindingLevel::warning;
+    f.key = lag ? "lag" : "delay";
+    f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
+    f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
+    f.unit = "s";
+    f.text = fmt::format(
+        "{} as it seems ({:.2g} ms), but that is not certain enough to remove it: residual {:.2g} % with it, {:.2g} % without",
+        words_of_timing(f.key, "torque", f.value), 1e3 * f.std, 100 * timing.rms_before, 100 * timing.rms_after);
+    f.mend = "record a faster motion, or mend the delay where the log is made (delta-log import: delay in the map)";
+    out_.findings.push_back(std::move(f));
   }
 
   /// One finding for all drives and logs alike, else one for each that differs.
@@ -249,6 +279,8 @@ class Gate {
 
   void judge_scale(const Points& points) {
     if (prior_.size() != robot_.parameters() || prior_std_.size() != robot_.parameters()) return;
+    // What explains the torque that badly may be another robot: its masses mean nothing.
+    if (residual_ > kMassesMean) return;
     // An axis without a prior of its own has no masses to compare with: its simple shape is a stub.
     if (robot_.description().parts.empty() && !options_.prior_given) return;
     add(scale_findings(robot_.description(), estimate_scale(robot_, base_, points, prior_, prior_std_)));
@@ -259,6 +291,7 @@ class Gate {
   const Eigen::VectorXd& prior_std_;
   GateOptions options_;
   BaseParameters base_;
+  double residual_ = 0;  ///< relative, as given; 0 if sound
   bool coarse_ = false;  ///< Sample::coarse
   GateResult out_;
 };
@@ -271,7 +304,7 @@ bool GateResult::fault() const {
 
 bool GateResult::stop() const {
   return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
-    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort";
+    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort" && f.key != "pose";
   });
 }
 

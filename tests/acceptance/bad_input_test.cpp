@@ -213,16 +213,6 @@ std::vector<Row> motions() {
        },
        3,
        {"bad\\.csv, line 40[01], column q2_rad", "stuck encoder", "mend: check the encoder"}},
-      {"DegreesForRadians",
-       [](const W& w) {
-         return w.identify(w.log("bad.csv", [](Lines& l) {
-           each_row(l, [](std::size_t, auto& f) {
-             for (std::size_t j = 1; j <= 4; ++j) f[j] = fmt::format("{}", std::stod(f[j]) * 57.29577951308232);
-           });
-         }));
-       },
-       5,
-       {"check: fault: the position of .*drives.* looks like degrees", "mend: name the columns with their unit \\(q1_deg"}},
       {"LostCounts",
        [](const W& w) {
          return w.identify(w.log("bad.csv", [](Lines& l) {

@@ -55,7 +55,7 @@ class Check {
                                       !prior_file_.empty(), !processing_.options().filter, run.summary);
     const std::vector<LogFinding> findings = all_findings(gate);
     for (const LogFinding& f : findings) {
-      if (f.level == FindingLevel::fine) fmt::print("check: {}{}\n", f.file.empty() ? "" : f.file + ": ", f.text);
+      if (f.level == FindingLevel::fine) fmt::print("check: {}{}\n", where_of(f), f.text);
     }
     if (!report_file_.empty()) {
       ReportContext context;

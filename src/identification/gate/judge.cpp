@@ -22,6 +22,7 @@ constexpr double kWinsNoisy =
 constexpr double kWinsOdd = 0.65;              // the same for a zero at any angle, which explains more by chance
 constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for the winner
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
+constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent
 constexpr double kAlike = 1.1;                 // residuals within this ratio do not tell explanations apart
 constexpr double kOutOfReach = 0.01;           // share of poses that a recording of this robot cannot have
 constexpr Index kCoarsePoints = 120;           // for searches over a factor or a zero
@@ -345,7 +346,9 @@ class Judge {
     std::vector<Explanation> out;
     if (least > kSoundWinner) return out;
     for (const Explanation& e : all_) {
-      if (e.residual < kAlike * least + 0.0005 && (e.residual < kWins * as_given || heals(e, as_given))) out.push_back(e);
+      if (e.residual < kAlike * least + 0.0005 && (e.residual < kWins * as_given || heals(e, as_given)) &&
+          (!e.odd || e.residual < kSoundOdd))
+        out.push_back(e);
     }
     if (out.empty()) return out;
     std::sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {

@@ -136,6 +136,8 @@ Reading compose(const Reading& outer, const Reading& inner) {
 
 std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot, double value) {
   constexpr double kNear = 0.03;
+  constexpr double kNearUnit =
+      0.08;  // short motions tell a factor no better, and a unit is likelier than a ratio that is as near
   std::vector<double> out;
   if (!family.geometric) {
     const double quarter = std::round(value / (kPi / 2)) * (kPi / 2);
@@ -143,7 +145,7 @@ std::vector<double> plausible_values(const PositionFamily& family, const RobotDe
     return out;
   }
   for (const Unit& unit : units_of(robot, family.drives.front())) {
-    if (std::abs(value / unit.factor - 1) < kNear) out.push_back(unit.factor);
+    if (std::abs(value / unit.factor - 1) < kNearUnit) out.push_back(unit.factor);
   }
   const double ratio = 1 / value, whole = std::round(ratio);
   if (ratio > 1.5 && std::abs(ratio / whole - 1) < kNear) out.push_back(1 / whole);
