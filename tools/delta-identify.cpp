@@ -203,7 +203,34 @@ class Identify {
       entry.data_share = result.fit.data_share(k);
       table.entries.push_back(std::move(entry));
     }
+    for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
+      const PreslidingJoint& found = result.presliding[joint];
+      if (!(found.displacement > 0)) continue;
+      ParameterEntry entry;
+      const auto at = static_cast<int>(joint);
+      entry.name = presliding_name(robot.description(), at);
+      entry.value = found.displacement;
+      entry.std = found.std;
+      entry.unit = presliding_unit(robot.description(), at);
+      entry.data_share = 1;
+      table.entries.push_back(std::move(entry));
+    }
     return table;
+  }
+
+  static const char* presliding_unit(const RobotDescription& robot, int joint) {
+    return joint < robot.drives() && robot.kind_of_drive(joint) == DriveKind::revolute ? "rad" : "m";
+  }
+
+  static void tell_presliding(const RobotDescription& robot, const Identification& result) {
+    for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
+      const PreslidingJoint& found = result.presliding[joint];
+      if (!(found.displacement > 0)) continue;
+      const auto at = static_cast<int>(joint);
+      fmt::print("friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal; its rows near reversals are used\n",
+                 at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope", found.displacement, found.std,
+                 presliding_unit(robot, at));
+    }
   }
 
   void write_base(const Identification& result) const {
@@ -228,9 +255,9 @@ class Identify {
     fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n",
                result.samples, result.base.count(), columns, result.base_estimate.condition_number);
     if (result.processing.filter) {
-      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz,
-                 result.cutoffs.empty() ? "" : ", chosen from the logs");
+      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz, result.cutoff ? ", chosen from the logs" : "");
     }
+    tell_presliding(robot.description(), result);
     out.add("samples", result.samples);
     out.add("columns", columns);
     out.add("base_parameters", result.base.count());

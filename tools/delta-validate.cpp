@@ -19,6 +19,7 @@
 #include "deltadyn/report/validation_report.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log_columns.hpp"
+#include "deltadyn/signal/motion_band.hpp"
 
 #include "log_gate.hpp"
 #include "processing_flags.hpp"
@@ -71,10 +72,10 @@ class Validate {
     }
     const std::vector<Log>& logs = gate.logs;
     ProcessingOptions options = processing_.options();
-    tools::ProgressBar bar("validating");
     if (options.filter && processing_.automatic_cutoff()) {
-      options.cutoff_hz = best_cutoff_hz(scan_cutoffs(*robot, logs, options, 0, [&bar](double share) { bar.update(share); }));
+      options.cutoff_hz = choose_cutoff(logs).cutoff_hz;
     }
+    options.presliding = presliding_of(table, description);
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
     if (!effects.empty() && !options.filter) {

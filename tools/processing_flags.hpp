@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/identification/cutoff_scan.hpp"
+#include "deltadyn/identification/log_processing.hpp"
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/report/assessment.hpp"
 

@@ -144,7 +144,7 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
   }
   IdentificationOptions settled = options;
   if (options.choose_cutoff) {
-    settled.processing.cutoff_hz = best_cutoff_hz(scan_cutoffs(robot, logs, options.processing, options.threads));
+    settled.processing.cutoff_hz = choose_cutoff(logs).cutoff_hz;
     settled.choose_cutoff = false;
   }
   const double cutoff_hz = settled.processing.cutoff_hz;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/identification/noise_bias.hpp"
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
 
@@ -15,10 +16,12 @@ namespace {
 using Eigen::Index;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than Coulomb's
-constexpr Index kFewestRows = 10;       // to judge them by
-constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
-constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
+constexpr double kReversalRatio = 3.0;   // above it, rows near reversals follow another law than the model's
+constexpr double kOtherThanNoise = 1.2;  // above it, Coulomb's law leaves something near reversals that bristles may explain
+constexpr Index kFewestRows = 10;        // to judge them by
+constexpr double kHuber = 1.345;         // 95 % efficient for normal noise (Huber 1981)
+constexpr double kFeltNoise = 1e-3;      // share of the information that is noise; less moves no figure
+constexpr double kNoiseMemory_s = 0.2;   // time over which residual correlation is looked for
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -45,6 +48,15 @@ std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fol
     keep[j] = choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio;
   }
   return keep;
+}
+
+bool averages_periods(const std::vector<PreparedLog>& logs) {
+  return std::any_of(logs.begin(), logs.end(), [](const PreparedLog& log) { return log.period_s.has_value(); });
+}
+
+bool friction_builds_up(const std::vector<DriveReport>& drives) {
+  return std::any_of(drives.begin(), drives.end(),
+                     [](const DriveReport& drive) { return drive.reversal_ratio > kOtherThanNoise; });
 }
 
 std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& keep) {
@@ -121,25 +133,34 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   out.processing = options.processing;
   out.base = find_base_parameters(robot, options.base);
   if (options.processing.filter && options.choose_cutoff) {
-    const auto scanned = [&](double share) { report(0.8 * share); };
-    out.cutoffs = scan_cutoffs(robot, logs, options.processing, options.threads, scanned);
-    out.processing.cutoff_hz = best_cutoff_hz(out.cutoffs);
+    out.cutoff = choose_cutoff(logs);
+    out.processing.cutoff_hz = out.cutoff->cutoff_hz;
   }
 
   const auto fold_start = Clock::now();
-  const std::vector<PreparedLog> prepared = prepare_all(robot, logs, out.processing);
-  for (const PreparedLog& log : prepared) out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+  std::vector<PreparedLog> prepared = prepare_all(robot, logs, out.processing);
   DataFold fold = fold_all(robot, prepared, options.threads);
+  std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);
+  report(0.4);
+  if (options.processing.filter && options.reversals == Reversals::automatic && friction_builds_up(out.drives)) {
+    out.presliding = find_presliding(robot, out.base, logs, out.processing, options.threads);
+    out.processing.presliding = displacements(out.presliding);
+    if ((out.processing.presliding.array() > 0).any()) {
+      prepared = prepare_all(robot, logs, out.processing);
+      fold = fold_all(robot, prepared, options.threads);
+      keep = keep_reversals(out.base, fold, options.reversals, out.drives);
+    }
+  }
+  for (const PreparedLog& log : prepared) out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
   out.fold_time_s = seconds_since(fold_start);
   report(0.9);
   out.samples = fold.samples;
 
-  const std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);
   std::vector<DriveFold> folds = select(fold, keep);
+  const std::vector<DriveFold> as_recorded = folds;
   out.base_estimate = estimate_base_parameters(out.base, folds);
   Eigen::VectorXd p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
   if (options.robust) {
-    const std::vector<DriveFold> all_rows = folds;
     for (int pass = 0; pass < 5; ++pass) {
       const std::vector<double> scale = robust_scales(robot, prepared, p, keep, options.threads);
       const RowWeight weight = [&scale](int drive, double residual) {
@@ -150,10 +171,17 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
       out.base_estimate = estimate_base_parameters(out.base, folds);
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }
-    fold.regular = all_rows;  // the residual is reported over all rows with their full weight
-  } else {
-    fold.regular = folds;
+  } else if (options.compensate_noise && options.processing.filter && !averages_periods(prepared)) {
+    const NoiseBias bias = simulate_noise_bias(robot, out.base, logs, out.processing, keep, options.threads, options.base.seed);
+    out.noise_share = bias.largest_share;
+    if (bias.largest_share > kFeltNoise) {
+      for (std::size_t j = 0; j < folds.size(); ++j)
+        folds[j] = without_noise_bias(out.base, as_recorded[j], bias.information[j], bias.torque[j]);
+      out.base_estimate = estimate_base_parameters(out.base, folds);
+      p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
+    }
   }
+  fold.regular = as_recorded;  // the residual is reported over all rows with their full weight
   const std::vector<double> correlation = correlations(robot, prepared, p, keep, options.threads);
   out.base_estimate = estimate_base_parameters(out.base, folds, correlation);
 

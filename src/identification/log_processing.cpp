@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "deltadyn/effects/coulomb_friction.hpp"
+#include "deltadyn/effects/presliding.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/fourier.hpp"
@@ -20,6 +22,8 @@ constexpr Index kFewestRows = 20;
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
 constexpr double kBreakaway_s = 0.02;   // a joint needs about so long to slide again after a reversal
+constexpr double kRest_s = 0.05;        // slow for longer is no reversal but rest, where friction takes any value
+constexpr double kForgotten = 3.0;      // displacements after which a bristle has forgotten how the log began (5 % left)
 
 std::string place(const PreparedLog& log, Index sample) {
   if (!log.line.empty() && log.line[static_cast<std::size_t>(sample)] > 0) {
@@ -48,8 +52,50 @@ Eigen::MatrixXd joint_rates(const Robot& robot, const PreparedLog& log) {
   return rates;
 }
 
+double presliding_of(const ProcessingOptions& options, Index joint) {
+  return joint < options.presliding.size() ? options.presliding(joint) : 0.0;
+}
+
+/// The bristles' share of Coulomb's friction along a log, for the joints that have presliding (effects/presliding.hpp).
+/// \param rates  N x joints with friction
+void add_presliding(const ProcessingOptions& options, const Eigen::MatrixXd& rates, PreparedLog& log) {
+  if (!(options.presliding.array() > 0).any()) return;
+  log.coulomb_share.setOnes(rates.rows(), rates.cols());
+  for (Index j = 0; j < rates.cols(); ++j) {
+    const double displacement = presliding_of(options, j);
+    if (!(displacement > 0)) continue;
+    Presliding<double> bristle(displacement, coulomb_friction(rates(0, j)));
+    for (Index k = 0; k < rates.rows(); ++k) {
+      // The bar has no position of its own in the log: its rate serves, over the step that leads here.
+      const double step = k == 0             ? 0.0
+                          : j < log.q.cols() ? log.q(k, j) - log.q(k - 1, j)
+                                             : 0.5 * (rates(k, j) + rates(k - 1, j)) / log.rate_hz;
+      log.coulomb_share(k, j) = bristle.move(step) * coulomb_friction(rates(k, j));
+    }
+  }
+}
+
+/// Keeps of a mask of slow samples those at rest, and adds the start of the log, where it is not known how the bristle stands.
+/// \param rate  of the joint
+void mask_rest_only(const Eigen::Ref<const Eigen::VectorXd>& rate, double displacement, double rate_hz, std::vector<char>& mask) {
+  const auto shortest = static_cast<std::size_t>(std::max(2.0, std::round(kRest_s * rate_hz)));
+  for (std::size_t begin = 0; begin < mask.size();) {
+    std::size_t end = begin + 1;
+    while (end < mask.size() && mask[end] == mask[begin]) ++end;
+    if (end - begin < shortest)
+      std::fill(mask.begin() + static_cast<std::ptrdiff_t>(begin), mask.begin() + static_cast<std::ptrdiff_t>(end), char{0});
+    begin = end;
+  }
+  double travelled = 0;
+  for (Index k = 0; k < rate.size() && travelled < kForgotten * displacement; ++k) {
+    travelled += std::abs(rate(k)) / rate_hz;
+    mask[static_cast<std::size_t>(k)] = 1;
+  }
+}
+
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
-/// the drives of the limbs (the bar's length does not depend on psi).
+/// the drives of the limbs (the bar's length does not depend on psi). A joint whose friction builds up over a displacement needs no
+/// sign: there only rest is uncertain.
 /// \param grow  samples on either side that count, too
 void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, Index grow,
                     PreparedLog& log) {
@@ -61,7 +107,10 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
     const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
     mask.push_back(
         reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
+    if (const double displacement = presliding_of(options, j); displacement > 0)
+      mask_rest_only(rates.col(j), displacement, log.rate_hz, mask.back());
   }
+  add_presliding(options, rates, log);
   log.reversal.resize(log.t_s.size(), robot.drives());
   for (int j = 0; j < robot.drives(); ++j) {
     const bool with_bar = robot.description().telescope && j < limbs;
@@ -111,6 +160,7 @@ void ProcessingOptions::validate() const {
   if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
   if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
   if (stride < 0) refuse("stride", "it must be at least 0");
+  if (!((presliding.array() >= 0).all() && presliding.allFinite())) refuse("presliding", "displacements must be at least 0");
 }
 
 namespace {
@@ -233,6 +283,16 @@ bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
   return log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
 }
 
+std::vector<Index> coulomb_columns(const Robot& robot) {
+  std::vector<Index> columns;
+  const std::vector<std::string>& names = robot.parameter_names();
+  for (int joint = 0; joint < robot.friction_joints(); ++joint) {
+    const std::string name = joint < robot.drives() ? fmt::format("drive{}.coulomb", joint + 1) : "telescope.coulomb";
+    columns.push_back(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  return columns;
+}
+
 void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
   const int n = robot.drives();
   const Index P = robot.parameters();
@@ -242,12 +302,15 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   const Index last_sample = sample_of_row(log, first_row + count - 1) + reach;
   const Index samples = (last_sample - first_sample) / step + 1;
 
+  const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
   Eigen::MatrixXd raw(samples, n * (P + 1));  // Y of drive 1, of drive 2, ..., then the torques
   Eigen::MatrixXd Y(n, P);
   for (Index k = 0; k < samples; ++k) {
     const Index at = first_sample + k * step;
     const Status status = robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y);
     if (status != Status::ok) refuse_pose(log, at, status);
+    for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
+      Y.col(coulomb[joint]) *= log.coulomb_share(at, static_cast<Index>(joint));
     for (int j = 0; j < n; ++j) raw.row(k).segment(j * P, P) = Y.row(j);
     raw.row(k).tail(n) = log.tau.row(at);
   }

@@ -20,6 +20,12 @@
 namespace deltadyn {
 namespace {
 
+const std::string kPresliding = "presliding";  // not a column of the regressor: the shape of a joint's Coulomb friction
+
+bool is_presliding(const std::string& name) {
+  return name.ends_with("." + kPresliding);
+}
+
 /// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
 std::string canonical_unit(const std::string& unit) {
   std::string result;
@@ -50,6 +56,7 @@ std::vector<std::string> plausible_units(const std::string& name) {
   if (quantity == "viscous") return {"N*m*s/rad", "N*s/m"};
   if (quantity == "coulomb" || quantity == "offset") return {"N*m", "N"};
   if (quantity == "rotor_inertia") return {"kg*m^2", "kg"};
+  if (quantity == kPresliding) return {"rad", "m"};
   return {};
 }
 
@@ -233,7 +240,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
   }
   const std::unordered_set<std::string> missing(match.missing.begin(), match.missing.end());
   for (const ParameterEntry& entry : table.entries) {
-    if (used.count(&entry) != 0) continue;
+    if (used.count(&entry) != 0 || is_presliding(entry.name)) continue;  // presliding_of() reads those
     // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
     if (const std::string shared = shared_name(entry.name); !shared.empty() && missing.count(shared) != 0) {
       throw Error(fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
@@ -258,6 +265,30 @@ ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDe
     options.offset = options.offset || table.find(fmt::format("drive{}.offset", drive)) != nullptr;
   }
   return options;
+}
+
+Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot) {
+  const int joints = robot.drives() + (robot.telescope ? 1 : 0);
+  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(joints);
+  for (const ParameterEntry& entry : table.entries) {
+    if (!is_presliding(entry.name)) continue;
+    int joint = 0;
+    while (joint < joints && entry.name != presliding_name(robot, joint)) ++joint;
+    if (joint == joints) {
+      throw Error(fmt::format("{} is not a joint with friction of this robot", entry.name), place(table.file, entry.line, "name"),
+                  "remove the row, or give the parameter file of this robot");
+    }
+    if (!(entry.value >= 0)) {
+      throw Error(fmt::format("the displacement {} is negative", entry.name), place(table.file, entry.line, "value"),
+                  "give the displacement over which the friction builds up after a reversal, or 0");
+    }
+    displacement(joint) = entry.value;
+  }
+  return displacement;
+}
+
+std::string presliding_name(const RobotDescription& robot, int joint) {
+  return (joint < robot.drives() ? fmt::format("drive{}.", joint + 1) : std::string("telescope.")) + kPresliding;
 }
 
 Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,

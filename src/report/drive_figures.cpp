@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "deltadyn/report/format.hpp"
-#include "deltadyn/report/spectrum.hpp"
+#include "deltadyn/signal/spectrum.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "assessment_limits.hpp"

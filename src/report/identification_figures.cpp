@@ -12,27 +12,37 @@ namespace deltadyn {
 using Eigen::Index;
 
 void add_cutoff_figure(HtmlReport& report, const Identification& identification) {
-  if (identification.cutoffs.empty()) return;
-  const auto count = static_cast<Index>(identification.cutoffs.size());
-  Eigen::VectorXd cutoff(count), score(count);
-  for (Index k = 0; k < count; ++k) {
-    const CutoffPoint& point = identification.cutoffs[static_cast<std::size_t>(k)];
-    cutoff(k) = point.cutoff_hz;
-    score(k) = point.score;
-  }
-  score /= std::max(score.minCoeff(), 1e-300);
+  if (!identification.cutoff) return;
+  constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
   PlotSpec spec;
-  spec.x_label = "cut-off of the motion [Hz]";
-  spec.y_label = "residual / smallest";
-  spec.height = 220;
-  spec.series.push_back({"", cutoff, score, SeriesStyle::line, {}, PlotColor::blue});
-  spec.series.push_back({"", cutoff, score, SeriesStyle::points, {}, PlotColor::blue});
+  spec.x_label = "frequency [Hz]";
+  spec.y_label = "position / encoder noise, power";
+  spec.log_x = spec.log_y = true;
+  spec.height = 260;
+  // Of each drive the log in which its motion reaches highest.
+  const auto& logs = identification.cutoff->bands;
+  for (std::size_t j = 0; j < logs.front().size(); ++j) {
+    const auto fastest =
+        std::max_element(logs.begin(), logs.end(), [j](const auto& a, const auto& b) { return a[j].top_hz < b[j].top_hz; });
+    const MotionBand& band = (*fastest)[j];
+    if (!(band.noise_density > 0)) continue;
+    spec.series.push_back({drive_name(static_cast<int>(j)),
+                           band.frequency_hz,
+                           band.density / band.noise_density,
+                           SeriesStyle::line,
+                           {},
+                           kColors[j % std::size(kColors)]});
+  }
+  if (spec.series.empty()) return;
   spec.vertical_markers.push_back({identification.processing.cutoff_hz,
                                    fmt::format("chosen: {}", format_number(identification.processing.cutoff_hz, "Hz", 3))});
-  report.plot(spec,
-              "Residual over the cut-off, geometric mean of the drives: too low a cut-off bends the accelerations, too high a "
-              "one lets encoder noise "
-              "through.");
+  spec.horizontal_markers.push_back({1.0, "noise"});
+  report.plot(
+      spec,
+      fmt::format(
+          "Choice of the cut-off: spectrum of the positions over that of the encoders' noise, of each drive in its fastest log. "
+          "The motion stands out up to {}; accelerations from it stay below the noise of the torques up to {}.",
+          format_number(identification.cutoff->band_hz, "Hz", 3), format_number(identification.cutoff->noise_limit_hz, "Hz", 3)));
 }
 
 void add_regularization_figure(HtmlReport& report, const ConsistentFitSummary& fit) {

@@ -5,14 +5,16 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/consistent_fit.hpp"
-#include "deltadyn/identification/cutoff_scan.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
+#include "deltadyn/identification/presliding_search.hpp"
+#include "deltadyn/signal/motion_band.hpp"
 
 namespace deltadyn {
 
@@ -25,9 +27,10 @@ enum class Reversals {
 
 struct IdentificationOptions {
   ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false
-  bool choose_cutoff = true;     ///< find the cut-off that leaves the smallest residual
+  bool choose_cutoff = true;     ///< from the band in which the motion stands out of the encoders' noise
   Reversals reversals = Reversals::automatic;
-  bool robust = false;  ///< Huber weights: single rows that stand out count less
+  bool robust = false;           ///< Huber weights: single rows that stand out count less
+  bool compensate_noise = true;  ///< take what encoder noise adds to the regressor out of the normal equations
   BaseParameterOptions base;
   ConsistentFitOptions fit;
   int threads = 0;                       ///< 0: all
@@ -50,8 +53,10 @@ struct Identification {
   Eigen::VectorXd base_from_fit;  ///< B p of the consistent parameters, to compare with base_estimate
   ConsistentFitSummary fit;
   std::vector<DriveReport> drives;
-  std::vector<CutoffPoint> cutoffs;  ///< empty if the cut-off was given
-  ProcessingOptions processing;      ///< as used
+  std::optional<CutoffChoice> cutoff;       ///< empty if the cut-off was given
+  std::vector<PreslidingJoint> presliding;  ///< of each joint with friction; empty if it was not looked for
+  ProcessingOptions processing;             ///< as used
+  double noise_share = 0;  ///< of the information in its worst direction that is encoder noise; taken out if it is felt
   Eigen::Index samples = 0;
   double fold_time_s = 0, total_time_s = 0;
   std::vector<std::string> notes;

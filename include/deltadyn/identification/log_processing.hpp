@@ -33,8 +33,11 @@ struct ProcessingOptions {
   double period_s = 0;                ///< used if periods is `given`
   double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
   double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
-  bool low_pass_torque = true;        ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
-  int stride = 0;                     ///< use every stride-th sample; 0: what the pass band asks for
+  /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after a reversal
+  /// [rad | m] (effects/presliding.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
+  Eigen::VectorXd presliding;
+  bool low_pass_torque = true;  ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
+  int stride = 0;               ///< use every stride-th sample; 0: what the pass band asks for
 
   /// Throws deltadyn::Error naming the field.
   void validate() const;
@@ -51,7 +54,10 @@ struct PreparedLog {
   std::optional<double> period_s;  ///< of a periodic log, whose samples then are means over the periods
   std::vector<long> line;          ///< of each sample in the file; empty if unknown
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
-      reversal;              ///< N x drives: the sign of a friction in this drive's torque is uncertain
+      reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
+  /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for a joint
+  /// without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied by it.
+  Eigen::MatrixXd coulomb_share;
   std::vector<char> filled;  ///< marks of Log::filled; empty: all measured
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< as Log::torque_out; empty: nowhere
   std::vector<std::string> notes;
@@ -81,6 +87,9 @@ struct RowBlock {
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
+
+/// Column of the Coulomb friction of each joint with friction: drives, then the telescope.
+[[nodiscard]] std::vector<Eigen::Index> coulomb_columns(const Robot& robot);
 
 /// Computes rows [first_row, first_row + count). Blocks are independent of each other: call from several threads at will.
 void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);

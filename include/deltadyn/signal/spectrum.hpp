@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Power spectral density after Welch, for the picture of what a residual is made of.
+/// Power spectral density after Welch: what a signal is made of.
 
 #include <Eigen/Core>
 

@@ -1,4 +1,4 @@
-#include "deltadyn/report/spectrum.hpp"
+#include "deltadyn/signal/spectrum.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>

@@ -1,0 +1,40 @@
+#pragma once
+
+/// \file
+/// The band of frequencies in which a recorded motion stands out of the noise of its encoders, and the cut-off that follows from
+/// it. Neither a model nor a torque is needed, so what a model lacks cannot turn the cut-off.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deltadyn/signal/log.hpp"
+
+namespace deltadyn {
+
+/// Spectrum of one drive's position in thirds of an octave.
+struct MotionBand {
+  Eigen::VectorXd frequency_hz;  ///< middle of each band
+  Eigen::VectorXd density;       ///< one-sided, mean over the band [rad^2/Hz | m^2/Hz]
+  double noise_density = 0;      ///< of encoder step and noise, taken as white [rad^2/Hz | m^2/Hz]
+  double top_hz = 0;             ///< the motion stands out of the noise up to here
+};
+
+/// \param position  N samples at an even rate
+/// \param rate_hz   of the samples
+/// Throws deltadyn::Error as welch_spectrum does (fewer than 17 samples, a rate that is not positive).
+[[nodiscard]] MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double rate_hz);
+
+/// Cut-off of the motion of several logs of one robot.
+struct CutoffChoice {
+  double cutoff_hz = 0;
+  double band_hz = 0;         ///< up to here the motion stands out of the noise in some drive of some log
+  double noise_limit_hz = 0;  ///< up to here encoder noise, as acceleration times inertia, stays below the noise of the torque
+  std::vector<std::vector<MotionBand>> bands;  ///< logs x drives
+};
+
+/// The lower one of band_hz and noise_limit_hz, within what rate and length of the logs allow: below the band motion would be
+/// thrown away, above it the filter lets nothing through but noise, which as noise in the regressor pulls the parameters down.
+/// Throws deltadyn::Error (bad_input) if the logs are too short or sampled too slowly for any cut-off.
+[[nodiscard]] CutoffChoice choose_cutoff(const std::vector<Log>& logs);
+
+}  // namespace deltadyn
