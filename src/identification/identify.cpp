@@ -34,18 +34,27 @@ DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int 
   return fold;
 }
 
+/// Rows of which the reversals take more than half say little about the motion: then those near reversals are needed, too.
+bool needs_reversals(const DriveFold& regular, const DriveFold& reversal) {
+  return regular.rows < reversal.rows;
+}
+
 /// Which drives keep their rows near reversals.
 std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice,
                                  std::vector<DriveReport>& drives) {
   std::vector<bool> keep(drives.size(), choice == Reversals::keep);
   if (choice == Reversals::keep) return keep;
-  const BaseEstimate estimate = estimate_base_parameters(base, fold.regular);
+  std::vector<DriveFold> folds = fold.regular;
+  for (std::size_t j = 0; j < folds.size() && choice == Reversals::automatic; ++j) {
+    keep[j] = needs_reversals(fold.regular[j], fold.reversal[j]);
+    if (keep[j]) folds[j].add(fold.reversal[j]);
+  }
+  const BaseEstimate estimate = estimate_base_parameters(base, folds);
   const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
   for (std::size_t j = 0; j < drives.size(); ++j) {
-    const double elsewhere = std::max(fold.regular[j].rms(p), 1e-12);
-    if (fold.reversal[j].rows < kFewestRows) continue;
-    drives[j].reversal_ratio = fold.reversal[j].rms(p) / elsewhere;
-    keep[j] = choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio;
+    if (fold.reversal[j].rows < kFewestRows || fold.regular[j].rows < kFewestRows) continue;
+    drives[j].reversal_ratio = fold.reversal[j].rms(p) / std::max(fold.regular[j].rms(p), 1e-12);
+    keep[j] = keep[j] || (choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio);
   }
   return keep;
 }

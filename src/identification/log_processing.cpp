@@ -22,7 +22,7 @@ constexpr Index kFewestRows = 20;
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
 constexpr double kBreakaway_s = 0.02;   // a joint needs about so long to slide again after a reversal
-constexpr double kRest_s = 0.05;        // slow for longer is no reversal but rest, where friction takes any value
+constexpr double kRest_s = 0.05;        // slow for longer is no reversal but rest, where static friction takes any value
 constexpr double kForgotten = 3.0;      // displacements after which a bristle has forgotten how the log began (5 % left)
 
 std::string place(const PreparedLog& log, Index sample) {
@@ -75,22 +75,27 @@ void add_presliding(const ProcessingOptions& options, const Eigen::MatrixXd& rat
   }
 }
 
-/// Keeps of a mask of slow samples those at rest, and adds the start of the log, where it is not known how the bristle stands.
-/// \param rate  of the joint
-void mask_rest_only(const Eigen::Ref<const Eigen::VectorXd>& rate, double displacement, double rate_hz, std::vector<char>& mask) {
-  const auto shortest = static_cast<std::size_t>(std::max(2.0, std::round(kRest_s * rate_hz)));
-  for (std::size_t begin = 0; begin < mask.size();) {
-    std::size_t end = begin + 1;
-    while (end < mask.size() && mask[end] == mask[begin]) ++end;
-    if (end - begin < shortest)
-      std::fill(mask.begin() + static_cast<std::ptrdiff_t>(begin), mask.begin() + static_cast<std::ptrdiff_t>(end), char{0});
+/// Of a mask of slow samples the stretches at rest.
+std::vector<char> rest_of(const std::vector<char>& slow, double rate_hz) {
+  const auto shortest = static_cast<std::ptrdiff_t>(std::max(2.0, std::round(kRest_s * rate_hz)));
+  std::vector<char> rest(slow.size(), 0);
+  for (auto begin = slow.begin(); begin != slow.end();) {
+    const auto end = std::find_if(begin, slow.end(), [&](char value) { return value != *begin; });
+    if (*begin != 0 && end - begin >= shortest) std::fill_n(rest.begin() + (begin - slow.begin()), end - begin, char{1});
     begin = end;
   }
+  return rest;
+}
+
+/// Start of a log until a bristle has forgotten where it stood before.
+std::vector<char> unknown_start(const Eigen::Ref<const Eigen::VectorXd>& rate, double displacement, double rate_hz) {
+  std::vector<char> unknown(static_cast<std::size_t>(rate.size()), 0);
   double travelled = 0;
   for (Index k = 0; k < rate.size() && travelled < kForgotten * displacement; ++k) {
     travelled += std::abs(rate(k)) / rate_hz;
-    mask[static_cast<std::size_t>(k)] = 1;
+    unknown[static_cast<std::size_t>(k)] = 1;
   }
+  return unknown;
 }
 
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
@@ -101,22 +106,25 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
                     PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
-  std::vector<std::vector<char>> mask;
+  std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
     const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
     mask.push_back(
         reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
+    rest.push_back(rest_of(mask.back(), log.rate_hz));
     if (const double displacement = presliding_of(options, j); displacement > 0)
-      mask_rest_only(rates.col(j), displacement, log.rate_hz, mask.back());
+      mask.back() = unknown_start(rates.col(j), displacement, log.rate_hz);
   }
   add_presliding(options, rates, log);
   log.reversal.resize(log.t_s.size(), robot.drives());
+  log.rest.resize(log.t_s.size(), robot.drives());
   for (int j = 0; j < robot.drives(); ++j) {
     const bool with_bar = robot.description().telescope && j < limbs;
     for (Index k = 0; k < log.t_s.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       log.reversal(k, j) = mask[static_cast<std::size_t>(j)][at] != 0 || (with_bar && mask.back()[at] != 0);
+      log.rest(k, j) = rest[static_cast<std::size_t>(j)][at] != 0 || (with_bar && rest.back()[at] != 0);
     }
   }
 }
@@ -330,6 +338,7 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
     const Index centre = sample_of_row(log, first_row + k);
     for (int j = 0; j < n; ++j) {
       if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
+      if (log.rest.size() > 0 && log.rest.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::unusable;
     }
     for (int j = 0; j < n; ++j) {
       if (left_out(log, j, centre - reach, 2 * reach + 1)) block.use(k, j) = RowUse::unusable;

@@ -85,7 +85,11 @@ class Search {
       prepared.push_back(prepare_log(robot_, log, processing_));
       fold.add(fold_log(robot_, prepared.back(), threads_));
     }
-    const BaseEstimate estimate = estimate_base_parameters(base_, fold.regular);
+    std::vector<DriveFold> folds = fold.regular;
+    for (std::size_t j = 0; j < folds.size(); ++j) {
+      if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);  // else too little is left to start from
+    }
+    const BaseEstimate estimate = estimate_base_parameters(base_, folds);
     p_ = any_parameters(base_, estimate.value, robot_.parameters());
     if (searched_.empty()) searched_.resize(logs_.size());
     for (Index j = 0; j < robot_.drives(); ++j) noise_(j) = estimate.noise[static_cast<std::size_t>(j)].std;

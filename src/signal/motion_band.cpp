@@ -15,7 +15,8 @@ using Eigen::Index;
 
 constexpr double kBandRatio = 1.26;   // a third of an octave
 constexpr double kSegment_s = 4;      // shows motion from half a hertz on
-constexpr double kClear = 10;         // a band with ten times the noise is motion: chance gives less than twice
+constexpr double kClear = 30;         // times the noise: less is no news of the motion, or the hump of an interpolated record
+constexpr double kContent = 0.999;    // of the accelerations' power: what lies above moves no figure
 constexpr double kNoiseShare = 2e-5;  // of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
 constexpr double kLowestCutoff_hz = 5;
 constexpr double kLeastPeriods = 20;  // of the cut-off in a log: its ends are lost for 1.5 of them each
@@ -43,6 +44,23 @@ double motion_power(const MotionBand& band, double cutoff_hz) {
     power += std::max(0.0, band.density(k) - band.noise_density) * std::pow(2 * std::numbers::pi * f, 4) * width;
   }
   return power;
+}
+
+/// Highest frequency that belongs to the motion, from low ones on: a resonance or an interpolation's own line higher up is none.
+double top_of(const MotionBand& band) {
+  double clear = 0;
+  for (Index i = 0; i < band.density.size(); ++i) {
+    if (band.density(i) > kClear * band.noise_density) {
+      clear = band.frequency_hz(i);
+    } else if (clear > 0) {
+      break;
+    }
+  }
+  const double all = motion_power(band, clear);
+  for (Index i = 0; i < band.frequency_hz.size() && band.frequency_hz(i) < clear; ++i) {
+    if (motion_power(band, band.frequency_hz(i)) >= kContent * all) return band.frequency_hz(i);
+  }
+  return clear;
 }
 
 /// Spectra of one drive over all logs.
@@ -127,14 +145,7 @@ MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double
   band.frequency_hz = Eigen::Map<const Eigen::VectorXd>(frequency.data(), static_cast<Index>(frequency.size()));
   band.density = Eigen::Map<const Eigen::VectorXd>(density.data(), static_cast<Index>(density.size()));
   band.noise_density = band.density.size() > 0 ? band.density.minCoeff() : 0.0;
-  // From low frequencies on: a resonance or an interpolation's own line higher up is no motion.
-  for (Index i = 0; i < band.density.size(); ++i) {
-    if (band.density(i) > kClear * band.noise_density) {
-      band.top_hz = band.frequency_hz(i);
-    } else if (band.top_hz > 0) {
-      break;
-    }
-  }
+  band.top_hz = top_of(band);
   return band;
 }
 

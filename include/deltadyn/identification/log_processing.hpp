@@ -55,6 +55,7 @@ struct PreparedLog {
   std::vector<long> line;          ///< of each sample in the file; empty if unknown
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
       reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> rest;  ///< N x drives: a joint whose friction this drive feels stands still
   /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for a joint
   /// without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied by it.
   Eigen::MatrixXd coulomb_share;
@@ -75,7 +76,7 @@ struct PreparedLog {
 enum class RowUse : char {
   regular,   ///< for every fit
   reversal,  ///< a velocity reversal is in reach of the filter: only where static friction is no matter
-  unusable   ///< samples that are left out are in reach of the filter
+  unusable   ///< samples that are left out are in reach of the filter, or rest, where static friction takes any value
 };
 
 /// Consecutive rows of a prepared log.

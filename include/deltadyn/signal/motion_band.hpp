@@ -16,7 +16,7 @@ struct MotionBand {
   Eigen::VectorXd frequency_hz;  ///< middle of each band
   Eigen::VectorXd density;       ///< one-sided, mean over the band [rad^2/Hz | m^2/Hz]
   double noise_density = 0;      ///< of encoder step and noise, taken as white [rad^2/Hz | m^2/Hz]
-  double top_hz = 0;             ///< the motion stands out of the noise up to here
+  double top_hz = 0;             ///< the motion stands out of the noise, and has nearly all of its acceleration, up to here
 };
 
 /// \param position  N samples at an even rate
