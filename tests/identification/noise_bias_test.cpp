@@ -1,0 +1,65 @@
+#include "deltadyn/identification/noise_bias.hpp"
+
+#include <gtest/gtest.h>
+
+#include "deltadyn/identification/least_squares.hpp"
+
+#include "identification/axis_log.hpp"
+#include "support/descriptions.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+struct Estimates {
+  Eigen::VectorXd plain, compensated;
+  double share = 0;
+};
+
+Estimates estimates(const AxisLog& axis, double cutoff_hz) {
+  const auto robot = make_robot(axis_description(DriveKind::revolute));
+  const BaseParameters base = find_base_parameters(*robot);
+  ProcessingOptions processing;
+  processing.cutoff_hz = cutoff_hz;
+  const std::vector<Log> logs = {axis.make()};
+  const DataFold fold = fold_log(*robot, prepare_log(*robot, logs.front(), processing));
+  const NoiseBias bias = simulate_noise_bias(*robot, base, logs, processing, {false});
+  Estimates out;
+  out.plain = estimate_base_parameters(base, fold.regular).value;
+  out.compensated =
+      estimate_base_parameters(base, {without_noise_bias(base, fold.regular[0], bias.information[0], bias.torque[0])}).value;
+  out.share = bias.largest_share;
+  return out;
+}
+
+// At cut-offs where an encoder of 12 bits swamps the accelerations, the inertia stays what it is.
+TEST(NoiseBias, TakesTheAttenuationOut) {
+  AxisLog axis;
+  axis.encoder_bits = 12;
+  axis.duration_s = 30;
+  axis.base_hz = 0.6;
+  for (const double cutoff_hz : {20.0, 30.0}) {
+    double plain = 0, compensated = 0;
+    constexpr int kLogs = 8;
+    for (int seed = 1; seed <= kLogs; ++seed) {
+      axis.seed = static_cast<std::uint64_t>(seed);
+      const Estimates found = estimates(axis, cutoff_hz);
+      plain += found.plain(0) / axis.inertia / kLogs;
+      compensated += found.compensated(0) / axis.inertia / kLogs;
+    }
+    EXPECT_LT(plain, 0.985) << cutoff_hz;
+    EXPECT_NEAR(compensated, 1.0, 0.25 * (1 - plain)) << cutoff_hz;
+  }
+}
+
+TEST(NoiseBias, LeavesFineEncodersAlone) {
+  AxisLog axis;
+  axis.encoder_bits = 22;
+  const Estimates found = estimates(axis, 20);
+  EXPECT_LT(found.share, 1e-5);
+  EXPECT_LT((found.plain - found.compensated).cwiseAbs().maxCoeff(), 1e-5 * found.plain.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+}  // namespace deltadyn

@@ -1,0 +1,74 @@
+#include "deltadyn/identification/presliding_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "deltadyn/identification/identify.hpp"
+#include "deltadyn/identification/validate.hpp"
+
+#include "identification/axis_log.hpp"
+#include "support/descriptions.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+std::unique_ptr<Robot> axis() {
+  return make_robot(axis_description(DriveKind::revolute));
+}
+
+double value(const Robot& robot, const Eigen::VectorXd& p, const std::string& name) {
+  const auto& names = robot.parameter_names();
+  return p(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+Identification identified(const Robot& robot, const std::vector<Log>& logs) {
+  Eigen::VectorXd prior = Eigen::VectorXd::Constant(robot.parameters(), 0.0);
+  prior.head(10) << 2, 0, 0, 0, 0.4, 0.4, 0.4, 0, 0, 0;
+  prior.tail(2) << 1, 1;
+  return identify(robot, logs, prior, {}, IdentificationOptions{});
+}
+
+class Presliding : public ::testing::TestWithParam<double> {};
+
+// The rows near reversals then take part, and friction comes out right.
+TEST_P(Presliding, IsFoundFromTheReversals) {
+  const auto robot = axis();
+  std::vector<Log> logs;
+  for (const std::uint64_t seed : {1, 2}) {
+    AxisLog log;
+    log.presliding = GetParam();
+    log.seed = seed;
+    logs.push_back(log.make());
+  }
+  const Identification result = identified(*robot, logs);
+  ASSERT_EQ(result.presliding.size(), 1U);
+  EXPECT_NEAR(result.presliding[0].displacement, GetParam(), 0.05 * GetParam());
+  EXPECT_LT(std::abs(result.presliding[0].displacement - GetParam()), 4 * result.presliding[0].std);
+  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);
+  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.viscous"), 0.8, 0.016);
+  EXPECT_LT(result.drives[0].masked_rows, result.drives[0].rows / 20);
+
+  AxisLog fresh;
+  fresh.presliding = GetParam();
+  fresh.seed = 7;
+  const Validation validation = validate(*robot, {fresh.make()}, result.fit.p, result.processing);
+  EXPECT_LT(validation.drives[0].rms_with_reversals, 1.15 * result.drives[0].rms);
+}
+
+INSTANTIATE_TEST_SUITE_P(Displacements, Presliding, ::testing::Values(1.5e-3, 4e-3, 1e-2));
+
+TEST(FindPresliding, FindsNoneWhereCoulombsLawHolds) {
+  const auto robot = axis();
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    AxisLog log;
+    log.seed = seed;
+    ProcessingOptions processing;
+    processing.cutoff_hz = 20;
+    const auto found = find_presliding(*robot, find_base_parameters(*robot), {log.make()}, processing);
+    EXPECT_LT(found[0].displacement, 3e-4);  // what a filter of 20 Hz cannot tell from a step
+  }
+}
+
+}  // namespace
+}  // namespace deltadyn
