@@ -103,9 +103,10 @@ class Identify {
 
     write_parameters(output_, parameter_table(*robot, result));
     if (!base_file_.empty()) write_base(result);
-    const Validation training =
-        validate(*robot, without_effects(*robot, logs, result.fit.p, effects, result.processing.cutoff_hz), result.fit.p,
-                 result.processing);
+    const Validation training = validate(
+        *robot,
+        without_effects(*robot, logs, result.fit.p, effects, result.processing.motion_over_pass * result.processing.cutoff_hz),
+        result.fit.p, result.processing);
     Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     weigh_findings(findings, assessment);
     if (!report_file_.empty()) {
@@ -257,7 +258,8 @@ class Identify {
     fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n",
                result.samples, result.base.count(), columns, result.base_estimate.condition_number);
     if (result.processing.filter) {
-      fmt::print("motion filtered at {:.4g} Hz{}\n", result.processing.cutoff_hz, result.cutoff ? ", chosen from the logs" : "");
+      fmt::print("motion and torque used up to {:.4g} Hz{}\n", result.processing.cutoff_hz,
+                 result.cutoff ? ", chosen from the logs" : "");
     }
     tell_presliding(robot.description(), result);
     out.add("samples", result.samples);
@@ -266,18 +268,19 @@ class Identify {
     out.add("condition_number", result.base_estimate.condition_number);
     out.add("log_det", result.base_estimate.log_det);
     if (result.processing.filter) out.add("cutoff_hz", result.processing.cutoff_hz, "Hz");
-    fmt::print("drive   rms residual   of torque   base parameters alone   rows left out near reversals\n");
+    fmt::print("drive   rms residual   of torque   base parameters alone   rows used   left out near reversals\n");
     for (int j = 0; j < robot.drives(); ++j) {
       const DriveReport& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot.description(), j);
       const double relative = drive.rms / std::max(drive.rms_torque, 1e-300);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}            {:>6.1f} %\n", j + 1, drive.rms, unit,
-                 100 * relative, drive.rms_base, unit,
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}        {:>9}   {:>6.1f} %\n", j + 1, drive.rms, unit,
+                 100 * relative, drive.rms_base, unit, drive.rows,
                  100.0 * static_cast<double>(drive.masked_rows) /
                      static_cast<double>(std::max<Eigen::Index>(1, drive.rows + drive.masked_rows)));
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms, unit);
       out.add(fmt::format("relative_residual_drive{}", j + 1), relative);
       out.add(fmt::format("rms_residual_base_drive{}", j + 1), drive.rms_base, unit);
+      out.add(fmt::format("rows_drive{}", j + 1), drive.rows);
     }
     fmt::print("{}\n", result.fit.brief_report());
     out.add("variables", result.fit.variables);
@@ -300,6 +303,8 @@ class Identify {
     }
     out.add("verdict", tools::verdict_word(assessment.verdict));
     tools::print_assessment(assessment);
+    tools::point_to_diagnosis(assessment, robot_file_, output_, log_files_, "");
+    out.add("structure_left", assessment.structure ? "yes" : "no");
     return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }
 

@@ -82,18 +82,21 @@ class Validate {
       throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
     }
     Validation result =
-        validate(*robot, without_effects(*robot, logs, match.value, effects, options.cutoff_hz), match.value, options);
+        validate(*robot, without_effects(*robot, logs, match.value, effects, options.motion_over_pass * options.cutoff_hz),
+                 match.value, options);
     if (!effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, logs, result);
     if (!report_file_.empty()) {
       write_file(report_file_, validation_report(*robot, result, match.value, report_context(findings)));
     }
-    Assessment assessment = assess_validation(*robot, result, residual_structure(result));
+    Assessment assessment = assess_validation(*robot, result);
     weigh_findings(findings, assessment);
     tell(description, result, run);
     run.summary.add("verdict", tools::verdict_word(assessment.verdict));
     run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
     tools::print_assessment(assessment);
+    tools::point_to_diagnosis(assessment, robot_file_, parameter_file_, {"TRAINING_LOGS.csv"}, log_files_.front());
+    run.summary.add("structure_left", assessment.structure ? "yes" : "no");
     return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
   }
 
@@ -167,16 +170,18 @@ class Validate {
     } else {
       fmt::print("{} samples, taken as they are\n", samples);
     }
-    fmt::print("drive   rms residual   of torque   largest   with reversals\n");
+    fmt::print("drive   rms residual   of torque   largest   with reversals   rows (near reversals)\n");
     for (int j = 0; j < robot.drives(); ++j) {
       const ValidatedDrive& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot, j);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {}\n", j + 1, drive.rms_residual, unit,
-                 100 * drive.relative_residual, drive.max_residual, drive.rms_with_reversals, unit);
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {:<3}     {:>9} ({})\n", j + 1, drive.rms_residual,
+                 unit, 100 * drive.relative_residual, drive.max_residual, drive.rms_with_reversals, unit, drive.rows,
+                 drive.reversal_rows);
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms_residual, unit);
       out.add(fmt::format("relative_residual_drive{}", j + 1), drive.relative_residual);
       out.add(fmt::format("max_residual_drive{}", j + 1), drive.max_residual, unit);
       out.add(fmt::format("rms_with_reversals_drive{}", j + 1), drive.rms_with_reversals, unit);
+      out.add(fmt::format("rows_drive{}", j + 1), drive.rows);
     }
     if (!output_.empty()) fmt::print("wrote {}\n", output_);
     if (!report_file_.empty()) fmt::print("wrote {}\n", report_file_);

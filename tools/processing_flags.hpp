@@ -3,7 +3,9 @@
 /// \file
 /// Flags of the tools that read logs: how logs are filtered, and the files they come from.
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <string>
 #include <vector>
 
@@ -31,7 +33,7 @@ class ProcessingFlags {
  public:
   void add_to(CLI::App& app) {
     app.add_flag("--no-filter", no_filter_, "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
-    app.add_option("--cutoff-hz", cutoff_, "-3 dB of the zero-phase filter of the motion [Hz], or auto: from the logs")
+    app.add_option("--cutoff-hz", cutoff_, "pass band of motion and torque [Hz], or auto: from the logs")
         ->capture_default_str();
     app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
         ->capture_default_str();
@@ -101,6 +103,20 @@ inline const char* verdict_word(Verdict verdict) {
 inline void print_assessment(const Assessment& assessment) {
   std::FILE* to = assessment.verdict == Verdict::good ? stdout : stderr;
   fmt::print(to, "{}{}\n", assessment.verdict == Verdict::good ? "" : "warning: ", assessment.headline);
+}
+
+/// Structure that the model leaves has a name in most cases: says where it is and how to find the name.
+/// \param logs     the training logs, or those that were validated
+/// \param holdout  a log that took no part; empty: the user is to give one
+inline void point_to_diagnosis(const Assessment& assessment, const std::string& robot, const std::string& parameters,
+                               const std::vector<std::string>& logs, const std::string& holdout) {
+  if (!assessment.structure) return;
+  const StructureLeft& left = *assessment.structure;
+  fmt::print(
+      "structure is left in the residual of drive {} ({}): {:.2g} % of the torque, following its {}\n"
+      "  to name what is missing: delta-diagnose {} --params {} {} --holdout {} -o diagnosis.csv\n",
+      left.drive + 1, left.file, 100 * std::max(left.of_torque, left.of_torque_there), left.coordinate, robot, parameters,
+      fmt::join(logs, " "), holdout.empty() ? "ANOTHER_LOG.csv" : holdout);
 }
 
 /// The whole command line, for reports.

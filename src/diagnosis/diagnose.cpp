@@ -102,6 +102,7 @@ ProcessingOptions diagnosis_processing(const std::vector<Log>& logs, ProcessingO
   double rate_hz = 1e12;
   for (const Log& log : logs) rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
   out.cutoff_hz = std::min(kMotionOverPass * cutoff_hz, 0.35 * rate_hz);
+  out.motion_over_pass = 1;
   out.torque_cutoff_ratio = kPassOverMotion;
   // An even stride lets simulated motions be thinned.
   const double pass_hz = std::min(kPassOverMotion * out.cutoff_hz, 0.4 * rate_hz);

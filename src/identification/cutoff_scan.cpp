@@ -46,6 +46,7 @@ std::vector<CutoffPoint> scan_cutoffs(const Robot& robot, const std::vector<Log>
     if (progress) progress(std::log(cutoff / lowest) / std::log(highest / lowest));
     ProcessingOptions options = processing;
     options.cutoff_hz = cutoff;
+    options.motion_over_pass = 1;  // it is the motion's own cut-off that is tried
     options.periods = Periods::ignore;
     options.low_pass_torque = false;  // one and the same torque for all cut-offs
     DataFold fold;

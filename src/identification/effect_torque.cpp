@@ -52,6 +52,7 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
   std::vector<Log> out = logs;
   ProcessingOptions options;
   options.cutoff_hz = cutoff_hz;
+  options.motion_over_pass = 1;
   int number = 0;
   for (Log& log : out) {
     const PreparedLog motion = motion_of(robot, log, options);
@@ -147,7 +148,7 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
     settled.processing.cutoff_hz = choose_cutoff(logs).cutoff_hz;
     settled.choose_cutoff = false;
   }
-  const double cutoff_hz = settled.processing.cutoff_hz;
+  const double cutoff_hz = settled.processing.motion_over_pass * settled.processing.cutoff_hz;
   // With what the file says first, so that the model's torque is known for the effects that follow it.
   Identification result = identify(robot, without_effects(robot, logs, prior, effects, cutoff_hz), prior, prior_std, settled);
   for (int pass = 0; pass < 2; ++pass) {

@@ -130,10 +130,10 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
 }
 
 /// Standard deviation of the drives' filtered rates, from the noise of the positions.
-Eigen::VectorXd velocity_noise(const Log& log, double cutoff_hz) {
+Eigen::VectorXd velocity_noise(const Log& log, double motion_cutoff_hz) {
   Eigen::VectorXd sigma(log.drives());
   for (Index j = 0; j < log.drives(); ++j) {
-    sigma(j) = derivative_noise(position_noise(log.q.col(j)), 1.0 / log.sample_time_s(), cutoff_hz, 4, 1);
+    sigma(j) = derivative_noise(position_noise(log.q.col(j)), 1.0 / log.sample_time_s(), motion_cutoff_hz, 4, 1);
   }
   return sigma;
 }
@@ -163,6 +163,7 @@ void ProcessingOptions::validate() const {
     throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
   };
   if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
+  if (!(motion_over_pass >= 0.5 && motion_over_pass <= 10)) refuse("motion_over_pass", "it must be 0.5 to 10");
   if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10)) refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
   if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
   if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
@@ -173,7 +174,11 @@ void ProcessingOptions::validate() const {
 
 namespace {
 
-/// Low pass of regressor and torque for a motion filtered at cutoff_hz.
+double motion_cutoff_hz(const ProcessingOptions& options) {
+  return options.motion_over_pass * options.cutoff_hz;
+}
+
+/// Low pass of regressor and torque.
 std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
   const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
   const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
@@ -192,11 +197,11 @@ std::optional<double> period_of(const Log& log, const ProcessingOptions& options
     if (static_cast<double>(found->whole_periods) * period_s < kLeastCoverage * length_s) return std::nullopt;
   }
   const double per_period = period_s / log.sample_time_s();
-  if (period_s * options.cutoff_hz > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {
+  if (period_s * motion_cutoff_hz(options) > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {
     notes.push_back(
         fmt::format("{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
                     "{:.3g} s at this cut-off)",
-                    log.file, period_s, kMostHarmonics / options.cutoff_hz));
+                    log.file, period_s, kMostHarmonics / motion_cutoff_hz(options)));
     return std::nullopt;
   }
   return period_s;
@@ -205,7 +210,7 @@ std::optional<double> period_of(const Log& log, const ProcessingOptions& options
 /// One period: Fourier series of the motion up to the cut-off, mean of the torque. Continued on either side by what the low pass
 /// needs, so that no edge is lost.
 PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s, const ProcessingOptions& options) {
-  const PeriodMean mean = average_periods(log, period_s, std::max(1, static_cast<int>(period_s * options.cutoff_hz)));
+  const PeriodMean mean = average_periods(log, period_s, std::max(1, static_cast<int>(period_s * motion_cutoff_hz(options))));
   const Index samples = mean.log.samples();
   PreparedLog out = copy_log(robot, mean.log);
   out.line.clear();
@@ -229,7 +234,8 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
     if (out.torque_out.size() > 0) out.torque_out.row(k) = mean.log.torque_out.row(phase);
   }
   out.period_s = period_s;
-  mark_reversals(robot, options, velocity_noise(log, options.cutoff_hz) / std::sqrt(static_cast<double>(mean.periods)), 0, out);
+  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)) / std::sqrt(static_cast<double>(mean.periods)), 0,
+                 out);
   out.notes.push_back(fmt::format("{}: periodic, {} periods of {:.6g} s averaged, {} harmonics", log.file, mean.periods, period_s,
                                   mean.series.harmonics));
   return out;
@@ -258,7 +264,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   if (const std::optional<double> period_s = period_of(log, options, out.notes))
     return prepare_periodic(robot, log, *period_s, options);
 
-  DriveMotion motion = differentiate_log(log, options.cutoff_hz);
+  DriveMotion motion = differentiate_log(log, motion_cutoff_hz(options));
   out.q = std::move(motion.q);
   out.qd = std::move(motion.qd);
   out.qdd = std::move(motion.qdd);
@@ -281,7 +287,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   }
   // Without the low pass, what follows a reversal (the joint breaking away) is kept out by a margin of its own.
   const Index grow = options.low_pass_torque ? 0 : static_cast<Index>(std::lround(kBreakaway_s * out.rate_hz));
-  mark_reversals(robot, options, velocity_noise(log, options.cutoff_hz), grow, out);
+  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)), grow, out);
   return out;
 }
 

@@ -5,12 +5,41 @@
 
 namespace deltadyn {
 
+using Eigen::Index;
+
+std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives) {
+  std::vector<ValidatedDrive> out(drives);
+  const auto root_mean = [](double sum, Index count) { return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0; };
+  for (std::size_t j = 0; j < drives; ++j) {
+    const auto drive = static_cast<Index>(j);
+    ValidatedDrive& figures = out[j];
+    double square = 0, tau_square = 0, reversal_square = 0;
+    for (const ValidatedLog& log : logs) {
+      const Prediction& rows = log.prediction;
+      for (Index k = 0; k < rows.rows(); ++k) {
+        const double e = rows.tau(k, drive) - rows.model(k, drive);
+        if (rows.use(k, drive) == RowUse::regular) {
+          square += e * e;
+          tau_square += rows.tau(k, drive) * rows.tau(k, drive);
+          figures.max_residual = std::max(figures.max_residual, std::abs(e));
+          ++figures.rows;
+        } else if (rows.use(k, drive) == RowUse::reversal) {
+          reversal_square += e * e;
+          ++figures.reversal_rows;
+        }
+      }
+    }
+    figures.rms_residual = root_mean(square, figures.rows);
+    figures.relative_residual = tau_square > 0 ? std::sqrt(square / tau_square) : 0.0;
+    figures.rms_with_reversals = root_mean(square + reversal_square, figures.rows + figures.reversal_rows);
+  }
+  return out;
+}
+
 Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
                     const ProcessingOptions& processing, int threads) {
   Validation out;
   out.processing = processing;
-  out.drives.resize(static_cast<std::size_t>(robot.drives()));
-  std::vector<double> square(out.drives.size(), 0), tau_square(out.drives.size(), 0), reversal_square(out.drives.size(), 0);
   for (const Log& log : logs) {
     PreparedLog prepared = prepare_log(robot, log, processing);
     ValidatedLog one;
@@ -20,33 +49,9 @@ Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eige
     one.row_rate_hz = prepared.rate_hz / static_cast<double>(prepared.stride);
     one.notes = std::move(prepared.notes);
     one.prediction = predict(robot, prepared, p, threads);
-    const Eigen::MatrixXd residual = one.prediction.residual();
-    for (std::size_t j = 0; j < out.drives.size(); ++j) {
-      const auto drive = static_cast<Eigen::Index>(j);
-      for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-        const double e = residual(k, drive);
-        if (one.prediction.use(k, drive) == RowUse::regular) {
-          square[j] += e * e;
-          tau_square[j] += one.prediction.tau(k, drive) * one.prediction.tau(k, drive);
-          out.drives[j].max_residual = std::max(out.drives[j].max_residual, std::abs(e));
-          ++out.drives[j].rows;
-        } else if (one.prediction.use(k, drive) == RowUse::reversal) {
-          reversal_square[j] += e * e;
-          ++out.drives[j].reversal_rows;
-        }
-      }
-    }
     out.logs.push_back(std::move(one));
   }
-  const auto root_mean = [](double sum, Eigen::Index count) {
-    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
-  };
-  for (std::size_t j = 0; j < out.drives.size(); ++j) {
-    ValidatedDrive& drive = out.drives[j];
-    drive.rms_residual = root_mean(square[j], drive.rows);
-    drive.relative_residual = tau_square[j] > 0 ? std::sqrt(square[j] / tau_square[j]) : 0.0;
-    drive.rms_with_reversals = root_mean(square[j] + reversal_square[j], drive.rows + drive.reversal_rows);
-  }
+  out.drives = drive_figures(out.logs, static_cast<std::size_t>(robot.drives()));
   return out;
 }
 

@@ -233,7 +233,8 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
   const std::vector<DriveFigures> drives = figures_of(identification);
   const std::vector<PriorGap> gaps = prior_gaps(identification.fit, identification.base, evidence.parameter_effect);
   Assessment out;
-  const Check size = check_residual_size(robot, drives), shape = check_residual_shape(drives, evidence.residual);
+  out.structure = evidence.structure;
+  const Check size = check_residual_size(robot, drives), shape = check_residual_shape(evidence.structure);
   out.checks = {size,
                 shape,
                 check_torque_knowledge(robot, evidence),

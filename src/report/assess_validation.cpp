@@ -22,7 +22,7 @@ double reversal_ratio(const ValidatedDrive& drive) {
 
 }  // namespace
 
-Assessment assess_validation(const Robot& robot, const Validation& validation, const std::vector<ResidualStructure>& residual) {
+Assessment assess_validation(const Robot& robot, const Validation& validation) {
   std::vector<DriveFigures> drives;
   bool rows_everywhere = true;
   for (const ValidatedDrive& drive : validation.drives) {
@@ -33,12 +33,13 @@ Assessment assess_validation(const Robot& robot, const Validation& validation, c
     rows_everywhere = rows_everywhere && drive.rows > 0;
   }
   Assessment out;
+  out.structure = structure_left(validation);
   if (!rows_everywhere) {
     out.checks.push_back(
         {"Rows to judge by", "a drive has none", Verdict::bad,
          "All rows of a drive are near velocity reversals or repaired: record a log in which every drive moves."});
   }
-  const Check size = check_residual_size(robot, drives), shape = check_residual_shape(drives, residual);
+  const Check size = check_residual_size(robot, drives), shape = check_residual_shape(out.structure);
   out.checks.push_back(size);
   out.checks.push_back(shape);
   out.checks.push_back(check_reversals(drives));

@@ -101,7 +101,7 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
 
 IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification, const Validation& training) {
   IdentificationEvidence evidence;
-  evidence.residual = residual_structure(training);
+  evidence.structure = structure_left(training);
   const BaseEstimate& estimate = identification.base_estimate;
   evidence.on_logs = torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
   evidence.in_workspace = torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
@@ -164,44 +164,37 @@ std::string meaning_of_dependence(const std::string& coordinate) {
   if (coordinate == "velocity")
     return "friction there is more than Coulomb and viscous (Stribeck, a load-dependent part, a gear)";
   if (coordinate == "position") return "a spring, a cable, an unbalance or a wrong length acts there, or the gear has a ripple";
+  if (coordinate == "time")
+    return "other drives, the temperature, the pose of the plate or a slow sensor may be behind it; see its spectrum";
   return "inertia is missing there (a rotor), or torque and position are not of the same instant (a lag)";
 }
 
-Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::vector<ResidualStructure>& residual) {
+/// Last part of a path.
+std::string file_name(const std::string& path) {
+  const auto slash = path.find_last_of('/');
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+Check check_residual_shape(const std::optional<StructureLeft>& structure) {
   Check check{"Shape of the residual", "like noise", Verdict::good, ""};
-  double largest = 0;
-  for (std::size_t j = 0; j < residual.size(); ++j) {
-    DependenceOnMotion found;
-    const std::string coordinate = worst_dependence(residual[j], found);
-    if (coordinate.empty()) continue;
-    const double structured = std::sqrt(found.share) * drives[j].relative();
-    if (structured <= largest) continue;
-    largest = structured;
-    const auto drive = static_cast<int>(j);
-    check.figure = fmt::format("{} of it follows the {} of {}", format_percent(found.share, 2), coordinate, drive_name(drive));
-    check.verdict = structured > kRelevantStructure ? Verdict::caution : Verdict::good;
-    check.meaning =
-        fmt::format("That part is {} of the torque{}: {}.", format_percent(structured, 2),
-                    check.verdict == Verdict::good ? ", too little to act on" : "", meaning_of_dependence(coordinate));
-  }
-  if (largest > 0) return check;
-  const auto longest = std::max_element(residual.begin(), residual.end(),
-                                        [](const auto& a, const auto& b) { return a.correlation < b.correlation; });
-  if (longest != residual.end() && longest->correlation > kNoticeableMemory) {
-    const auto j = static_cast<std::size_t>(longest - residual.begin());
-    const bool relevant = drives[j].relative() > kRelevantStructure;
-    check.verdict = relevant ? Verdict::caution : Verdict::good;
-    check.figure = fmt::format("slow waves in {}", drive_name(static_cast<int>(j)));
-    check.meaning = fmt::format(
-        "The residual follows neither position, velocity nor acceleration of its drive, but it has a memory: {:.0f} rows tell as "
-        "much as "
-        "one. {}",
-        longest->correlation,
-        relevant ? "Other drives, the temperature or a slow sensor may be behind it; see its spectrum."
-                 : "It is too small to act on.");
+  if (!structure) {
+    check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
     return check;
   }
-  check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
+  const std::string drive = drive_name(structure->drive), log = file_name(structure->file);
+  check.figure = structure->coordinate == "time"
+                     ? fmt::format("slow waves in {} ({})", drive, log)
+                     : fmt::format("{} of it follows the {} of {} ({})", format_percent(structure->share, 2),
+                                   structure->coordinate, drive, log);
+  const bool relevant = structure->of_torque > kRelevantStructure || structure->of_torque_there > kGoodResidual;
+  check.verdict = relevant ? Verdict::caution : Verdict::good;
+  check.meaning = fmt::format("That part is {} of the torque in this log{}", format_percent(structure->of_torque, 2),
+                              relevant ? "" : ", too little to act on");
+  if (structure->of_torque_there > 0) {
+    check.meaning += fmt::format("; at {} to {} {} it is {} of the torque there", format_number(structure->speed_low, 2),
+                                 format_number(structure->speed_high, 2), "(SI)", format_percent(structure->of_torque_there, 2));
+  }
+  check.meaning += ": " + meaning_of_dependence(structure->coordinate) + ".";
   return check;
 }
 

@@ -22,7 +22,7 @@ struct DriveFigures {
 /// Of a residual over the rms torque.
 [[nodiscard]] Verdict grade_residual(double relative);
 [[nodiscard]] Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives);
-[[nodiscard]] Check check_residual_shape(const std::vector<DriveFigures>& drives, const std::vector<ResidualStructure>& residual);
+[[nodiscard]] Check check_residual_shape(const std::optional<StructureLeft>& structure);
 [[nodiscard]] Check check_reversals(const std::vector<DriveFigures>& drives);
 /// "Usable with care", check -> "Usable with care: size of the residual (7 % of ...)."
 [[nodiscard]] std::string headline_of(const std::string& opening, const Check& check);

@@ -41,7 +41,7 @@ void add_cutoff_figure(HtmlReport& report, const Identification& identification)
       spec,
       fmt::format(
           "Choice of the cut-off: spectrum of the positions over that of the encoders' noise, of each drive in its fastest log. "
-          "The motion stands out up to {}; accelerations from it stay below the noise of the torques up to {}.",
+          "The motion has its accelerations below {}; accelerations from it stay below the noise of the torques up to {}.",
           format_number(identification.cutoff->band_hz, "Hz", 3), format_number(identification.cutoff->noise_limit_hz, "Hz", 3)));
 }
 

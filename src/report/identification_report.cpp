@@ -112,7 +112,7 @@ std::string identification_report(const Robot& robot, const Identification& iden
   report.heading("Base parameters");
   add_base_parameters(report, identification);
   report.heading("Residual");
-  add_structure_table(report, evidence.residual);
+  add_structure_table(report, residual_structure(training));
   add_residual_over(report, robot, training, Coordinate::velocity);
   add_residual_spectra(report, robot, training);
   report.heading("Mass matrix");

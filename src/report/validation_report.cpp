@@ -62,7 +62,7 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
                 "validate with the same robot file", ExitCode::usage);
   }
   const std::vector<ResidualStructure> residual = residual_structure(validation);
-  Assessment assessment = assess_validation(robot, validation, residual);
+  Assessment assessment = assess_validation(robot, validation);
   weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
   HtmlReport report("Validation of " + description.name,

@@ -16,7 +16,9 @@ using Eigen::Index;
 constexpr double kBandRatio = 1.26;   // a third of an octave
 constexpr double kSegment_s = 4;      // shows motion from half a hertz on
 constexpr double kClear = 30;         // times the noise: less is no news of the motion, or the hump of an interpolated record
-constexpr double kContent = 0.999;    // of the accelerations' power: what lies above moves no figure
+constexpr double kSameFloor = 3;      // quantisation noise of a slow motion is not quite white
+constexpr double kContent = 0.999;    // of the accelerations' power ...
+constexpr double kMargin = 3;         // ... and the band that holds it, this many times: friction has harmonics, too
 constexpr double kNoiseShare = 2e-5;  // of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
 constexpr double kLowestCutoff_hz = 5;
 constexpr double kLeastPeriods = 20;  // of the cut-off in a log: its ends are lost for 1.5 of them each
@@ -29,21 +31,53 @@ Index segment_of(Index samples, double rate_hz) {
   return segment;
 }
 
-/// Acceleration power that the noise has below a frequency: integral of (2 pi f)^4 times its density.
-double noise_power(double noise_density, double cutoff_hz) {
-  return noise_density * std::pow(2 * std::numbers::pi, 4) * std::pow(cutoff_hz, 5) / 5;
+double width_of(double frequency_hz) {
+  return frequency_hz * (std::sqrt(kBandRatio) - 1 / std::sqrt(kBandRatio));
+}
+
+double power_of_acceleration(double density, double frequency_hz) {
+  return density * std::pow(2 * std::numbers::pi * frequency_hz, 4) * width_of(frequency_hz);
+}
+
+/// Acceleration power below a frequency that is no motion: the floor, and what stands above it beyond the motion's band (humps of an
+/// interpolated or jittering record).
+double noise_power(const MotionBand& band, double cutoff_hz) {
+  double power = band.noise_density * std::pow(2 * std::numbers::pi, 4) * std::pow(cutoff_hz, 5) / 5;
+  for (Index k = 0; k < band.frequency_hz.size() && band.frequency_hz(k) <= cutoff_hz; ++k) {
+    if (band.frequency_hz(k) > band.top_hz)
+      power += power_of_acceleration(std::max(0.0, band.density(k) - band.noise_density), band.frequency_hz(k));
+  }
+  return power;
 }
 
 /// Acceleration power of the motion below a frequency.
 double motion_power(const MotionBand& band, double cutoff_hz) {
   double power = 0;
-  for (Index k = 0; k < band.frequency_hz.size(); ++k) {
-    const double f = band.frequency_hz(k);
-    if (f > cutoff_hz) break;
-    const double width = f * (std::sqrt(kBandRatio) - 1 / std::sqrt(kBandRatio));
-    power += std::max(0.0, band.density(k) - band.noise_density) * std::pow(2 * std::numbers::pi * f, 4) * width;
-  }
+  for (Index k = 0; k < band.frequency_hz.size() && band.frequency_hz(k) <= std::min(cutoff_hz, band.top_hz); ++k)
+    power += power_of_acceleration(std::max(0.0, band.density(k) - band.noise_density), band.frequency_hz(k));
   return power;
+}
+
+/// Mean density, over frequency, of the bands that are nearly as low as the lowest one: noise is much the same in all of them.
+double floor_of(const MotionBand& band) {
+  if (band.density.size() == 0) return 0;
+  const double lowest = band.density.minCoeff();
+  double sum = 0, width = 0;
+  for (Index k = 0; k < band.density.size(); ++k) {
+    if (band.density(k) > kSameFloor * lowest) continue;
+    sum += band.density(k) * band.frequency_hz(k);
+    width += band.frequency_hz(k);
+  }
+  return width > 0 ? sum / width : lowest;
+}
+
+/// Lowest pass band that keeps nearly all of the motion's acceleration.
+double content_of(const MotionBand& band) {
+  const double all = motion_power(band, band.top_hz);
+  for (Index i = 0; i < band.frequency_hz.size() && band.frequency_hz(i) < band.top_hz; ++i) {
+    if (motion_power(band, band.frequency_hz(i)) >= kContent * all) return band.frequency_hz(i);
+  }
+  return band.top_hz;
 }
 
 /// Highest frequency that belongs to the motion, from low ones on: a resonance or an interpolation's own line higher up is none.
@@ -55,10 +89,6 @@ double top_of(const MotionBand& band) {
     } else if (clear > 0) {
       break;
     }
-  }
-  const double all = motion_power(band, clear);
-  for (Index i = 0; i < band.frequency_hz.size() && band.frequency_hz(i) < clear; ++i) {
-    if (motion_power(band, band.frequency_hz(i)) >= kContent * all) return band.frequency_hz(i);
   }
   return clear;
 }
@@ -86,7 +116,7 @@ struct DriveSpectra {
   [[nodiscard]] bool quiet(double cutoff, double inertia_square) const {
     double noise = 0, motion = 0, torque_noise = 0;
     for (std::size_t l = 0; l < position.size(); ++l) {
-      noise += noise_power(position[l]->noise_density, cutoff);
+      noise += noise_power(*position[l], cutoff);
       motion += motion_power(*position[l], cutoff);
       if (!torque.empty()) torque_noise += torque[l].noise_density * cutoff;
     }
@@ -144,8 +174,9 @@ MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double
   MotionBand band;
   band.frequency_hz = Eigen::Map<const Eigen::VectorXd>(frequency.data(), static_cast<Index>(frequency.size()));
   band.density = Eigen::Map<const Eigen::VectorXd>(density.data(), static_cast<Index>(density.size()));
-  band.noise_density = band.density.size() > 0 ? band.density.minCoeff() : 0.0;
+  band.noise_density = floor_of(band);
   band.top_hz = top_of(band);
+  band.content_hz = content_of(band);
   return band;
 }
 
@@ -160,7 +191,7 @@ CutoffChoice choose_cutoff(const std::vector<Log>& logs) {
     choice.bands.emplace_back();
     for (Index j = 0; j < log.drives(); ++j) {
       choice.bands.back().push_back(motion_band(log.q.col(j), rate));
-      choice.band_hz = std::max(choice.band_hz, choice.bands.back().back().top_hz);
+      choice.band_hz = std::max(choice.band_hz, choice.bands.back().back().content_hz);
     }
   }
   const double lowest = std::max(kLowestCutoff_hz, kLeastPeriods / shortest_s), highest = kMostOfRate * rate_hz;
@@ -170,7 +201,7 @@ CutoffChoice choose_cutoff(const std::vector<Log>& logs) {
                 logs.front().file, "record at 100 Hz or more for some seconds, or give --cutoff-hz");
   }
   choice.noise_limit_hz = noise_limit_hz(logs, choice.bands, lowest, highest);
-  choice.cutoff_hz = std::clamp(std::min(choice.band_hz, choice.noise_limit_hz), lowest, highest);
+  choice.cutoff_hz = std::clamp(std::min(kMargin * choice.band_hz, choice.noise_limit_hz), lowest, highest);
   return choice;
 }
 

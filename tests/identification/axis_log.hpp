@@ -17,7 +17,7 @@ struct AxisLog {
   double presliding = 0;                               ///< displacement of the bristle [rad]; 0: Coulomb's law
   double torque_noise = 0.05;
   int encoder_bits = 19;
-  double base_hz = 0.3, amplitude = 0.6, duration_s = 10, rate_hz = 1000;
+  double base_hz = 0.37, amplitude = 0.6, duration_s = 10, rate_hz = 1000;
   std::uint64_t seed = 1;
 
   /// The friction's state is integrated here in steps a tenth of a sample: it shares no code with the library.

@@ -24,7 +24,7 @@ struct Case {
   Eigen::VectorXd p;
   Validation validation;
 
-  [[nodiscard]] Assessment assess() const { return assess_validation(*robot, validation, residual_structure(validation)); }
+  [[nodiscard]] Assessment assess() const { return assess_validation(*robot, validation); }
   [[nodiscard]] std::string page() const {
     return validation_report(*robot, validation, p, {"robot.urdf", {"made_up.csv"}, "params.csv", "delta-validate robot.urdf"});
   }

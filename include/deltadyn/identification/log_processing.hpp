@@ -26,8 +26,11 @@ enum class Periods {
 };
 
 struct ProcessingOptions {
-  bool filter = true;                 ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
-  double cutoff_hz = 50;              ///< of the motion; the -3 dB point of the two passes together
+  bool filter = true;     ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
+  double cutoff_hz = 50;  ///< of rows: pass band that motion and torque share
+  /// -3 dB point of the positions' filter (two passes together) in units of cutoff_hz. Wider than the rows' low pass, so that what
+  /// the filter bends of the motion lies beyond it; the noise that it lets through does, too.
+  double motion_over_pass = 2;
   double torque_cutoff_ratio = 1.25;  ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
   Periods periods = Periods::detect;  ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
   double period_s = 0;                ///< used if periods is `given`

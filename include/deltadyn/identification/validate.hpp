@@ -34,6 +34,9 @@ struct Validation {
   ProcessingOptions processing;  ///< as used
 };
 
+/// Figures of each drive over the given logs.
+[[nodiscard]] std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives);
+
 /// Predicts every log with parameters p. Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
                                   const ProcessingOptions& processing, int threads = 0);

@@ -10,6 +10,7 @@
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/mass_matrix_survey.hpp"
 #include "deltadyn/identification/residual_structure.hpp"
+#include "deltadyn/identification/structure_left.hpp"
 #include "deltadyn/identification/torque_uncertainty.hpp"
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/report/html_report.hpp"
@@ -29,6 +30,7 @@ struct Assessment {
   std::string headline;             ///< one sentence
   std::vector<std::string> lines;   ///< what is trustworthy, what is not, what to do next
   std::vector<Check> checks;
+  std::optional<StructureLeft> structure;  ///< what the model leaves in the residual, for delta-diagnose to name
 };
 
 /// How a parameter shows in the torques of the drives.
@@ -64,7 +66,7 @@ struct PriorGap {
 
 /// What the judgement on an identification rests on besides the fit.
 struct IdentificationEvidence {
-  std::vector<ResidualStructure> residual;  ///< of the training logs, one a drive
+  std::optional<StructureLeft> structure;  ///< of the training logs
   TorqueUncertainty on_logs, in_workspace;
   Eigen::VectorXd parameter_effect;  ///< parameter_effect() of the fit
 };
@@ -75,7 +77,6 @@ struct IdentificationEvidence {
 [[nodiscard]] Assessment assess_identification(const Robot& robot, const Identification& identification,
                                                const MassMatrixSurvey& survey, const IdentificationEvidence& evidence);
 
-[[nodiscard]] Assessment assess_validation(const Robot& robot, const Validation& validation,
-                                           const std::vector<ResidualStructure>& residual);
+[[nodiscard]] Assessment assess_validation(const Robot& robot, const Validation& validation);
 
 }  // namespace deltadyn

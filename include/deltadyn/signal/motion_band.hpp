@@ -16,7 +16,8 @@ struct MotionBand {
   Eigen::VectorXd frequency_hz;  ///< middle of each band
   Eigen::VectorXd density;       ///< one-sided, mean over the band [rad^2/Hz | m^2/Hz]
   double noise_density = 0;      ///< of encoder step and noise, taken as white [rad^2/Hz | m^2/Hz]
-  double top_hz = 0;             ///< the motion stands out of the noise, and has nearly all of its acceleration, up to here
+  double top_hz = 0;             ///< the motion stands out of the noise up to here
+  double content_hz = 0;         ///< the motion has nearly all of its acceleration below
 };
 
 /// \param position  N samples at an even rate
@@ -27,12 +28,12 @@ struct MotionBand {
 /// Cut-off of the motion of several logs of one robot.
 struct CutoffChoice {
   double cutoff_hz = 0;
-  double band_hz = 0;         ///< up to here the motion stands out of the noise in some drive of some log
+  double band_hz = 0;         ///< the motion of every drive in every log has nearly all of its acceleration below
   double noise_limit_hz = 0;  ///< up to here encoder noise, as acceleration times inertia, stays below the noise of the torque
   std::vector<std::vector<MotionBand>> bands;  ///< logs x drives
 };
 
-/// The lower one of band_hz and noise_limit_hz, within what rate and length of the logs allow: below the band motion would be
+/// The lower one of a few times band_hz and noise_limit_hz, within what rate and length of the logs allow: below the band motion would be
 /// thrown away, above it the filter lets nothing through but noise, which as noise in the regressor pulls the parameters down.
 /// Throws deltadyn::Error (bad_input) if the logs are too short or sampled too slowly for any cut-off.
 [[nodiscard]] CutoffChoice choose_cutoff(const std::vector<Log>& logs);
