@@ -18,6 +18,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 #include "deltadyn/simulation/simulate.hpp"
 
+#include "presliding_effects.hpp"
 #include "simulate/effect_flag.hpp"
 #include "tool_support.hpp"
 
@@ -101,8 +102,10 @@ class Simulate {
     const ParameterTable table = read_parameters(parameter_file_, description);
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
-    std::vector<Effect> effects;
-    if (!effects_file_.empty()) effects = read_effects(effects_file_, description);
+    std::vector<Effect> effects = tools::presliding_effects(table, description);
+    if (!effects_file_.empty()) {
+      for (Effect& effect : read_effects(effects_file_, description)) effects.push_back(std::move(effect));
+    }
     for (const std::string& text : effects_) effects.push_back(tools::parse_effect(text, description));
     complete_options(description, run);
     const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);

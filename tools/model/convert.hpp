@@ -14,6 +14,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "presliding_effects.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -46,8 +47,10 @@ class Convert {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-    std::vector<Effect> effects;
-    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
+    std::vector<Effect> effects = presliding_effects(table, description);
+    if (!effect_file_.empty()) {
+      for (Effect& effect : read_effects(effect_file_, description)) effects.push_back(std::move(effect));
+    }
     const auto convert = format_ == "mjcf" ? export_mjcf : format_ == "urdf" ? export_urdf : export_header;
     const ExportedModel model = convert(*robot, match.value, effects);
     write_file(output_, model.text);
