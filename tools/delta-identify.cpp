@@ -112,7 +112,9 @@ class Identify {
     if (!report_file_.empty()) {
       write_file(report_file_, identification_report(*robot, result, training, survey, report_context(findings)));
     }
-    return tell(*robot, result, survey, assessment, run);
+    const ExitCode code = tell(*robot, result, survey, assessment, run);
+    tools::point_to_diagnosis(assessment, findings, robot_file_, output_, log_files_, "");
+    return code;
   }
 
   [[nodiscard]] ReportContext report_context(const std::vector<LogFinding>& findings) const {
@@ -303,7 +305,6 @@ class Identify {
     }
     out.add("verdict", tools::verdict_word(assessment.verdict));
     tools::print_assessment(assessment);
-    tools::point_to_diagnosis(assessment, robot_file_, output_, log_files_, "");
     out.add("structure_left", assessment.structure ? "yes" : "no");
     return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }

@@ -33,8 +33,7 @@ class ProcessingFlags {
  public:
   void add_to(CLI::App& app) {
     app.add_flag("--no-filter", no_filter_, "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
-    app.add_option("--cutoff-hz", cutoff_, "pass band of motion and torque [Hz], or auto: from the logs")
-        ->capture_default_str();
+    app.add_option("--cutoff-hz", cutoff_, "pass band of motion and torque [Hz], or auto: from the logs")->capture_default_str();
     app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
         ->capture_default_str();
     app.add_option("--map", map_, "column map (TOML) for logs of other tools, as of delta-log import --map-out")
@@ -105,18 +104,24 @@ inline void print_assessment(const Assessment& assessment) {
   fmt::print(to, "{}{}\n", assessment.verdict == Verdict::good ? "" : "warning: ", assessment.headline);
 }
 
-/// Structure that the model leaves has a name in most cases: says where it is and how to find the name.
+/// Structure that the model leaves has a name in most cases: says where it is and how to find the name. A timing error that was mended
+/// counts, too: the diagnosis tells a lag of the drive from a delay of the recorder.
 /// \param logs     the training logs, or those that were validated
 /// \param holdout  a log that took no part; empty: the user is to give one
-inline void point_to_diagnosis(const Assessment& assessment, const std::string& robot, const std::string& parameters,
-                               const std::vector<std::string>& logs, const std::string& holdout) {
-  if (!assessment.structure) return;
-  const StructureLeft& left = *assessment.structure;
-  fmt::print(
-      "structure is left in the residual of drive {} ({}): {:.2g} % of the torque, following its {}\n"
-      "  to name what is missing: delta-diagnose {} --params {} {} --holdout {} -o diagnosis.csv\n",
-      left.drive + 1, left.file, 100 * std::max(left.of_torque, left.of_torque_there), left.coordinate, robot, parameters,
-      fmt::join(logs, " "), holdout.empty() ? "ANOTHER_LOG.csv" : holdout);
+inline void point_to_diagnosis(const Assessment& assessment, const std::vector<LogFinding>& findings, const std::string& robot,
+                               const std::string& parameters, const std::vector<std::string>& logs, const std::string& holdout) {
+  const bool mended_timing = std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
+    return f.level == FindingLevel::mended && (f.key.rfind("delay", 0) == 0 || f.key.rfind("lag", 0) == 0);
+  });
+  if (!assessment.structure && !mended_timing) return;
+  if (assessment.structure) {
+    const StructureLeft& left = *assessment.structure;
+    fmt::print("structure is left in the residual of drive {} ({}): {:.2g} % of the torque, following its {}\n", left.drive + 1,
+               left.file, 100 * std::max(left.of_torque, left.of_torque_there), left.coordinate);
+  }
+  fmt::print("  to name what is {}: delta-diagnose {} --params {} {} --holdout {}{} -o diagnosis.csv\n",
+             assessment.structure ? "missing" : "behind the timing", robot, parameters, fmt::join(logs, " "),
+             holdout.empty() ? "ANOTHER_LOG.csv" : holdout, assessment.structure ? "" : " --keep-delay");
 }
 
 /// The whole command line, for reports.

@@ -167,6 +167,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
 
   std::vector<DriveFold> folds = select(fold, keep);
   const std::vector<DriveFold> as_recorded = folds;
+  std::optional<NoiseBias> bias;
   out.base_estimate = estimate_base_parameters(out.base, folds);
   Eigen::VectorXd p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
   if (options.robust) {
@@ -181,18 +182,17 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }
   } else if (options.compensate_noise && options.processing.filter && !averages_periods(prepared)) {
-    const NoiseBias bias = simulate_noise_bias(robot, out.base, logs, out.processing, keep, options.threads, options.base.seed);
-    out.noise_share = bias.largest_share;
-    if (bias.largest_share > kFeltNoise) {
-      for (std::size_t j = 0; j < folds.size(); ++j)
-        folds[j] = without_noise_bias(out.base, as_recorded[j], bias.information[j], bias.torque[j]);
-      out.base_estimate = estimate_base_parameters(out.base, folds);
+    NoiseBias found = simulate_noise_bias(robot, out.base, logs, out.processing, keep, options.base.seed);
+    out.noise_share = found.largest_share;
+    if (found.largest_share > kFeltNoise) {
+      bias = std::move(found);
+      out.base_estimate = estimate_base_parameters(out.base, folds, {}, &*bias);
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }
   }
   fold.regular = as_recorded;  // the residual is reported over all rows with their full weight
   const std::vector<double> correlation = correlations(robot, prepared, p, keep, options.threads);
-  out.base_estimate = estimate_base_parameters(out.base, folds, correlation);
+  out.base_estimate = estimate_base_parameters(out.base, folds, correlation, bias ? &*bias : nullptr);
 
   ConsistentFitProblem problem;
   problem.names = robot.parameter_names();

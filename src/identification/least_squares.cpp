@@ -29,6 +29,18 @@ void stack(const std::vector<DriveFold>& folds, const Eigen::VectorXd& weight, E
   b = qr.matrixQR().topRightCorner(P, 1);
 }
 
+void take_off(const BaseParameters& base, const NoiseBias& bias, const Eigen::VectorXd& weight, Eigen::MatrixXd& A,
+              Eigen::VectorXd& b) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(base.count(), base.count());
+  Eigen::VectorXd torque = Eigen::VectorXd::Zero(base.count());
+  for (std::size_t j = 0; j < bias.information.size(); ++j) {
+    const double w = weight(static_cast<Index>(j));
+    information += w * w * bias.information[j];
+    torque += w * w * bias.torque[j];
+  }
+  take_off_noise(base, information, torque, A, b);
+}
+
 Eigen::MatrixXd columns(const Eigen::MatrixXd& A, const std::vector<int>& which) {
   Eigen::MatrixXd out(A.rows(), static_cast<Index>(which.size()));
   for (std::size_t k = 0; k < which.size(); ++k) out.col(static_cast<Index>(k)) = A.col(which[k]);
@@ -55,7 +67,7 @@ Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<cons
 }
 
 BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vector<DriveFold>& folds,
-                                      const std::vector<double>& correlation) {
+                                      const std::vector<double>& correlation, const NoiseBias* bias) {
   const auto drives = static_cast<Index>(folds.size());
   const Index P = folds.front().R.cols();
   double rows = 0;
@@ -71,6 +83,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
   out.noise.resize(folds.size());
   for (int pass = 0; pass < 4; ++pass) {
     stack(folds, weight, out.A, out.b);
+    if (bias != nullptr) take_off(base, *bias, weight, out.A, out.b);
     Eigen::MatrixXd A_B = columns(out.A, base.independent);
     Eigen::VectorXd norm = A_B.colwise().norm().cwiseMax(1e-300);
     const double largest = norm.maxCoeff();

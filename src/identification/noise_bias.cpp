@@ -16,7 +16,8 @@ using Eigen::VectorXd;
 
 constexpr Index kSamples = 30'000;    // of each log: the excess is then known to a few per cent, whatever the log's length
 constexpr Index kRowsPerBlock = 256;  // as in fold_log
-constexpr double kLeastLeft = 0.2;    // of a direction's information: where noise is more than the rest, it is not compensated
+constexpr double kMostNoise = 0.5;    // of a direction's information: beyond, what would be left is known worse than nothing
+constexpr double kShown = 1e-3;       // of the largest eigenvalue: weaker directions are for other drives to show
 constexpr double kNoise = 1e-10;      // of the largest eigenvalue: rounding
 
 /// The middle of a log that is longer than needed, and how many times it is longer.
@@ -85,8 +86,8 @@ VectorXd noise_std(const Log& log) {
 }  // namespace
 
 NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                              const ProcessingOptions& processing, const std::vector<bool>& keep_reversals, int /*threads*/,
-                              std::uint64_t seed, int draws) {
+                              const ProcessingOptions& processing, const std::vector<bool>& keep_reversals, std::uint64_t seed,
+                              int draws) {
   ProcessingOptions options = processing;
   options.periods = Periods::ignore;
   Normal excess(robot.drives(), base.count()), whole(robot.drives(), base.count());
@@ -121,7 +122,7 @@ NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, co
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
     for (Index k = 0; k < G.rows(); ++k) {
       const double value = eigen.eigenvalues()(k);
-      if (value < kNoise * eigen.eigenvalues().maxCoeff()) continue;
+      if (value < kShown * eigen.eigenvalues().maxCoeff()) continue;
       const VectorXd v = eigen.eigenvectors().col(k);
       bias.largest_share = std::max(bias.largest_share, v.dot(D * v) / value);
     }
@@ -129,37 +130,33 @@ NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, co
   return bias;
 }
 
-DriveFold without_noise_bias(const BaseParameters& base, const DriveFold& fold, const MatrixXd& information,
-                             const VectorXd& torque) {
+void take_off_noise(const BaseParameters& base, const MatrixXd& information, const VectorXd& torque, MatrixXd& R, VectorXd& d) {
   const Index count = base.count();
-  MatrixXd R(fold.R.rows(), count);
-  for (Index c = 0; c < count; ++c) R.col(c) = fold.R.col(base.independent[static_cast<std::size_t>(c)]);
-  const VectorXd scale = R.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd G = scale.asDiagonal() * (R.transpose() * R) * scale.asDiagonal();
+  MatrixXd R_base(R.rows(), count);
+  for (Index c = 0; c < count; ++c) R_base.col(c) = R.col(base.independent[static_cast<std::size_t>(c)]);
+  const VectorXd scale = R_base.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd G = scale.asDiagonal() * (R_base.transpose() * R_base) * scale.asDiagonal();
   const MatrixXd D = scale.asDiagonal() * information * scale.asDiagonal();
-  // In the directions of G, with each of size one, the excess is its share of the information.
   const Eigen::SelfAdjointEigenSolver<MatrixXd> of_G(G);
-  const double largest = of_G.eigenvalues().maxCoeff();
-  std::vector<Index> seen;
-  for (Index k = 0; k < count; ++k) {
-    if (of_G.eigenvalues()(k) > kNoise * largest) seen.push_back(k);
-  }
-  MatrixXd root(count, static_cast<Index>(seen.size()));  // root^T G root = 1
-  for (std::size_t k = 0; k < seen.size(); ++k)
-    root.col(static_cast<Index>(k)) = of_G.eigenvectors().col(seen[k]) / std::sqrt(of_G.eigenvalues()(seen[k]));
+  const VectorXd root_size = of_G.eigenvalues().cwiseMax(kNoise * of_G.eigenvalues().maxCoeff()).cwiseSqrt();
+  // In the directions of G, with each of size one, the excess is its share of the information.
+  const MatrixXd root = of_G.eigenvectors() * root_size.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> of_share(root.transpose() * D * root);
-  const VectorXd left = (1 - of_share.eigenvalues().array()).cwiseMax(kLeastLeft);
-  // U = root V: U^T (G - D) U = left. R' = left^(1/2) U^-1 in the base parameters, with U^-1 = V^T root^T G.
-  const MatrixXd U = root * of_share.eigenvectors();
-  const MatrixXd R_base = left.cwiseSqrt().asDiagonal() * U.transpose() * G * scale.cwiseInverse().asDiagonal();
-  const VectorXd right = scale.asDiagonal() * (R.transpose() * fold.d - torque);
-  const VectorXd d = left.cwiseSqrt().cwiseInverse().asDiagonal() * (U.transpose() * right);
-  DriveFold out = fold;
-  out.R.setZero();
-  out.d.setZero();
-  out.R.topRows(R_base.rows()) = R_base * base.B;
-  out.d.head(d.size()) = d;
-  return out;
+  const MatrixXd U = root * of_share.eigenvectors();  // U^T G U = 1
+  const VectorXd plain = U.transpose() * (scale.asDiagonal() * (R_base.transpose() * d));
+  const VectorXd excess = U.transpose() * (scale.asDiagonal() * torque);
+  VectorXd left(count), right(count);
+  for (Index k = 0; k < count; ++k) {
+    const double share = of_share.eigenvalues()(k);
+    const bool known = share < kMostNoise;
+    left(k) = known ? 1 - share : 1.0;
+    right(k) = known ? plain(k) - excess(k) : plain(k);
+  }
+  const MatrixXd factor = left.cwiseSqrt().asDiagonal() * U.transpose() * G * scale.cwiseInverse().asDiagonal();
+  R.setZero();
+  d.setZero();
+  R.topRows(count) = factor * base.B;
+  d.head(count) = right.cwiseQuotient(left.cwiseSqrt());
 }
 
 }  // namespace deltadyn

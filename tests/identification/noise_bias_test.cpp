@@ -28,8 +28,7 @@ Estimates estimates(const AxisLog& axis, double cutoff_hz) {
   const NoiseBias bias = simulate_noise_bias(*robot, base, logs, processing, {false});
   Estimates out;
   out.plain = estimate_base_parameters(base, fold.regular).value;
-  out.compensated =
-      estimate_base_parameters(base, {without_noise_bias(base, fold.regular[0], bias.information[0], bias.torque[0])}).value;
+  out.compensated = estimate_base_parameters(base, fold.regular, {}, &bias).value;
   out.share = bias.largest_share;
   const auto inertia = std::find_if(base.expressions.begin(), base.expressions.end(),
                                     [](const std::string& name) { return name.find("Iyy") != std::string::npos; });

@@ -8,6 +8,7 @@
 
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/data_fold.hpp"
+#include "deltadyn/identification/noise_bias.hpp"
 
 namespace deltadyn {
 
@@ -38,9 +39,10 @@ struct BaseEstimate {
 /// First pass weighted by W_tau = diag(tau_max)^-2 (paper IV.A), then by Sigma^-1 from the residual until it settles.
 /// \param folds        one a drive
 /// \param correlation  DriveNoise::correlation of each drive, or empty (all 1)
+/// \param bias         what encoder noise adds to the normal equations, to be taken off; null: nothing
 /// Throws deltadyn::Error (not_trusted) naming the base parameters that the motion does not show, and (bad_input) for too few rows.
 [[nodiscard]] BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vector<DriveFold>& folds,
-                                                    const std::vector<double>& correlation = {});
+                                                    const std::vector<double>& correlation = {}, const NoiseBias* bias = nullptr);
 
 /// Ratio of the variance of a mean to that of white noise with the same variance: 1 + 2 sum of the autocorrelations, with a
 /// Bartlett window over `lags` lags (Newey and West 1987).

@@ -31,11 +31,12 @@ struct NoiseBias {
 /// \param draws           pairs of noise, of at most some ten thousand samples of each log
 [[nodiscard]] NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                             const ProcessingOptions& processing, const std::vector<bool>& keep_reversals,
-                                            int threads = 0, std::uint64_t seed = 1, int draws = 2);
+                                            std::uint64_t seed = 1, int draws = 2);
 
-/// The fold with the excess taken off. What the data do not show beside the noise is left as it is (no negative information), and so
-/// is the remainder: what noise in the regressor adds to the residual is part of the uncertainty of the parameters.
-[[nodiscard]] DriveFold without_noise_bias(const BaseParameters& base, const DriveFold& fold, const Eigen::MatrixXd& information,
-                                           const Eigen::VectorXd& torque);
+/// Takes an excess off a triangular factor: R^T R - information and R^T d - torque, in the base parameters, become the new factor.
+/// A direction in which noise is most of what there is stays as it is: nothing can be known there.
+/// \param R, d  parameters x parameters, parameters; the factor of all drives together, weighted
+void take_off_noise(const BaseParameters& base, const Eigen::MatrixXd& information, const Eigen::VectorXd& torque,
+                    Eigen::MatrixXd& R, Eigen::VectorXd& d);
 
 }  // namespace deltadyn
