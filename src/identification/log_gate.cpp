@@ -23,12 +23,15 @@ using Eigen::Index;
 
 constexpr Index kPoints = 500;        // of all logs, for signs, orders and units
 constexpr double kLeastDelay = 0.05;  // of a sample: less is no matter
-constexpr double kSoundFit = 0.05;    // relative residual below which a delay is certain enough to be removed
+// Relative residual of a log without other faults. Above it the model lacks something (friction after reversals, load), and what it
+// lacks can pass for a delay: then the delay must take half of the residual away.
+constexpr double kCleanFit = 0.015;
+constexpr double kHalf = 0.5;
 constexpr double kWorthSaying = 0.9;  // of the residual, for a delay that stays
 constexpr double kSharp_s = 6e-4;     // a delay known no better is more likely another effect that bends the torque
-constexpr double kLongest_s = 0.036;  // near the end of the search
 constexpr double kWorthRemoving =
     0.98;  // of the residual: delays of single drives and lags must show in it, as noise can feign them
+constexpr double kLongest_s = 0.025;   // no recorder or drive is later; what looks so is slow friction or a spring
 constexpr double kOutOfReach = 0.01;   // share of poses
 constexpr double kMassesMean = 0.15;   // relative residual above which estimated masses are not compared with the prior's
 constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
@@ -141,7 +144,8 @@ class Gate {
     LogFinding f;
     f.value = judgement.as_given.residual;
     if (judgement.as_given.unreachable > kOutOfReach) {
-      f.level = FindingLevel::fault;
+      // What reads the rows refuses them with file and line; here is what is known beyond that.
+      f.level = FindingLevel::warning;
       f.key = "pose";
       f.value = judgement.as_given.unreachable;
       f.text = fmt::format(
@@ -182,7 +186,7 @@ class Gate {
     const bool simple = timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
     const double longest = std::max(timing.delay_s.cwiseAbs().maxCoeff(), timing.lag_s.cwiseAbs().maxCoeff());
     const bool sharp = longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
-    const bool sound = timing.rms_after < kSoundFit || timing.rms_after < 0.5 * timing.rms_before;
+    const bool sound = timing.rms_after < kCleanFit || timing.rms_after < kHalf * timing.rms_before;
     if (!sharp || (!simple && timing.rms_after > kWorthRemoving * timing.rms_before)) return;
     if (!sound) {
       tell_doubtful(timing);

@@ -13,7 +13,7 @@ struct ReportContext {
   std::vector<std::string> log_files;
   std::string parameter_file;  ///< prior of an identification, model of a validation; empty: nominal values of simple shapes
   std::string command_line;
-  std::vector<LogFinding> findings;  ///< of the check of the logs; they stand first
+  std::vector<LogFinding> findings = {};  ///< of the check of the logs; they stand first
 };
 
 }  // namespace deltadyn
