@@ -95,6 +95,8 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   (known.std.array() / known.rms_torque.array().max(1e-300)).maxCoeff(&worst);
   const double relative = known.worst_relative();
   Check check{"Torque on other motions", "", grade(relative, kWellKnownTorque, kKnownTorque), ""};
+  // What was recorded is known: the model serves there, and says where it does not.
+  if (check.verdict == Verdict::bad && evidence.on_logs.worst_relative() <= kWellKnownTorque) check.verdict = Verdict::caution;
   check.figure = fmt::format("± {} {} ({})", format_percent(1.96 * relative, 2), "at 95 %", drive_name(static_cast<int>(worst)));
   const std::string where = robot.description().parts.empty() ? "over the axis" : "over the whole workspace";
   if (check.verdict == Verdict::good) {
