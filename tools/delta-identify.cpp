@@ -61,7 +61,8 @@ class Identify {
         ->capture_default_str();
     app.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
     app.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
-    app.add_option("--rotor-inertia", rotor_inertia_, "drives with a rotor inertia of their own, e.g. 4 or 1,2,3 [1 for an axis]")
+    app.add_option("--rotor-inertia", rotor_inertia_,
+                   "drives with a rotor inertia of their own, e.g. 4 or 1,2,3 [1 for an axis that turns]")
         ->delimiter(',')
         ->allow_extra_args(false);  // else it takes the log behind it for a drive
     offset_flag_ = app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
@@ -171,8 +172,9 @@ class Identify {
     options.individual_limbs = individual_limbs_;
     options.tool = !without_tool_;
     options.rotor_inertia = rotor_inertia_;
-    // A drive on its test bench has its motor's reflected inertia and its amplifier's offset.
-    if (robot.type == Axis::kName && rotor_inertia_.empty()) options.rotor_inertia = {1};
+    // A drive on its test bench has its motor's reflected inertia (a carriage's mass is one with it) and its amplifier's offset.
+    if (robot.type == Axis::kName && robot.drive_kind == DriveKind::revolute && rotor_inertia_.empty())
+      options.rotor_inertia = {1};
     options.offset = offset_flag_->count() > 0 ? offset_ : robot.type == Axis::kName;
     return options;
   }

@@ -16,12 +16,11 @@ namespace {
 using Eigen::Index;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kReversalRatio = 3.0;   // above it, rows near reversals follow another law than the model's
-constexpr double kOtherThanNoise = 1.2;  // above it, Coulomb's law leaves something near reversals that bristles may explain
-constexpr Index kFewestRows = 10;        // to judge them by
-constexpr double kHuber = 1.345;         // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 1e-3;      // share of the information that is noise; less moves no figure
-constexpr double kNoiseMemory_s = 0.2;   // time over which residual correlation is looked for
+constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than the model's
+constexpr Index kFewestRows = 10;       // to judge them by
+constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
+constexpr double kFeltNoise = 1e-3;     // share of the information that is noise; less moves no figure
+constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -61,11 +60,6 @@ std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fol
 
 bool averages_periods(const std::vector<PreparedLog>& logs) {
   return std::any_of(logs.begin(), logs.end(), [](const PreparedLog& log) { return log.period_s.has_value(); });
-}
-
-bool friction_builds_up(const std::vector<DriveReport>& drives) {
-  return std::any_of(drives.begin(), drives.end(),
-                     [](const DriveReport& drive) { return drive.reversal_ratio > kOtherThanNoise; });
 }
 
 std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& keep) {
@@ -151,7 +145,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   DataFold fold = fold_all(robot, prepared, options.threads);
   std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);
   report(0.4);
-  if (options.processing.filter && options.reversals == Reversals::automatic && friction_builds_up(out.drives)) {
+  if (options.processing.filter && options.reversals == Reversals::automatic) {
     out.presliding = find_presliding(robot, out.base, logs, out.processing, options.threads);
     out.processing.presliding = displacements(out.presliding);
     if ((out.processing.presliding.array() > 0).any()) {

@@ -25,6 +25,8 @@ constexpr double kLargest =
     0.02;                  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
 constexpr double kClearGain = 25;  // of the squared residual in units of its noise: five standard deviations for one parameter
+constexpr double kForm =
+    0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
 constexpr double kMemory_s = 0.2;  // of the residual, as in identify()
 
 /// The middle part of a log: a long one is not needed whole.
@@ -222,7 +224,7 @@ class Search {
     // A parabola through the costs a tenth apart: one unit of cost is one standard deviation.
     const double bend = (cost(joint, 1.1 * out.displacement, target) + cost(joint, out.displacement / 1.1, target) - 2 * found) /
                         std::pow(std::log(1.1), 2);
-    out.std = bend > 0 ? out.displacement * std::sqrt(2 / bend) : out.displacement;
+    out.std = bend > 0 ? out.displacement * std::hypot(std::sqrt(2 / bend), kForm) : out.displacement;
     return out;
   }
 

@@ -16,9 +16,9 @@ using Eigen::Index;
 constexpr double kBandRatio = 1.26;   // a third of an octave
 constexpr double kSegment_s = 4;      // shows motion from half a hertz on
 constexpr double kClear = 30;         // times the noise: less is no news of the motion, or the hump of an interpolated record
-constexpr double kSameFloor = 3;      // quantisation noise of a slow motion is not quite white
+constexpr double kSameFloor = 1.5;    // quantisation noise of a slow motion is not white: beside the motion it is lower
 constexpr double kContent = 0.999;    // of the accelerations' power ...
-constexpr double kMargin = 3;         // ... and the band that holds it, this many times: friction has harmonics, too
+constexpr double kMargin = 2;         // ... and the band that holds it, this many times: friction has harmonics, too
 constexpr double kNoiseShare = 2e-5;  // of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
 constexpr double kLowestCutoff_hz = 5;
 constexpr double kLeastPeriods = 20;  // of the cut-off in a log: its ends are lost for 1.5 of them each

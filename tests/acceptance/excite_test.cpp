@@ -110,13 +110,14 @@ TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
   std::string light = lines[0] + "\n";
   for (std::size_t k = 2; k <= lines.size(); ++k) {
     const std::string& line = lines[k - 1];
+    if (line.find(',') == std::string::npos) continue;  // the last line is empty
     const auto name_end = line.find(','), value_end = line.find(',', name_end + 1);
     light += fmt::format("{},{:.9g}{}\n", line.substr(0, name_end), 0.7 * field(lines, k, 2), line.substr(value_end));
   }
   const std::string light_file = folder.write("light.csv", light);
   succeed(excite("mujoco_delta4.urdf") + kMainCase +
-              Words{"-o", folder.path("t.csv"), "--params", light_file, "--drive-torque-n-m", "40,40,40,4",
-                    "--starts", "1", "--time-limit-s", "60"});
+          Words{"-o", folder.path("t.csv"), "--params", light_file, "--drive-torque-n-m", "40,40,40,4", "--starts", "1",
+                "--time-limit-s", "60"});
   succeed({"delta-simulate", installed("robots/mujoco_delta4.urdf"), "--params", truth, "--trajectory", folder.path("t.csv"),
            "--encoder-bits", "19", "-o", folder.path("log.csv")});
   const Lines log = to_lines(folder.read("log.csv"));

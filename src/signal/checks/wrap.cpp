@@ -90,6 +90,16 @@ std::vector<int> turns_of(const Eigen::Ref<const Eigen::VectorXd>& x, const Jump
   return turns;
 }
 
+/// A torque that jumps where its drive turns back is friction: a counter runs over where the torque is largest.
+bool jumps_with_reversals(const Eigen::Ref<const Eigen::VectorXd>& position, const Jumps& jumps) {
+  constexpr Index kReach = 3;
+  const auto turns_back = std::count_if(jumps.rows.begin(), jumps.rows.end(), [&](Index row) {
+    const Index before = std::max<Index>(0, row - kReach), after = std::min<Index>(position.size() - 1, row + kReach);
+    return (position(row) - position(before)) * (position(after) - position(row)) <= 0;
+  });
+  return 2 * turns_back >= static_cast<std::ptrdiff_t>(jumps.rows.size());
+}
+
 }  // namespace
 
 void unwrap(CheckRoom& room) {
@@ -102,7 +112,7 @@ void unwrap(CheckRoom& room) {
     auto jumps = find_jumps(x, quality, kShareOfRange * quality.range, turns_round);
     // A whole turn is one also where the drive itself turns further.
     if (!jumps && turns_round) jumps = find_jumps(x, quality, kShareOfTurn * 2.0 * std::numbers::pi, turns_round);
-    if (!jumps) continue;
+    if (!jumps || (!channel.position && jumps_with_reversals(room.log.q.col(channel.drive), *jumps))) continue;
     // A spike there and back also jumps twice; but it is over after a few samples, and few samples are no evidence of a counter.
     const std::vector<int> turns = turns_of(x, *jumps);
     const auto moved = std::count_if(turns.begin(), turns.end(), [](int turn) { return turn != 0; });
