@@ -114,6 +114,7 @@ ProcessingOptions diagnosis_processing(const std::vector<Log>& logs, ProcessingO
 /// Takes a row off either end, so that a thinned motion has a sample to spare.
 PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions& options) {
   PreparedLog out = prepare_log(robot, log, options);
+  out.rest.resize(0, 0);  // leave_rest_out() has a measure of its own for all logs together
   if (out.rows > 10) {
     out.first += out.stride;
     out.rows -= 2;

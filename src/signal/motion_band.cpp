@@ -17,8 +17,8 @@ constexpr double kBandRatio = 1.26;   // a third of an octave
 constexpr double kSegment_s = 4;      // shows motion from half a hertz on
 constexpr double kClear = 30;         // times the noise: less is no news of the motion, or the hump of an interpolated record
 constexpr double kSameFloor = 1.5;    // quantisation noise of a slow motion is not white: beside the motion it is lower
-constexpr double kContent = 0.999;    // of the accelerations' power ...
-constexpr double kMargin = 2;         // ... and the band that holds it, this many times: friction has harmonics, too
+constexpr double kContent = 0.999;    // of the accelerations' power: what lies above moves no figure
+constexpr double kSharp_hz = 20;      // below it the low pass smears a reversal over more than a tenth of a second
 constexpr double kNoiseShare = 2e-5;  // of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
 constexpr double kLowestCutoff_hz = 5;
 constexpr double kLeastPeriods = 20;  // of the cut-off in a log: its ends are lost for 1.5 of them each
@@ -201,7 +201,7 @@ CutoffChoice choose_cutoff(const std::vector<Log>& logs) {
                 logs.front().file, "record at 100 Hz or more for some seconds, or give --cutoff-hz");
   }
   choice.noise_limit_hz = noise_limit_hz(logs, choice.bands, lowest, highest);
-  choice.cutoff_hz = std::clamp(std::min(kMargin * choice.band_hz, choice.noise_limit_hz), lowest, highest);
+  choice.cutoff_hz = std::clamp(std::min(std::max(choice.band_hz, kSharp_hz), choice.noise_limit_hz), lowest, highest);
   return choice;
 }
 

@@ -112,7 +112,7 @@ TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
     const std::string& line = lines[k - 1];
     if (line.find(',') == std::string::npos) continue;  // the last line is empty
     const auto name_end = line.find(','), value_end = line.find(',', name_end + 1);
-    light += fmt::format("{},{:.9g}{}\n", line.substr(0, name_end), 0.7 * field(lines, k, 2), line.substr(value_end));
+    light += fmt::format("{},{:.9g}{}\n", line.substr(0, name_end), 0.7 * field(lines, k, 1), line.substr(value_end));
   }
   const std::string light_file = folder.write("light.csv", light);
   succeed(excite("mujoco_delta4.urdf") + kMainCase +

@@ -33,8 +33,8 @@ struct CutoffChoice {
   std::vector<std::vector<MotionBand>> bands;  ///< logs x drives
 };
 
-/// The lower one of a few times band_hz and noise_limit_hz, within what rate and length of the logs allow: below the band motion would be
-/// thrown away, above it the filter lets nothing through but noise, which as noise in the regressor pulls the parameters down.
+/// band_hz, or 20 Hz where that is higher, so that reversals stay short; at most noise_limit_hz, beyond which the filter lets nothing
+/// through but noise, which in the regressor pulls the parameters down; within what rate and length of the logs allow.
 /// Throws deltadyn::Error (bad_input) if the logs are too short or sampled too slowly for any cut-off.
 [[nodiscard]] CutoffChoice choose_cutoff(const std::vector<Log>& logs);
 
