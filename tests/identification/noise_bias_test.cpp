@@ -36,15 +36,15 @@ Estimates estimates(const AxisLog& axis, double cutoff_hz) {
   return out;
 }
 
-// At cut-offs where an encoder of 10 bits swamps the accelerations, the inertia stays what it is.
+// At cut-offs where an encoder of 12 bits is felt in the accelerations, the inertia stays what it is.
 TEST(NoiseBias, TakesTheAttenuationOut) {
   AxisLog axis;
-  axis.encoder_bits = 10;
+  axis.encoder_bits = 12;
   axis.duration_s = 30;
-  axis.base_hz = 0.61;
-  for (const double cutoff_hz : {25.0, 40.0}) {
+  axis.base_hz = 1.03;  // some counts a sample: the quantisation is white
+  for (const double cutoff_hz : {70.0, 90.0}) {
     double plain = 0, compensated = 0;
-    constexpr int kLogs = 8;
+    constexpr int kLogs = 4;
     for (int seed = 1; seed <= kLogs; ++seed) {
       axis.seed = static_cast<std::uint64_t>(seed);
       const Estimates found = estimates(axis, cutoff_hz);
