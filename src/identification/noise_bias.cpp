@@ -7,6 +7,8 @@
 
 #include "deltadyn/signal/motion_band.hpp"
 
+#include "log_middle.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -19,19 +21,6 @@ constexpr Index kRowsPerBlock = 256;  // as in fold_log
 constexpr double kMostNoise = 0.5;    // of a direction's information: beyond, what would be left is known worse than nothing
 constexpr double kShown = 1e-3;       // of the largest eigenvalue: weaker directions are for other drives to show
 constexpr double kNoise = 1e-10;      // of the largest eigenvalue: rounding
-
-/// The middle of a log that is longer than needed, and how many times it is longer.
-std::pair<Log, double> middle_of(const Log& log) {
-  if (log.samples() <= kSamples) return {log, 1.0};
-  Log part;
-  const Index first = (log.samples() - kSamples) / 2;
-  part.file = log.file;
-  part.t_s = log.t_s.segment(first, kSamples);
-  part.q = log.q.middleRows(first, kSamples);
-  part.tau = log.tau.middleRows(first, kSamples);
-  if (!log.filled.empty()) part.filled.assign(log.filled.begin() + first, log.filled.begin() + first + kSamples);
-  return {std::move(part), static_cast<double>(log.samples()) / static_cast<double>(kSamples)};
-}
 
 /// Y^T Y and Y^T tau of the used rows in the base parameters, rows chosen by `use_of` (that of the log without added noise).
 struct Normal {
@@ -94,7 +83,8 @@ NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, co
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   for (const Log& log : logs) {
-    auto [part, times] = middle_of(log);
+    const Log part = middle_of(log, kSamples);
+    const double times = static_cast<double>(log.samples()) / static_cast<double>(part.samples());
     const VectorXd std = noise_std(part);
     const PreparedLog plain = prepare_log(robot, part, options);
     const Normal without = normal_of(robot, base, plain, keep_reversals);

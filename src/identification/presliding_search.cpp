@@ -11,6 +11,8 @@
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/prediction.hpp"
 
+#include "log_middle.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -29,19 +31,6 @@ constexpr double kForm =
     0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
 constexpr double kMemory_s = 0.2;  // of the residual, as in identify()
 
-/// The middle part of a log: a long one is not needed whole.
-Log shortened(const Log& log) {
-  if (log.samples() <= kSamples) return log;
-  Log part;
-  const Index first = (log.samples() - kSamples) / 2;
-  part.file = log.file;
-  part.t_s = log.t_s.segment(first, kSamples);
-  part.q = log.q.middleRows(first, kSamples);
-  part.tau = log.tau.middleRows(first, kSamples);
-  if (!log.filled.empty()) part.filled.assign(log.filled.begin() + first, log.filled.begin() + first + kSamples);
-  return part;
-}
-
 /// One log with what the search needs of it.
 struct SearchLog {
   PreparedLog prepared;             ///< with the presliding of the present pass
@@ -58,7 +47,7 @@ class Search {
       : robot_(robot), base_(base), processing_(processing), threads_(threads), coulomb_(coulomb_columns(robot)) {
     processing_.presliding.setZero(robot.friction_joints());
     processing_.periods = Periods::ignore;  // the bristles' memory runs along the log as it was
-    for (const Log& log : logs) logs_.push_back(shortened(log));
+    for (const Log& log : logs) logs_.push_back(middle_of(log, kSamples));
     range_.setZero(robot.friction_joints());
     noise_.setOnes(robot.drives());
   }
