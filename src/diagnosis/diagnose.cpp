@@ -187,9 +187,9 @@ bool settled(const detail::SearchResult& last, const detail::SearchResult& found
 
 /// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
 /// them come out small, those of the search stay.
-void settle_amplitudes(const Robot& robot, const std::vector<Log>& logs, const VectorXd& p, const ProcessingOptions& processing,
+void settle_amplitudes(const Robot& robot, const std::vector<Log>& logs, const VectorXd& p, const Identification& used,
                        Diagnosis& out) {
-  const std::vector<Effect> settled = estimate_amplitudes(robot, logs, p, out.effects, processing);
+  const std::vector<Effect> settled = estimate_amplitudes(robot, logs, p, out.effects, used);
   for (std::size_t k = 0; k < settled.size(); ++k) {
     Effect& effect = out.effects[k];
     const VectorXd change = settled[k].amplitude - effect.amplitude;
@@ -325,9 +325,13 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& all_logs, const L
       identification.processing.cutoff_hz = out.cutoff_hz;
       identification.choose_cutoff = false;
       identification.threads = options.threads;
-      settle_amplitudes(robot, all_logs, p_fit, identification.processing, out);
-      out.improved =
-          identify(robot, without_effects(robot, all_logs, p_fit, out.effects, out.cutoff_hz), p, p_std, identification);
+      const auto improve = [&] {
+        const double motion_hz = identification.processing.motion_over_pass * out.cutoff_hz;
+        out.improved = identify(robot, without_effects(robot, all_logs, p_fit, out.effects, motion_hz), p, p_std, identification);
+      };
+      improve();
+      settle_amplitudes(robot, all_logs, p_fit, *out.improved, out);
+      improve();
     } catch (const Error& error) {
       out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
     }

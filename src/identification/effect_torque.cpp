@@ -62,7 +62,7 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
 }
 
 std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Log>& logs, const VectorXd& p,
-                                        const std::vector<Effect>& effects, const ProcessingOptions& processing) {
+                                        const std::vector<Effect>& effects, const Identification& used) {
   const EffectModel model(robot);
   const BaseParameters base = find_base_parameters(robot);
   const Index b = base.count(), e = amplitude_count(effects), n = robot.drives();
@@ -78,19 +78,23 @@ std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Lo
   std::vector<VectorXd> y(static_cast<std::size_t>(n));
   int number = 0;
   for (const Log& log : logs) {
-    const PreparedLog prepared = motion_of(robot, log, processing);
+    const PreparedLog prepared = motion_of(robot, log, used.processing);
     RowBlock block;
     read_rows(robot, prepared, 0, prepared.rows, block);
     const std::vector<MatrixXd> extra = effect_rows(model, prepared, p, effects, ++number);
     for (Index j = 0; j < n; ++j) {
       const auto drive = static_cast<std::size_t>(j);
-      const Index count = (block.use.col(j) == RowUse::regular).count();
+      const auto counts = [&](Index k) {
+        return block.use(k, j) == RowUse::regular || (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
+      };
+      Index count = 0;
+      for (Index k = 0; k < prepared.rows; ++k) count += counts(k) ? 1 : 0;
       const Index first = X[drive].rows();
       X[drive].conservativeResize(first + count, b + e);
       y[drive].conservativeResize(first + count);
       Index row = first;
       for (Index k = 0; k < prepared.rows; ++k) {
-        if (block.use(k, j) != RowUse::regular) continue;
+        if (!counts(k)) continue;
         for (Index c = 0; c < b; ++c) X[drive](row, c) = block.Y[drive](k, base.independent[static_cast<std::size_t>(c)]);
         X[drive].row(row).tail(e) = extra[drive].row(k).cwiseProduct((1 - fixed.array()).matrix().transpose());
         y[drive](row) = block.tau(k, j) - extra[drive].row(k).dot(fixed.cwiseProduct(start));
@@ -152,7 +156,7 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
   // With what the file says first, so that the model's torque is known for the effects that follow it.
   Identification result = identify(robot, without_effects(robot, logs, prior, effects, cutoff_hz), prior, prior_std, settled);
   for (int pass = 0; pass < 2; ++pass) {
-    effects = estimate_amplitudes(robot, logs, result.fit.p, effects, settled.processing);
+    effects = estimate_amplitudes(robot, logs, result.fit.p, effects, result);
     result = identify(robot, without_effects(robot, logs, result.fit.p, effects, cutoff_hz), prior, prior_std, settled);
   }
   return result;

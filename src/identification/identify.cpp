@@ -159,6 +159,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   report(0.9);
   out.samples = fold.samples;
 
+  out.keep_reversals = keep;
   std::vector<DriveFold> folds = select(fold, keep);
   const std::vector<DriveFold> as_recorded = folds;
   std::optional<NoiseBias> bias;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/faulty_logs.hpp"
+#include "identification/pick_and_place_log.hpp"
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -90,6 +91,39 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
         const GateResult result = examine(*robot, recorded(*robot, how), prior);
         for (const LogFinding& f : result.findings) {
           EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
+        }
+      }
+    }
+  }
+}
+
+// Stops, a log that begins at rest, and high rates are no fault, alone and beside a planned motion.
+TEST_P(LogGate, LeavesPickAndPlaceAndStandstillAlone) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  const bool turns = robot->description().drive_kind == DriveKind::revolute;
+  std::uint64_t seed = 40;
+  for (const double rate : {250.0, 1000.0, 8000.0}) {
+    for (const double noise : {0.03, 0.5}) {
+      for (const double first_stop_s : {0.0, 2.5}) {
+        SyntheticOptions synthetic;
+        synthetic.rate_hz = rate;
+        synthetic.torque_noise = noise;
+        synthetic.duration_s = 8;
+        synthetic.seed = ++seed;
+        synthetic.encoder_step = (turns ? 6.283 : 0.5) / std::exp2(seed % 2 == 0 ? 15 : 20);
+        PickAndPlace work;
+        work.first_stop_s = first_stop_s;
+        std::vector<Log> logs = {pick_and_place_log(*robot, delta_truth(*robot), synthetic, work)};
+        if (seed % 2 == 0) {
+          Recording how;
+          how.rate_hz = rate;
+          how.noise = noise;
+          how.seed = seed;
+          logs.push_back(recorded(*robot, how).front());
+        }
+        const GateResult result = examine(*robot, logs);
+        for (const LogFinding& f : result.findings) {
+          EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", seed " << seed << ": " << f.text;
         }
       }
     }

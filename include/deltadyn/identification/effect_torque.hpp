@@ -23,9 +23,10 @@ namespace deltadyn {
 
 /// Amplitudes (and their standard deviations) by weighted least squares together with all base parameters. Shapes stay; so do the
 /// amplitudes of effects whose shape is their amplitude.
+/// \param used  the parameters p were found with its processing and its rows: the amplitudes are, too, so that both belong together
 /// \returns the effects with their new amplitudes
 [[nodiscard]] std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
-                                                      const std::vector<Effect>& effects, const ProcessingOptions& processing);
+                                                      const std::vector<Effect>& effects, const Identification& used);
 
 /// identify() for a model with effects: amplitudes first, together with the base parameters, then the consistent parameters of what is
 /// left, twice, as some effects need the model's torque. `effects` gets the new amplitudes.
