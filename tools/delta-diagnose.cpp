@@ -52,6 +52,7 @@ class Diagnose {
     app.add_option("--null-runs", options_.null_runs, "simulated clean logs")->capture_default_str();
     app.add_flag("--list-effects", list_, "print the catalogue of effects and end");
     gate_.add_to(app);
+    gate_.leave_delays();  // a delay is one of the effects that the diagnosis weighs
     processing_.add_to(app);
     run.on(app, [this, &run] { return execute(run); });
   }
@@ -88,23 +89,17 @@ class Diagnose {
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     const std::vector<Effect> known = effect_file_.empty() ? std::vector<Effect>() : read_effects(effect_file_, description);
-    // A delay stays: it is one of the effects that the diagnosis weighs.
-    const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
-                                      !processing_.options().filter, run.summary, true);
-    const std::vector<LogFinding> findings = tools::all_findings(gate);
-    if (gate.stop()) {
-      tools::LogGate::refuse(gate, "delta-diagnose");
-      return ExitCode::not_trusted;
-    }
+    const GateResult gate = check(*robot, log_files_, run);
+    const ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, tools::all_findings(gate)};
+    if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-diagnose");
     const std::vector<Log>& logs = gate.logs;
     std::optional<Log> holdout;
     if (!holdout_file_.empty()) {
       // The proof rests on one stretch of motion; of a log with gaps, the longest.
-      const GateResult proof = gate_.run(*robot, processing_.read_logs({holdout_file_}, description), {}, {}, false,
-                                         !processing_.options().filter, run.summary, true);
+      const GateResult proof = check(*robot, {holdout_file_}, run);
       if (proof.stop()) {
-        tools::LogGate::refuse(proof, "delta-diagnose");
-        return ExitCode::not_trusted;
+        const ReportContext of_proof{robot_file_, {holdout_file_}, parameter_file_, command_line_, tools::all_findings(proof)};
+        return tools::LogGate::refuse(*robot, proof, of_proof, report_file_, "delta-diagnose");
       }
       const std::vector<Log>& parts = proof.logs;
       holdout =
@@ -124,17 +119,15 @@ class Diagnose {
     if (!effects_out_.empty()) write_effects(effects_out_, result.effects, description);
     if (!params_out_.empty()) write_improved(*robot, table, result);
     if (!plan_file_.empty()) plan_next(*robot, result, match.value, run);
-    if (!report_file_.empty()) {
-      ReportContext context;
-      context.robot_file = robot_file_;
-      context.log_files = log_files_;
-      context.parameter_file = parameter_file_;
-      context.command_line = command_line_;
-      context.findings = findings;
-      write_file(report_file_, diagnosis_report(*robot, result, context));
-    }
+    if (!report_file_.empty()) write_file(report_file_, diagnosis_report(*robot, result, context));
     tell(result, description, run);
     return ExitCode::done;
+  }
+
+  /// The model under test is no prior of the check.
+  GateResult check(const Robot& robot, const std::vector<std::string>& files, ToolRun& run) const {
+    return gate_.run(robot, processing_.read_logs(files, robot.description()), {}, {}, false, !processing_.options().filter,
+                     run.summary);
   }
 
   /// Trust in the parameters, as delta-identify has it in its prior.

@@ -21,6 +21,7 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "layout_flags.hpp"
 #include "log_gate.hpp"
 #include "prior_reading.hpp"
 #include "processing_flags.hpp"
@@ -59,13 +60,7 @@ class Identify {
         ->capture_default_str();
     app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")
         ->capture_default_str();
-    app.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
-    app.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
-    app.add_option("--rotor-inertia", rotor_inertia_,
-                   "drives with a rotor inertia of their own, e.g. 4 or 1,2,3 [1 for an axis that turns]")
-        ->delimiter(',')
-        ->allow_extra_args(false);  // else it takes the log behind it for a drive
-    offset_flag_ = app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
+    layout_.add_to(app, "1 for an axis that turns");
     app.add_option("--reversals", reversals_, "rows near velocity reversals: auto leaves them out if they fit three times worse")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
         ->capture_default_str();
@@ -90,7 +85,8 @@ class Identify {
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
                                       !prior_file_.empty(), !options.processing.filter, run.summary);
     const std::vector<LogFinding> findings = tools::all_findings(gate);
-    if (gate.stop()) return refuse(*robot, gate, findings);
+    const ReportContext context{robot_file_, log_files_, prior_file_, command_line_, findings};
+    if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-identify");
     const std::vector<Log>& logs = gate.logs;
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
@@ -110,29 +106,10 @@ class Identify {
         result.fit.p, result.processing);
     Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     weigh_findings(findings, assessment);
-    if (!report_file_.empty()) {
-      write_file(report_file_, identification_report(*robot, result, training, survey, report_context(findings)));
-    }
+    if (!report_file_.empty()) write_file(report_file_, identification_report(*robot, result, training, survey, context));
     const ExitCode code = tell(*robot, result, survey, assessment, run);
     tools::point_to_diagnosis(assessment, findings, robot_file_, output_, log_files_, "");
     return code;
-  }
-
-  [[nodiscard]] ReportContext report_context(const std::vector<LogFinding>& findings) const {
-    ReportContext context;
-    context.robot_file = robot_file_;
-    context.log_files = log_files_;
-    context.parameter_file = prior_file_;
-    context.command_line = command_line_;
-    context.findings = findings;
-    return context;
-  }
-
-  /// Logs with such a fault hold nothing that a fit could make sense of: the report, if one was asked for, is that of the check.
-  ExitCode refuse(const Robot& robot, const GateResult& gate, const std::vector<LogFinding>& findings) const {
-    if (!report_file_.empty()) write_file(report_file_, log_report(robot, gate.logs, report_context(findings)));
-    tools::LogGate::refuse(gate, "delta-identify");
-    return ExitCode::not_trusted;
   }
 
   /// The fit knows that a prior is impossible, but not the file that it came from.
@@ -167,15 +144,11 @@ class Identify {
     }
   }
 
-  ParameterOptions parameter_options(const RobotDescription& robot) const {
-    ParameterOptions options;
-    options.individual_limbs = individual_limbs_;
-    options.tool = !without_tool_;
-    options.rotor_inertia = rotor_inertia_;
-    // A drive on its test bench has its motor's reflected inertia (a carriage's mass is one with it) and its amplifier's offset.
-    if (robot.type == Axis::kName && robot.drive_kind == DriveKind::revolute && rotor_inertia_.empty())
+  [[nodiscard]] ParameterOptions parameter_options(const RobotDescription& robot) const {
+    ParameterOptions options = layout_.options(robot);
+    // A drive on its test bench has its motor's reflected inertia (a carriage's mass is one with it).
+    if (robot.type == Axis::kName && robot.drive_kind == DriveKind::revolute && options.rotor_inertia.empty())
       options.rotor_inertia = {1};
-    options.offset = offset_flag_->count() > 0 ? offset_ : robot.type == Axis::kName;
     return options;
   }
 
@@ -314,10 +287,8 @@ class Identify {
   std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_, effect_file_, effects_out_;
   std::vector<std::string> log_files_;
   std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto";
-  bool individual_limbs_ = false, without_tool_ = false, robust_ = false;
-  bool offset_ = false;
-  CLI::Option* offset_flag_ = nullptr;
-  std::vector<int> rotor_inertia_;
+  bool robust_ = false;
+  tools::LayoutFlags layout_;
   tools::ProcessingFlags processing_;
   tools::LogGate gate_;
 };

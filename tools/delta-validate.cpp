@@ -65,11 +65,8 @@ class Validate {
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
                                       !processing_.options().filter, run.summary);
     const std::vector<LogFinding> findings = tools::all_findings(gate);
-    if (gate.stop()) {
-      if (!report_file_.empty()) write_file(report_file_, log_report(*robot, gate.logs, report_context(findings)));
-      tools::LogGate::refuse(gate, "delta-validate");
-      return ExitCode::not_trusted;
-    }
+    const ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, findings};
+    if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-validate");
     const std::vector<Log>& logs = gate.logs;
     ProcessingOptions options = processing_.options();
     if (options.filter && processing_.automatic_cutoff()) {
@@ -86,9 +83,7 @@ class Validate {
                  match.value, options);
     if (!effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, logs, result);
-    if (!report_file_.empty()) {
-      write_file(report_file_, validation_report(*robot, result, match.value, report_context(findings)));
-    }
+    if (!report_file_.empty()) write_file(report_file_, validation_report(*robot, result, match.value, context));
     Assessment assessment = assess_validation(*robot, result);
     weigh_findings(findings, assessment);
     tell(description, result, run);
@@ -98,16 +93,6 @@ class Validate {
     tools::point_to_diagnosis(assessment, findings, robot_file_, parameter_file_, {"TRAINING_LOGS.csv"}, log_files_.front());
     run.summary.add("structure_left", assessment.structure ? "yes" : "no");
     return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
-  }
-
-  [[nodiscard]] ReportContext report_context(const std::vector<LogFinding>& findings) const {
-    ReportContext context;
-    context.robot_file = robot_file_;
-    context.log_files = log_files_;
-    context.parameter_file = parameter_file_;
-    context.command_line = command_line_;
-    context.findings = findings;
-    return context;
   }
 
   /// The effects' torque was taken off the measured one for the residual: give it back to both, so that the tables show the torque as

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/summary.hpp"
 #include "deltadyn/report/log_report.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -36,14 +37,15 @@ inline const char* level_word(FindingLevel level) {
   return "";
 }
 
-/// Those that the reader's notes have not said already.
-inline std::vector<LogFinding> without_notes(const GateResult& gate) {
+/// Those that the terminal tells: of the reader's the ones that have words of their own in its notes (another drive's finding may
+/// share them), each sentence once, and all of the gate's.
+inline std::vector<LogFinding> findings_to_tell(const GateResult& gate) {
   std::vector<LogFinding> out;
   for (const Log& log : gate.logs) {
     for (const LogFinding& f : log.findings) {
-      const bool said = std::any_of(log.notes.begin(), log.notes.end(),
-                                    [&](const std::string& note) { return note.find(f.text) != std::string::npos; });
-      if (!said) out.push_back(f);
+      const bool noted = std::find(log.notes.begin(), log.notes.end(), f.text) != log.notes.end();
+      const bool told = std::any_of(out.begin(), out.end(), [&](const LogFinding& one) { return one.text == f.text; });
+      if (f.level == FindingLevel::fine || (noted && !told)) out.push_back(f);
     }
   }
   out.insert(out.end(), gate.findings.begin(), gate.findings.end());
@@ -63,7 +65,8 @@ inline void print_findings(const std::vector<LogFinding>& findings, bool with_fi
       if (f.level != level) continue;
       const bool bad = level == FindingLevel::fault || level == FindingLevel::warning;
       std::FILE* to = bad ? stderr : stdout;
-      fmt::print(to, "check: {}: {}{}\n", level_word(level), where_of(f), f.text);
+      const std::string word = level == FindingLevel::fine ? "" : std::string(level_word(level)) + ": ";
+      fmt::print(to, "check: {}{}{}\n", word, where_of(f), f.text);
       if (bad && !f.mend.empty()) fmt::print(to, "  mend: {}\n", f.mend);
     }
   }
@@ -98,27 +101,34 @@ class LogGate {
     app.add_flag("--keep-delay", keep_delay_, "leave a delay between torque and position in the logs where one is found");
   }
 
+  /// Leaves delays in place whatever the flag says: the tool weighs them itself.
+  void leave_delays() { keep_delay_ = true; }
+
   /// Checks and mends. Prints what was found, and adds it to the summary.
-  /// \param leave_delay  the tool weighs delays itself
+  /// \param with_fine  print what is in order, too
   GateResult run(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
-                 bool prior_given, bool given_derivatives, Summary& summary, bool leave_delay = false) const {
+                 bool prior_given, bool given_derivatives, Summary& summary, bool with_fine = false) const {
     GateOptions options;
-    options.keep_delay = keep_delay_ || leave_delay;
+    options.keep_delay = keep_delay_;
     options.given_derivatives = given_derivatives;
     options.prior_given = prior_given;
     GateResult result = examine_logs(robot, std::move(logs), prior, prior_std, options);
-    print_findings(without_notes(result), false);
+    print_findings(findings_to_tell(result), with_fine);
     summarise_findings(all_findings(result), summary);
     return result;
   }
 
-  /// Says that nothing is made of logs with such a fault.
-  static void refuse(const GateResult& gate, const char* tool) {
+  /// Logs with such a fault hold nothing that could be made sense of: says so. The report, if one was asked for, is that of the
+  /// check.
+  static ExitCode refuse(const Robot& robot, const GateResult& gate, const ReportContext& context, const std::string& report_file,
+                         const char* tool) {
+    if (!report_file.empty()) write_file(report_file, log_report(robot, gate.logs, context));
     for (const LogFinding& f : gate.findings) {
       if (f.level != FindingLevel::fault) continue;
       fmt::print(stderr, "{}: not to be trusted: {}. Nothing was computed from these logs.\n", tool, f.text);
-      return;
+      break;
     }
+    return ExitCode::not_trusted;
   }
 
  private:

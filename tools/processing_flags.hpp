@@ -56,7 +56,8 @@ class ProcessingFlags {
   }
   [[nodiscard]] bool automatic_cutoff() const { return cutoff_ == "auto"; }
 
-  /// Reads the logs and prints what the reader had to say. A log with gaps comes in parts (Log::part).
+  /// Reads the logs and prints what the reader had to say besides its findings, which LogGate tells. A log with gaps comes in parts
+  /// (Log::part).
   [[nodiscard]] std::vector<Log> read_logs(const std::vector<std::string>& paths, const RobotDescription& robot) const {
     LogReadOptions options;
     options.need_derivatives = no_filter_;
@@ -67,7 +68,11 @@ class ProcessingFlags {
     for (const std::string& path : paths) {
       for (Log& part : read_log_parts(path, robot, options)) {
         if (!no_filter_ && !automatic_cutoff()) refuse_cutoff_beyond(0.4 / part.sample_time_s(), path);
-        for (const std::string& note : part.notes) fmt::print("note: {}\n", note);
+        for (const std::string& note : part.notes) {
+          const bool finding =
+              std::any_of(part.findings.begin(), part.findings.end(), [&](const LogFinding& f) { return f.text == note; });
+          if (!finding) fmt::print("note: {}\n", note);
+        }
         logs.push_back(std::move(part));
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <utility>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
@@ -35,13 +36,7 @@ void require_plausible(const MotionLimits& limits, const RobotDescription& robot
     if (!std::isinf(value)) require(rule, value, what, "limits", ExitCode::usage);
   };
   for (int i = 0; i < robot.drives(); ++i) {
-    DriveLimits drive;
-    drive.lower = limits.q_lower(i);
-    drive.upper = limits.q_upper(i);
-    drive.velocity = limits.qd(i);
-    drive.acceleration = limits.qdd(i);
-    drive.effort = limits.tau(i);
-    require_limits(robot, i, drive, "limits", ExitCode::usage);
+    require_limits(robot, i, limits.of_drive(i), "limits", ExitCode::usage);
     if (robot.parts.empty()) continue;  // the coordinate is the drive itself
     const TaskColumns& column = columns[static_cast<std::size_t>(i)];
     for (const double end : {limits.z_lower(i), limits.z_upper(i)})
@@ -71,6 +66,16 @@ MotionLimits::MotionLimits(const RobotDescription& robot) {
     qdd(i) = limits.acceleration;
     tau(i) = limits.effort;
   }
+}
+
+DriveLimits MotionLimits::of_drive(int drive) const {
+  DriveLimits limits;
+  limits.lower = q_lower(drive);
+  limits.upper = q_upper(drive);
+  limits.velocity = qd(drive);
+  limits.acceleration = qdd(drive);
+  limits.effort = tau(drive);
+  return limits;
 }
 
 MotionLimits MotionLimits::slowed(double share) const {
@@ -140,6 +145,15 @@ void MotionLimits::validate(const RobotDescription& robot) const {
                     "limits", "move the workspace or widen the range", ExitCode::usage);
     }
   }
+}
+
+std::vector<std::string> MotionLimits::beyond_file(const RobotDescription& robot) const {
+  std::vector<std::string> told;
+  for (int i = 0; i < robot.drives(); ++i) {
+    std::string beyond = plausibility::compare_limits(robot, i, of_drive(i), "limits");
+    if (!beyond.empty()) told.push_back(std::move(beyond));
+  }
+  return told;
 }
 
 std::vector<Limit> MotionLimits::list(const RobotDescription& robot) const {

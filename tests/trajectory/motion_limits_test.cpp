@@ -73,6 +73,19 @@ TEST(MotionLimits, SlowedLimitsAreThoseOfTheSameMotionsInMoreTime) {
   EXPECT_DOUBLE_EQ(slow.q_upper(1), 1.6);
 }
 
+TEST(MotionLimits, WhatExceedsTheRobotFileIsToldAndFarMoreIsRefused) {
+  RobotDescription robot = testing_support::delta_description("delta4");
+  for (DriveLimits& limits : robot.limits) limits.velocity = 6;
+  MotionLimits limits = limits_of(robot);
+  EXPECT_TRUE(limits.beyond_file(robot).empty());
+  limits.qd(1) = 7;
+  ASSERT_EQ(limits.beyond_file(robot).size(), 1U);
+  EXPECT_THAT(limits.beyond_file(robot).front(),
+              HasSubstr("drive 2: the velocity limit asked for, 7 rad/s, is beyond the 6 rad/s"));
+  limits.qd(1) = 60;
+  EXPECT_THROW((void)limits.beyond_file(robot), Error);
+}
+
 TEST(MotionLimits, NamesWhatContradicts) {
   const RobotDescription robot = testing_support::delta_description("delta4");
   EXPECT_EQ(message_of(limits_of(robot), robot), "no error");

@@ -52,18 +52,9 @@ class Check {
     const auto robot = make_robot(description, layout);
     const Prior prior = read_prior(*robot, prior_file_);
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
-                                      !prior_file_.empty(), !processing_.options().filter, run.summary);
-    const std::vector<LogFinding> findings = all_findings(gate);
-    for (const LogFinding& f : findings) {
-      if (f.level == FindingLevel::fine) fmt::print("check: {}{}\n", where_of(f), f.text);
-    }
+                                      !prior_file_.empty(), !processing_.options().filter, run.summary, true);
     if (!report_file_.empty()) {
-      ReportContext context;
-      context.robot_file = robot_file_;
-      context.log_files = log_files_;
-      context.parameter_file = prior_file_;
-      context.command_line = command_line_;
-      context.findings = findings;
+      const ReportContext context{robot_file_, log_files_, prior_file_, command_line_, all_findings(gate)};
       write_file(report_file_, log_report(*robot, gate.logs, context));
       fmt::print("wrote {}\n", report_file_);
     }

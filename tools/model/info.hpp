@@ -17,6 +17,7 @@
 #include "deltadyn/runtime/reach.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "layout_flags.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -27,8 +28,7 @@ class Info {
     CLI::App& c = *app.add_subcommand("info", "Print geometry, workspace, drives, parameter and base-parameter counts.");
     set_example(c, "delta-model info robot.urdf --plot workspace.png --summary info.csv");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    c.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
-    c.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
+    layout_.add_bodies(c);
     c.add_option("--plot", plot_, "picture of the workspace (PNG)")->type_name("FILE");
     run.on(c, [this, &run] { execute(run); });
   }
@@ -37,10 +37,7 @@ class Info {
   void execute(ToolRun& run) {
     run.check_files({plot_}, {robot_file_});
     const RobotDescription description = read_robot_file(robot_file_);
-    ParameterOptions options;
-    options.tool = !without_tool_;
-    options.individual_limbs = individual_limbs_;
-    const auto robot = make_robot(description, options);
+    const auto robot = make_robot(description, layout_.options(description));
     fmt::print("{}: {} ({})\n", robot_file_, description.name, description.type);
     geometry(description, run.summary);
     drives(description, run.summary);
@@ -193,7 +190,7 @@ class Info {
   }
 
   std::string robot_file_, plot_;
-  bool without_tool_ = false, individual_limbs_ = false;
+  LayoutFlags layout_;
 };
 
 }  // namespace deltadyn::tools

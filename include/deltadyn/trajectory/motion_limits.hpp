@@ -35,11 +35,16 @@ struct MotionLimits {
 
   /// Those of the robot file; nothing in task space.
   explicit MotionLimits(const RobotDescription& robot);
+  /// Those of one drive, as a robot file has them.
+  [[nodiscard]] DriveLimits of_drive(int drive) const;
   /// All rates times `share`, all accelerations times its square: the same motions, slower.
   [[nodiscard]] MotionLimits slowed(double share) const;
   /// Throws deltadyn::Error(usage) that names the limits that contradict each other, and if velocity or acceleration are not
   /// limited at all.
   void validate(const RobotDescription& robot) const;
+  /// The robot file holds what the machine can do: a sentence for each drive that is asked for more. Throws
+  /// deltadyn::Error(usage) if far more is asked for.
+  [[nodiscard]] std::vector<std::string> beyond_file(const RobotDescription& robot) const;
   /// All finite limits.
   [[nodiscard]] std::vector<Limit> list(const RobotDescription& robot) const;
 };
