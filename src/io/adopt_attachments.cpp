@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <vector>
 
-#include "deltadyn/runtime/error.hpp"
-
 namespace deltadyn::cad {
 namespace {
 
@@ -77,19 +75,15 @@ class Solver {
     }
   }
 
-  /// Where the lines inwards from the ends meet: the plate's limbs point as the base's do.
+  /// The plate's limbs point as the base's do.
   [[nodiscard]] Vec middle_of_ends() const {
     if (!options_.plate_frame.empty()) return origin_of(options_.plate_frame);
-    Eigen::Matrix3d N = up_ * up_.transpose();
-    Vec sum = Vec::Zero();
-    double height = 0;
+    std::vector<Vec> ends, across;
     for (std::size_t i = 0; i < limbs_.size(); ++i) {
-      const Eigen::Matrix3d P = limbs_[i].across * limbs_[i].across.transpose();
-      N += P;
-      sum += P * *ends_[i];
-      height += ends_[i]->dot(up_) / static_cast<double>(limbs_.size());
+      ends.push_back(*ends_[i]);
+      across.push_back(limbs_[i].across);
     }
-    return N.ldlt().solve(sum + up_ * height);
+    return middle_of(ends, across, up_);
   }
 
   /// Three ends of one level plate that is narrower than the elbows and lies beside their plane: the parts stand as assembled.
@@ -112,7 +106,7 @@ class Solver {
     const auto found = tree_.links.find(link);
     if (found == tree_.links.end())
       throw Error(fmt::format("there is no link '{}'", link), "--plate-frame", "name a link of the plate", ExitCode::usage);
-    return (zero_pose(tree_)[static_cast<std::size_t>(found->second.body)] * found->second.X_BL).translation();
+    return link_pose(tree_, zero_pose(tree_), link).translation();
   }
 
   [[nodiscard]] Attachments finish(const std::string& note) const {
@@ -297,6 +291,18 @@ class Solver {
 };
 
 }  // namespace
+
+Vec middle_of(const std::vector<Vec>& points, const std::vector<Vec>& across, const Vec& up) {
+  Eigen::Matrix3d N = up * up.transpose();
+  Vec sum = Vec::Zero(), total = Vec::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Matrix3d P = across[i] * across[i].transpose();
+    N += P;
+    sum += P * points[i];
+    total += points[i];
+  }
+  return N.ldlt().solve(sum + up * (total.dot(up) / static_cast<double>(points.size())));
+}
 
 Attachments find_attachments(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options,
                              const std::vector<LimbPlace>& limbs, const Vec& up) {

@@ -59,18 +59,11 @@ class Placer {
   }
 
  private:
-  [[noreturn]] static void refuse(const std::string& what, const std::string& where, const std::string& mend,
-                                  ExitCode code = ExitCode::bad_input) {
-    throw Error(what, where, mend, code);
-  }
-  [[nodiscard]] std::string at(const Joint& joint) const {
-    return fmt::format("{}, line {}, joint {}", tree_.where, joint.line, joint.name);
-  }
+  [[nodiscard]] std::string at(const Joint& joint) const { return place_of(tree_, joint); }
 
   /// z of the link that carries the drives, or of the root where that one lies.
   [[nodiscard]] Vec upright() const {
-    const robot_file::LinkPlace& base = tree_.links.at(parts_.limbs.front().drive->parent_link);
-    const Vec z = zero_pose(tree_)[static_cast<std::size_t>(base.body)].linear() * base.X_BL.linear().col(2);
+    const Vec z = link_pose(tree_, zero_pose(tree_), parts_.limbs.front().drive->parent_link).linear().col(2);
     return std::abs(z.dot(up_)) > 0.5 ? z : Vec(Vec::UnitZ());
   }
 
@@ -147,17 +140,13 @@ class Placer {
   }
 
   void find_outwards() {
-    // The middle axis is nearest to the three lines that leave the drives at right angles to their axes.
-    Eigen::Matrix3d N = up_ * up_.transpose();
-    Vec sum = Vec::Zero();
+    std::vector<Vec> drives, across;
     for (Limb3d& limb : limbs_) {
       limb.across = (limb.across - up_ * up_.dot(limb.across)).normalized();
-      const Eigen::Matrix3d P = limb.across * limb.across.transpose();
-      N += P;
-      sum += P * limb.drive;
+      drives.push_back(limb.drive);
+      across.push_back(limb.across);
     }
-    const double height = (limbs_[0].drive + limbs_[1].drive + limbs_[2].drive).dot(up_) / 3;
-    middle_ = N.ldlt().solve(sum + up_ * height);
+    middle_ = middle_of(drives, across, up_);
     for (Limb3d& limb : limbs_) {
       limb.outwards = limb.across.cross(up_);
       const auto radial = [&](const Vec& point) { return (point - middle_).dot(limb.outwards); };
@@ -299,8 +288,7 @@ class Placer {
     const robot_file::Body& tool = tree_.bodies[static_cast<std::size_t>(bar.tool.back())];
     const std::vector<Pose> X_R = zero_pose(tree_);
     for (const std::string& link : tool.links) {
-      const Vec above =
-          bar.lower_joint - (X_R[static_cast<std::size_t>(bar.tool.back())] * tree_.links.at(link).X_BL).translation();
+      const Vec above = bar.lower_joint - link_pose(tree_, X_R, link).translation();
       if (above.cross(up_).norm() < kPoint) height = above.dot(up_);
     }
     out_.notes.push_back(

@@ -47,8 +47,7 @@ class Collector {
     for (const std::string& link : links) {
       const auto found = tree_.inertials.find(link);
       if (found == tree_.inertials.end()) continue;
-      const robot_file::LinkPlace& place = tree_.links.at(link);
-      sum += found->second.in_frame(X_RF.inverse() * X_R_[static_cast<std::size_t>(place.body)] * place.X_BL);
+      sum += found->second.in_frame(X_RF.inverse() * link_pose(tree_, X_R_, link));
     }
     return sum;
   }

@@ -6,8 +6,6 @@
 #include <fmt/ranges.h>
 #include <set>
 
-#include "deltadyn/runtime/error.hpp"
-
 namespace deltadyn::cad {
 namespace {
 
@@ -38,13 +36,7 @@ class Finder {
 
  private:
   // --- messages and access ------------------------------------------------------------------------
-  [[noreturn]] static void refuse(const std::string& what, const std::string& where, const std::string& mend,
-                                  ExitCode code = ExitCode::bad_input) {
-    throw Error(what, where, mend, code);
-  }
-  [[nodiscard]] std::string at(const Joint& joint) const {
-    return fmt::format("{}, line {}, joint {}", tree_.where, joint.line, joint.name);
-  }
+  [[nodiscard]] std::string at(const Joint& joint) const { return place_of(tree_, joint); }
   [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
   [[nodiscard]] const Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
   [[nodiscard]] const Joint& joint(int index) const { return tree_.joints[static_cast<std::size_t>(index)]; }
@@ -197,7 +189,7 @@ class Finder {
     InertialVector<double> sum = InertialVector<double>::Zero();
     double farthest = 10 * kPoint;
     for (const std::string& link : body(rod).links) {
-      const Pose X_RL = pose(rod) * tree_.links.at(link).X_BL;
+      const Pose X_RL = link_pose(tree_, X_R_, link);
       const auto inertial = tree_.inertials.find(link);
       if (inertial != tree_.inertials.end() && inertial->second.mass > 0) {
         sum += inertial->second.in_frame(X_RL);
@@ -212,7 +204,7 @@ class Finder {
     for (const robot_file::Loop& loop : tree_.loops)
       for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor})
         if (!strut.end && tree_.links.at(end->link).body == rod)
-          strut.end = (pose(rod) * tree_.links.at(end->link).X_BL * end->X_LO).translation();
+          strut.end = (link_pose(tree_, X_R_, end->link) * end->X_LO).translation();
     if (sum(0) > 0) strut.direction = direction_of(strut, sum);
   }
 
@@ -315,7 +307,7 @@ class Finder {
         if (taken.count(place.parent) > 0 && taken.insert(link).second) more = true;
     }
     parts_.plate_links.assign(taken.begin(), taken.end());
-    parts_.plate_place = (pose(found->second.body) * found->second.X_BL).translation();
+    parts_.plate_place = link_pose(tree_, X_R_, options_.plate).translation();
   }
 
   const UrdfTree& tree_;
@@ -334,6 +326,19 @@ std::vector<Pose> zero_pose(const UrdfTree& tree) {
   // A body stands behind its parent in the list.
   for (const Joint& j : tree.joints) X_R[static_cast<std::size_t>(j.child)] = X_R[static_cast<std::size_t>(j.parent)] * j.X_PJ;
   return X_R;
+}
+
+Pose link_pose(const UrdfTree& tree, const std::vector<Pose>& X_R, const std::string& link) {
+  const robot_file::LinkPlace& place = tree.links.at(link);
+  return X_R[static_cast<std::size_t>(place.body)] * place.X_BL;
+}
+
+void refuse(const std::string& what, const std::string& where, const std::string& mend, ExitCode code) {
+  throw Error(what, where, mend, code);
+}
+
+std::string place_of(const UrdfTree& tree, const Joint& joint) {
+  return fmt::format("{}, line {}, joint {}", tree.where, joint.line, joint.name);
 }
 
 Parts find_parts(const UrdfTree& tree, const AdoptOptions& options) {

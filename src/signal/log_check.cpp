@@ -82,7 +82,8 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
   std::vector<Log> parts = checks::split(room);
   std::vector<Log> usable;
   std::optional<Error> refused;
-  std::vector<LogFinding> carried;
+  std::vector<LogFinding> carried;  // of parts that are not used: what was said of the file as a whole stands with its first part
+  std::vector<std::string> carried_notes;
   double recorded_rate_hz = 0;
   for (Log& part : parts) {
     CheckRoom of_part{part, robot, options, found};
@@ -103,17 +104,17 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
       finding.key = "unusable_part";
       finding.file = part.file;
       finding.text = fmt::format("{}: part {} is not used: {}", error.where(), part.part, error.problem());
-      // What was said of the file as a whole stands with its first part, and stays.
-      for (LogFinding& one : part.findings) carried.push_back(std::move(one));
+      carried.insert(carried.end(), part.findings.begin(), part.findings.end());
+      carried_notes.insert(carried_notes.end(), part.notes.begin(), part.notes.end());
+      carried_notes.push_back(finding.text);
       carried.push_back(std::move(finding));
     }
   }
   if (usable.empty()) throw *refused;
   for (std::size_t k = 0; k < usable.size(); ++k) usable[k].part = parts.size() > 1 ? static_cast<int>(k) + 1 : 0;
-  for (LogFinding& one : carried) {
-    if (one.level != FindingLevel::fine) usable.front().notes.push_back(one.text);
-    usable.front().findings.push_back(std::move(one));
-  }
+  Log& first = usable.front();
+  first.notes.insert(first.notes.end(), carried_notes.begin(), carried_notes.end());
+  first.findings.insert(first.findings.end(), carried.begin(), carried.end());
   add_figures(usable, found, recorded_rate_hz);
   return usable;
 }

@@ -6,12 +6,14 @@
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 
 #include "acceptance/tool_run.hpp"
+#include "acceptance/workshop.hpp"
 #include "identification/faulty_logs.hpp"
 
 namespace deltadyn::acceptance {
@@ -126,6 +128,35 @@ TEST(FaultyLogs, TheScaleOfTheTorqueIsNotTrusted) {
   EXPECT_EQ(result.code, 5);
   EXPECT_THAT(result.err, ContainsRegex("torque is [0-9.]+ .* times what the masses of the prior need"));
   EXPECT_EQ(logs.summary().at("verdict"), "not-trusted");
+}
+
+// The reader's findings have one sentence for all drives, on the terminal once; the summary has a figure a drive.
+TEST(FaultyLogs, EverySentenceIsSaidOnce) {
+  const Spoilt logs([](Log& log) {
+    for (const Eigen::Index row : {2000, 3000, 4000}) {
+      log.tau.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
+      log.q.row(row + 500).array() += 3;
+    }
+    for (Eigen::Index row = 5000; row < 5200; row += 10) {
+      log.q.row(row + 1) = log.q.row(row);
+      log.tau.row(row + 1) = log.tau.row(row);
+    }
+  });
+  const auto told = [](const ToolResult& result) {
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    std::map<std::string, int> kinds;
+    for (const std::string& line : to_lines(result.out + result.err)) {
+      for (const char* kind : {"no number, filled in", "is a spike", "repeats the values"})
+        kinds[kind] += line.find(kind) == std::string::npos ? 0 : 1;
+      EXPECT_FALSE(line.rfind("note: ", 0) == 0 && line.find(", line ") != std::string::npos) << line;
+    }
+    return kinds;
+  };
+  for (const ToolResult& result : {logs.identify(), logs.check()}) {
+    for (const auto& [kind, count] : told(result)) EXPECT_EQ(count, 2) << kind << ", two logs\n" << result.out << result.err;
+  }
+  for (const char* key : {"check_missing_numbers_drive1", "check_missing_numbers_drive4", "check_spikes_drive4"})
+    EXPECT_EQ(logs.summary().count(key), 1U) << key;
 }
 
 TEST(FaultyLogs, CheckSaysWhatIdentifyWouldAndWritesAPage) {
