@@ -22,6 +22,7 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "log_gate.hpp"
+#include "parameter_tables.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
 
@@ -193,24 +194,7 @@ class Diagnose {
 
   /// The improved parameters; without a named effect those of the model, so that a chain of tools always finds a file.
   void write_improved(const Robot& robot, const ParameterTable& before, const Diagnosis& result) const {
-    if (!result.improved) {
-      ParameterTable same = before;
-      write_parameters(params_out_, same);
-      return;
-    }
-    ParameterTable table;
-    const ConsistentFitSummary& fit = result.improved->fit;
-    for (int k = 0; k < robot.parameters(); ++k) {
-      ParameterEntry entry;
-      entry.name = robot.parameter_names()[static_cast<std::size_t>(k)];
-      entry.unit = robot.parameter_units()[static_cast<std::size_t>(k)];
-      entry.value = fit.p(k);
-      entry.std = fit.std(k);
-      entry.prior = fit.prior(k);
-      entry.data_share = fit.data_share(k);
-      table.entries.push_back(std::move(entry));
-    }
-    write_parameters(params_out_, table);
+    write_parameters(params_out_, result.improved ? tools::parameter_table(robot, *result.improved) : before);
   }
 
   void plan_next(const Robot& robot, const Diagnosis& result, const Eigen::VectorXd& p, const ToolRun& run) const {
@@ -262,7 +246,7 @@ class Diagnose {
     if (result.needed_s) out.add("needed_length_s", *result.needed_s, "s");
     if (result.cutoff_hz > 0) out.add("cutoff_hz", result.cutoff_hz, "Hz");
     for (std::size_t j = 0; j < result.drives.size(); ++j) {
-      const char* unit = robot.kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N*m" : "N";
+      const char* unit = tools::torque_unit(robot, static_cast<int>(j));
       out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms, unit);
       out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor, unit);
     }

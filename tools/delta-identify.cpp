@@ -23,6 +23,7 @@
 
 #include "layout_flags.hpp"
 #include "log_gate.hpp"
+#include "parameter_tables.hpp"
 #include "prior_reading.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
@@ -98,7 +99,7 @@ class Identify {
     if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
 
-    write_parameters(output_, parameter_table(*robot, result));
+    write_parameters(output_, tools::parameter_table(*robot, result));
     if (!base_file_.empty()) write_base(result);
     const Validation training = validate(
         *robot,
@@ -171,37 +172,6 @@ class Identify {
     return options;
   }
 
-  static ParameterTable parameter_table(const Robot& robot, const Identification& result) {
-    ParameterTable table;
-    for (int k = 0; k < robot.parameters(); ++k) {
-      ParameterEntry entry;
-      entry.name = robot.parameter_names()[static_cast<std::size_t>(k)];
-      entry.value = result.fit.p(k);
-      entry.unit = robot.parameter_units()[static_cast<std::size_t>(k)];
-      entry.std = result.fit.std(k);
-      entry.prior = result.fit.prior(k);
-      entry.data_share = result.fit.data_share(k);
-      table.entries.push_back(std::move(entry));
-    }
-    for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
-      const PreslidingJoint& found = result.presliding[joint];
-      if (!(found.displacement > 0)) continue;
-      ParameterEntry entry;
-      const auto at = static_cast<int>(joint);
-      entry.name = presliding_name(robot.description(), at);
-      entry.value = found.displacement;
-      entry.std = found.std;
-      entry.unit = presliding_unit(robot.description(), at);
-      entry.data_share = 1;
-      table.entries.push_back(std::move(entry));
-    }
-    return table;
-  }
-
-  static const char* presliding_unit(const RobotDescription& robot, int joint) {
-    return joint < robot.drives() && robot.kind_of_drive(joint) == DriveKind::revolute ? "rad" : "m";
-  }
-
   static void tell_presliding(const RobotDescription& robot, const Identification& result) {
     for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
       const PreslidingJoint& found = result.presliding[joint];
@@ -209,7 +179,7 @@ class Identify {
       const auto at = static_cast<int>(joint);
       fmt::print("friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal; its rows near reversals are used\n",
                  at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope", found.displacement, found.std,
-                 presliding_unit(robot, at));
+                 tools::presliding_unit(robot, at));
     }
   }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -298,28 +297,13 @@ std::vector<Log> read_log_parts(const std::string& path, const RobotDescription&
 void write_log(const std::string& path, const Log& log, const RobotDescription& robot) {
   const std::pair<Block, const Eigen::MatrixXd*> blocks[] = {
       {Block::q, &log.q}, {Block::qd, &log.qd}, {Block::qdd, &log.qdd}, {Block::tau, &log.tau}};
-  std::string text = "t_s";
+  std::string header = "t_s";
+  std::vector<const Eigen::MatrixXd*> columns;
   for (const auto& [quantity, block] : blocks) {
-    for (int drive = 0; drive < block->cols(); ++drive) text += "," + si_name(quantity, robot.kind_of_drive(drive), drive);
+    for (int drive = 0; drive < block->cols(); ++drive) header += "," + si_name(quantity, robot.kind_of_drive(drive), drive);
+    columns.push_back(block);
   }
-  text += '\n';
-  OutputFile file(path);
-  constexpr std::size_t kChunk = 1 << 16;
-  for (Eigen::Index row = 0; row < log.samples(); ++row) {
-    fmt::format_to(std::back_inserter(text), "{}", log.t_s(row));
-    for (const auto& [quantity, block] : blocks) {
-      for (Eigen::Index drive = 0; drive < block->cols(); ++drive) {
-        fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, drive));
-      }
-    }
-    text += '\n';
-    if (text.size() >= kChunk) {
-      file.write(text);
-      text.clear();
-    }
-  }
-  file.write(text);
-  file.commit();
+  write_table(path, header, log.t_s, columns);
 }
 
 }  // namespace deltadyn

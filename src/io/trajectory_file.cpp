@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <iterator>
 #include <vector>
 
 #include "deltadyn/io/csv.hpp"
@@ -141,24 +140,8 @@ void write_trajectory(const std::string& path, const TrajectorySamples& samples,
   for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).q;
   for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qd;
   for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qdd;
-  text += '\n';
   blocks.insert(blocks.end(), {&samples.q, &samples.qd, &samples.qdd});
-
-  OutputFile file(path);
-  constexpr std::size_t kChunk = 1 << 16;
-  for (Eigen::Index row = 0; row < samples.samples(); ++row) {
-    fmt::format_to(std::back_inserter(text), "{}", samples.t_s(row));
-    for (const Eigen::MatrixXd* block : blocks) {
-      for (Eigen::Index k = 0; k < block->cols(); ++k) fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, k));
-    }
-    text += '\n';
-    if (text.size() >= kChunk) {
-      file.write(text);
-      text.clear();
-    }
-  }
-  file.write(text);
-  file.commit();
+  write_table(path, text, samples.t_s, blocks);
 }
 
 }  // namespace deltadyn

@@ -176,19 +176,6 @@ void add_limit_figures(HtmlReport& report, const ExcitationReportInput& input) {
       {"Task space", {LimitedQuantity::region, LimitedQuantity::z, LimitedQuantity::zd, LimitedQuantity::zdd}},
       {"Drives", {LimitedQuantity::q, LimitedQuantity::qd, LimitedQuantity::qdd, LimitedQuantity::tau}},
   };
-  const auto label = [](LimitedQuantity quantity) {
-    switch (quantity) {
-      case LimitedQuantity::region: return "workspace";
-      case LimitedQuantity::z:
-      case LimitedQuantity::q: return "position";
-      case LimitedQuantity::zd:
-      case LimitedQuantity::qd: return "velocity";
-      case LimitedQuantity::zdd:
-      case LimitedQuantity::qdd: return "acceleration";
-      case LimitedQuantity::tau: return "torque";
-    }
-    return "";
-  };
   std::vector<PlotSpec> specs;
   for (const Panel& panel : panels) {
     PlotSpec spec;
@@ -199,7 +186,7 @@ void add_limit_figures(HtmlReport& report, const ExcitationReportInput& input) {
     spec.y_range = PlotRange{0, 110};
     for (const LimitedQuantity quantity : panel.quantities) {
       Series series;
-      series.label = label(quantity);
+      series.label = word_of(quantity);
       series.x = input.samples.t_s;
       series.y = VectorXd::Constant(count, -1);
       for (Index i = 0; i < count; ++i) {

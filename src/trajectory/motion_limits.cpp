@@ -15,20 +15,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const char* word(LimitedQuantity quantity) {
-  switch (quantity) {
-    case LimitedQuantity::z:
-    case LimitedQuantity::q: return "position";
-    case LimitedQuantity::zd:
-    case LimitedQuantity::qd: return "velocity";
-    case LimitedQuantity::zdd:
-    case LimitedQuantity::qdd: return "acceleration";
-    case LimitedQuantity::tau: return "torque";
-    case LimitedQuantity::region: break;
-  }
-  return "";
-}
-
 /// Limits of the drives and of the task by the same rules as everywhere; infinite ones do not limit.
 void require_plausible(const MotionLimits& limits, const RobotDescription& robot, const std::vector<TaskColumns>& columns) {
   using namespace plausibility;
@@ -53,6 +39,20 @@ void require_size(const Eigen::VectorXd& v, int n, const char* what) {
 }
 
 }  // namespace
+
+const char* word_of(LimitedQuantity quantity) {
+  switch (quantity) {
+    case LimitedQuantity::z:
+    case LimitedQuantity::q: return "position";
+    case LimitedQuantity::zd:
+    case LimitedQuantity::qd: return "velocity";
+    case LimitedQuantity::zdd:
+    case LimitedQuantity::qdd: return "acceleration";
+    case LimitedQuantity::tau: return "torque";
+    case LimitedQuantity::region: return "workspace";
+  }
+  return "";
+}
 
 MotionLimits::MotionLimits(const RobotDescription& robot) {
   const int n = robot.drives();
@@ -166,7 +166,7 @@ std::vector<Limit> MotionLimits::list(const RobotDescription& robot) const {
   const auto add = [&](LimitedQuantity quantity, int i, double lower, double upper, const std::string& subject,
                        const std::string& unit) {
     if (!std::isfinite(lower) && !std::isfinite(upper)) return;
-    limits.push_back({quantity, i, lower, upper, subject + " " + word(quantity), unit});
+    limits.push_back({quantity, i, lower, upper, subject + " " + word_of(quantity), unit});
   };
   for (int i = 0; i < robot.drives(); ++i) {
     const TaskColumns& column = columns[static_cast<std::size_t>(i)];

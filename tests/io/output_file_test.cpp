@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <gmock/gmock.h>
+#include <sstream>
 #include <stdexcept>
 #include <sys/resource.h>
 
@@ -26,6 +27,24 @@ TEST(OutputFile, AppearsOnCommitOnly) {
   }
   EXPECT_EQ(folder.read("out.csv"), "1,0.1\n");
   EXPECT_EQ(folder.files(), 1);
+}
+
+TEST(OutputFile, ATableReadsBackExactlyWhateverItsLength) {
+  const TemporaryFolder folder;
+  const Eigen::VectorXd t_s = Eigen::VectorXd::LinSpaced(9000, 0.0, 9.0);
+  const Eigen::MatrixXd a = (t_s * Eigen::RowVector2d(0.1, 1.0 / 3)).array().sin(), nothing, b = a.col(0) / 7;
+  write_table(folder.path("out.csv"), "# a note\nt_s,a1,a2,b", t_s, {&a, &nothing, &b});
+  std::istringstream lines(folder.read("out.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "# a note");
+  std::getline(lines, line);
+  EXPECT_EQ(line, "t_s,a1,a2,b");
+  for (Eigen::Index row = 0; row < t_s.size(); ++row) {
+    ASSERT_TRUE(std::getline(lines, line)) << row;
+    ASSERT_EQ(line, fmt::format("{},{},{},{}", t_s(row), a(row, 0), a(row, 1), b(row, 0)));
+  }
+  EXPECT_FALSE(std::getline(lines, line));
 }
 
 TEST(OutputFile, LeavesNothingBehindWithoutCommit) {

@@ -16,6 +16,7 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "model/create.hpp"
+#include "parameter_tables.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -95,20 +96,14 @@ class Adopt {
     const auto robot = make_robot(adopted.robot);
     PartShapes shapes(adopted.robot);
     const NominalParameters nominal = nominal_parameters(*robot, shapes);
-    ParameterTable table;
+    ParameterTable table = parameter_table(*robot, nominal);
     int from_cad = 0;
-    for (int k = 0; k < robot->parameters(); ++k) {
-      ParameterEntry entry;
-      entry.name = robot->parameter_names()[static_cast<std::size_t>(k)];
-      entry.unit = robot->parameter_units()[static_cast<std::size_t>(k)];
-      entry.value = nominal.value(k);
-      entry.std = nominal.std(k);
-      if (const auto found = adopted.parameters.find(entry.name); found != adopted.parameters.end()) {
-        entry.value = found->second;
-        entry.std = 0;
-        ++from_cad;
-      }
-      table.entries.push_back(std::move(entry));
+    for (ParameterEntry& entry : table.entries) {
+      const auto found = adopted.parameters.find(entry.name);
+      if (found == adopted.parameters.end()) continue;
+      entry.value = found->second;
+      entry.std = 0;
+      ++from_cad;
     }
     set_spreads(table);
     write_parameters(prior_, table);

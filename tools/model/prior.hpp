@@ -13,6 +13,8 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "layout_flags.hpp"
+#include "parameter_tables.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -25,8 +27,7 @@ class Prior {
     set_example(c, "delta-model prior robot.urdf --platform-mass-kg 1.0 --tool-mass-kg 0.4 -o prior.csv");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     c.add_option("-o,--output", output_, "parameter file to write (CSV name,value,unit,std)")->required()->type_name("FILE");
-    c.add_flag("--without-tool", without_tool_, "leave out the tool's ten parameters (delta4)");
-    c.add_flag("--individual-limbs", individual_limbs_, "every limb has parameters of its own");
+    layout_.add_bodies(c);
     for (Shape& shape : shapes_) c.add_option(shape.flag, shape.value, shape.help)->group("Shapes, masses, friction");
     run.on(c, [this, &run] { execute(run); });
   }
@@ -35,10 +36,7 @@ class Prior {
   void execute(ToolRun& run) {
     run.check_files({output_}, {robot_file_});
     const RobotDescription description = read_robot_file(robot_file_);
-    ParameterOptions options;
-    options.tool = !without_tool_;
-    options.individual_limbs = individual_limbs_;
-    const auto robot = make_robot(description, options);
+    const auto robot = make_robot(description, layout_.options(description));
     PartShapes shapes(description);
     for (const Shape& shape : shapes_) {
       if (!shape.value) continue;
@@ -49,18 +47,12 @@ class Prior {
       shapes.*shape.member = *shape.value;
     }
     const NominalParameters nominal = nominal_parameters(*robot, shapes);
-    ParameterTable table;
-    for (int k = 0; k < robot->parameters(); ++k) {
-      ParameterEntry entry;
-      entry.name = robot->parameter_names()[static_cast<std::size_t>(k)];
-      entry.unit = robot->parameter_units()[static_cast<std::size_t>(k)];
-      entry.value = nominal.value(k);
-      entry.std = nominal.std(k);
-      if (entry.name.size() > 2 && entry.name.compare(entry.name.size() - 2, 2, ".m") == 0) {
-        fmt::print("  {:<18} {:8.3f} kg\n", entry.name.substr(0, entry.name.size() - 2), entry.value);
-        run.summary.add("mass_" + entry.name.substr(0, entry.name.size() - 2), entry.value, "kg");
-      }
-      table.entries.push_back(std::move(entry));
+    const ParameterTable table = parameter_table(*robot, nominal);
+    for (const ParameterEntry& entry : table.entries) {
+      if (entry.name.size() <= 2 || entry.name.compare(entry.name.size() - 2, 2, ".m") != 0) continue;
+      const std::string body = entry.name.substr(0, entry.name.size() - 2);
+      fmt::print("  {:<18} {:8.3f} kg\n", body, entry.value);
+      run.summary.add("mass_" + body, entry.value, "kg");
     }
     write_parameters(output_, table);
     fmt::print("wrote {}: {} nominal parameters\n", output_, table.entries.size());
@@ -77,7 +69,7 @@ class Prior {
       case carriage: return robot.drive_kind == DriveKind::prismatic;
       case strut:
       case platform: return !robot.parts.empty();
-      case tool: return robot.telescope && !without_tool_;
+      case tool: return robot.telescope && layout_.options(robot).tool;
       case telescope: return robot.telescope.has_value();
       case any: break;
     }
@@ -92,7 +84,7 @@ class Prior {
   };
 
   std::string robot_file_, output_;
-  bool without_tool_ = false, individual_limbs_ = false;
+  LayoutFlags layout_;
   std::vector<Shape> shapes_ = {
       {"--upper-arm-outer-diameter-m", "tube of the upper arm [m]", arm, &PartShapes::upper_arm_outer_diameter},
       {"--upper-arm-wall-m", "its wall [m]", arm, &PartShapes::upper_arm_wall},

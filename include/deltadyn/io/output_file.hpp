@@ -3,6 +3,7 @@
 /// \file
 /// Result files that are written whole or not at all.
 
+#include <Eigen/Core>
 #include <cstdio>
 #include <fmt/format.h>
 #include <string>
@@ -48,6 +49,12 @@ class OutputFile {
 
 /// Writes a whole file at once. Throws Error(bad_input).
 void write_file(const std::string& path, std::string_view bytes);
+
+/// Writes a table of numbers that read back exactly: the header, then in each row the time and that row of every block.
+/// \param header  with what precedes it; without the end of its line
+/// Throws Error(bad_input).
+void write_table(const std::string& path, const std::string& header, const Eigen::VectorXd& t_s,
+                 const std::vector<const Eigen::MatrixXd*>& blocks);
 
 /// Throws Error(usage) if `output` is the same file as one of `inputs`, also through links or other spellings of the path.
 void refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);

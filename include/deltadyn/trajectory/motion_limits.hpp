@@ -16,6 +16,9 @@ namespace deltadyn {
 /// What a limit is on. Task space and drives: position, velocity, acceleration.
 enum class LimitedQuantity { region, z, zd, zdd, q, qd, qdd, tau };
 
+/// "position", "velocity", ..., "workspace".
+[[nodiscard]] const char* word_of(LimitedQuantity quantity);
+
 /// Value allowed in [lower, upper]; an end may be infinite.
 struct Limit {
   LimitedQuantity quantity;
