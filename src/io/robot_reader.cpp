@@ -340,26 +340,30 @@ class Reader {
     limb.p_BA = (a.p_BE + b.p_BE) / 2;
   }
 
+  /// Two passive joints at one point. Returns the second.
+  [[nodiscard]] const Joint& universal(const Joint& first, const Vec& first_axis, const Vec& second_axis, const std::string& name,
+                                       const std::string& rule) const {
+    require_passive(first, first_axis, name + "'s first axis");
+    require_no_offset(first, name);
+    const Joint& second = only_joint(first.child, rule);
+    require_passive(second, second_axis, name + "'s second axis");
+    require_no_offset(second, name);
+    return second;
+  }
+
   void find_telescope(const Joint& drive) {
     require_axis(drive, Vec::UnitZ(), false, "the telescope's drive");
     require_parallel(drive.X_PJ.linear(), at(drive), "the telescope drive's frame");
-    const Joint& x = only_joint(drive.child, "the drive carries the joint about x");
-    require_passive(x, Vec::UnitX(), "the upper universal joint's first axis");
-    require_no_offset(x, "the upper universal joint");
-    const Joint& y = only_joint(x.child, "the joint about x carries the one about y");
-    require_passive(y, Vec::UnitY(), "the upper universal joint's second axis");
-    require_no_offset(y, "the upper universal joint");
+    const Joint& y = universal(only_joint(drive.child, "the drive carries the joint about x"), Vec::UnitX(), Vec::UnitY(),
+                               "the upper universal joint", "the joint about x carries the one about y");
     const Joint& slide = only_joint(y.child, "the upper part of the bar carries the lower part");
     require_axis(slide, slide.axis.z() > 0 ? Vec(Vec::UnitZ()) : Vec(-Vec::UnitZ()), true, "the telescope joint");
     require_parallel(slide.X_PJ.linear(), at(slide), "the lower part of the bar");
     if (slide.X_PJ.translation().head<2>().norm() > kTolerance)
       refuse("the lower part of the bar must lie on z of the upper part", at(slide), "set x and y of the origin to 0");
-    const Joint& y2 = only_joint(slide.child, "the lower part of the bar carries the lower universal joint");
-    require_passive(y2, Vec::UnitY(), "the lower universal joint's first axis");
-    require_no_offset(y2, "the lower universal joint");
-    const Joint& x2 = only_joint(y2.child, "the joint about y carries the one about x");
-    require_passive(x2, Vec::UnitX(), "the lower universal joint's second axis");
-    require_no_offset(x2, "the lower universal joint");
+    const Joint& x2 =
+        universal(only_joint(slide.child, "the lower part of the bar carries the lower universal joint"), Vec::UnitY(),
+                  Vec::UnitX(), "the lower universal joint", "the joint about y carries the one about x");
     const robot_file::Body& tool = body(x2.child);
     if (!tool.joints.empty())
       refuse("the tool carries no moving joint", at(joint(tool.joints[0])), "fix to the tool what moves with it");

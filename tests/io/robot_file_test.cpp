@@ -9,6 +9,8 @@
 
 #include "deltadyn/runtime/error.hpp"
 
+#include "support/descriptions.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -213,26 +215,8 @@ struct Break {
 class RobotFileBroken : public ::testing::TestWithParam<Break> {
  public:
   static RobotDescription plain(const std::string& type) {
-    RobotDescription robot;
+    RobotDescription robot = testing_support::delta_description(type, {0.2, 0.05, 0.5, 1.25, 0.125});
     robot.name = "plain";
-    robot.type = type;
-    for (int i = 0; i < 3; ++i) {
-      LimbGeometry<double> limb;
-      limb.azimuth = 2 * kPi / 3 * i;
-      const Vector3<double> radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
-      limb.p_WD = 0.2 * radial;
-      limb.p_DE_0.x() = 0.5;
-      limb.strut = 1.25;
-      limb.strut_spacing = 0.125;
-      limb.p_BA = 0.05 * radial;
-      robot.limbs.push_back(limb);
-      robot.limits.emplace_back();
-    }
-    robot.parts.emplace_back();
-    if (type == "delta4") {
-      robot.telescope.emplace();
-      robot.limits.emplace_back();
-    }
     return robot;
   }
 };

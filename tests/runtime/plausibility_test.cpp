@@ -8,6 +8,7 @@
 
 #include "deltadyn/runtime/nominal_parameters.hpp"
 
+#include "support/description_faults.hpp"
 #include "support/descriptions.hpp"
 
 namespace deltadyn {
@@ -17,6 +18,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing_support::axis_description;
 using testing_support::delta_description;
+using testing_support::DescriptionFault;
+using testing_support::expect_refused;
 using testing_support::Lengths;
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -68,14 +71,6 @@ TEST(Plausibility, ATestBenchMayTurnFast) {
   EXPECT_NO_THROW(axis.validate("axis.urdf"));
 }
 
-struct Fault {
-  const char* name;
-  const char* type;
-  std::function<void(RobotDescription&)> spoil;
-  const char* says;
-  friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-};
-
 void in_millimetres(LimbGeometry<double>& limb) {
   limb.p_WD *= 1000;
   limb.p_DE_0 *= 1000;
@@ -84,7 +79,7 @@ void in_millimetres(LimbGeometry<double>& limb) {
   limb.strut_spacing *= 1000;
 }
 
-const Fault kFaults[] = {
+const DescriptionFault kFaults[] = {
     {"AllInMillimetres", "delta4",
      [](auto& r) {
        for (auto& limb : r.limbs) in_millimetres(limb);
@@ -136,20 +131,10 @@ const Fault kFaults[] = {
     {"EndlessInDegrees", "delta3", [](auto& r) { r.limits[1].lower = -360, r.limits[1].upper = 360; }, "drive 2"},
 };
 
-class ImplausibleRobot : public ::testing::TestWithParam<Fault> {};
+class ImplausibleRobot : public ::testing::TestWithParam<DescriptionFault> {};
 
 TEST_P(ImplausibleRobot, IsRefusedWithTheUnitAndTheMend) {
-  RobotDescription robot = delta_description(GetParam().type);
-  GetParam().spoil(robot);
-  try {
-    robot.validate("robot.urdf");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "robot.urdf");
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    EXPECT_THAT(error.problem(), HasSubstr(GetParam().says));
-    EXPECT_FALSE(error.mend().empty());
-  }
+  expect_refused(GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, ImplausibleRobot, ::testing::ValuesIn(kFaults),

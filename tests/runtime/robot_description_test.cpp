@@ -8,6 +8,7 @@
 
 #include "deltadyn/runtime/error.hpp"
 
+#include "support/description_faults.hpp"
 #include "support/descriptions.hpp"
 
 namespace deltadyn {
@@ -16,6 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 using testing_support::axis_description;
 using testing_support::delta_description;
+using testing_support::DescriptionFault;
+using testing_support::expect_refused;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -42,30 +45,13 @@ TEST(RobotDescription, CountsAndKindsOfDrives) {
   EXPECT_EQ(delta_description("linear-delta3").kind_of_drive(0), DriveKind::prismatic);
 }
 
-struct Fault {
-  const char* name;
-  const char* type;
-  std::function<void(RobotDescription&)> spoil;
-  const char* says;
-  friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-};
-
-class FaultyDescription : public ::testing::TestWithParam<Fault> {};
+class FaultyDescription : public ::testing::TestWithParam<DescriptionFault> {};
 
 TEST_P(FaultyDescription, IsRefusedInPlainWords) {
-  RobotDescription robot = delta_description(GetParam().type);
-  GetParam().spoil(robot);
-  try {
-    robot.validate("robot.urdf");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "robot.urdf");
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    EXPECT_THAT(error.problem(), HasSubstr(GetParam().says));
-  }
+  expect_refused(GetParam());
 }
 
-const Fault kFaults[] = {
+const DescriptionFault kFaults[] = {
     {"UnknownType", "delta3", [](auto& r) { r.type = "scara"; }, "'scara' is not a robot type"},
     {"LaterType", "delta3", [](auto& r) { r.type = "par4"; }, "not supported yet"},
     {"TwoLimbs", "delta3", [](auto& r) { r.limbs.pop_back(); }, "has 3 limbs, but this one has 2"},

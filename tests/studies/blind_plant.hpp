@@ -191,25 +191,21 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
                   coulomb[static_cast<std::size_t>(j)] * std::tanh(turning(j) / (j == 3 ? 0.12 : 0.008));
       }
       now.transmitted = motor - load;  // a gear passes on all but its own friction
-      if (model->description().telescope) {
-        // The bar's rate and its Jacobian, from the plate's own.
+      if (!machine.parts.empty()) {
         Eigen::MatrixXd J(n, n);
         Eigen::VectorXd z(n);
         if (plant->jacobian(position, J) != Status::ok || plant->forward_kinematics(position, z) != Status::ok) return false;
         now.J = J;
         now.r = z.head<3>();
         now.v = (J * rate).head<3>();
+      }
+      if (model->description().telescope) {
+        // The bar's rate and its Jacobian, from the plate's own.
         const Eigen::Vector3d along =
             (now.r + model->description().telescope->p_BV - model->description().telescope->p_WU).normalized();
         const double bar_rate = along.dot(now.v);
-        load += (viscous.back() * bar_rate + coulomb.back() * std::tanh(bar_rate / 0.005)) * (J.topRows<3>().transpose() * along);
-      } else if (!machine.parts.empty()) {
-        Eigen::MatrixXd J(n, n);
-        Eigen::VectorXd z(n);
-        if (plant->jacobian(position, J) != Status::ok || plant->forward_kinematics(position, z) != Status::ok) return false;
-        now.J = J;
-        now.r = z.head<3>();
-        now.v = (J * rate).head<3>();
+        load +=
+            (viscous.back() * bar_rate + coulomb.back() * std::tanh(bar_rate / 0.005)) * (now.J.topRows<3>().transpose() * along);
       }
       const Eigen::VectorXd plain = load;
       int at = 0;
