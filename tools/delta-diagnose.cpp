@@ -37,7 +37,9 @@ class Diagnose {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->type_name("ROBOT");
-    app.add_option("logs", log_files_, "training logs of this robot (CSV t_s, q1_rad.., tau1_Nm..)")->type_name("LOG");
+    app.add_option("logs", log_files_,
+                   "training logs of this robot (CSV t_s, q1_rad.., tau1_Nm.., or what delta-log import reads)")
+        ->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters of the model (CSV)")->type_name("FILE");
     app.add_option("--effects", effect_file_, "effects that the model holds already (CSV)")->type_name("FILE");
     app.add_option("--holdout", holdout_file_, "log that takes no part in the search, for the proof (CSV)")->type_name("LOG");

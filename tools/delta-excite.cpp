@@ -59,6 +59,7 @@ class Excite {
     limits_.add_to(app);
     torque_.add_to(app);
     search_.add_to(app);
+    app.option_defaults()->group("Parameters of the model");
     layout_.add_to(app, "none");
     run.on(app, [this, &run] { return execute(run); });
   }

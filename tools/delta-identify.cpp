@@ -41,7 +41,9 @@ class Identify {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    app.add_option("logs", log_files_, "logs of this robot (CSV t_s, q1_rad.., tau1_Nm..)")->required()->type_name("LOG");
+    app.add_option("logs", log_files_, "logs of this robot (CSV t_s, q1_rad.., tau1_Nm.., or what delta-log import reads)")
+        ->required()
+        ->type_name("LOG");
     app.add_option("-o,--output", output_, "parameters name,value,unit,std,prior,data_share (CSV)")
         ->required()
         ->type_name("FILE");
@@ -62,7 +64,9 @@ class Identify {
     app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")
         ->capture_default_str();
     layout_.add_to(app, "1 for an axis that turns");
-    app.add_option("--reversals", reversals_, "rows near velocity reversals: auto leaves them out if they fit three times worse")
+    app.add_option("--reversals", reversals_,
+                   "rows near velocity reversals; auto: used where the build-up of friction is found or Coulomb's law holds, "
+                   "else left out (mask)")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
         ->capture_default_str();
     app.add_flag("--robust", robust_, "Huber weights against single bad samples");

@@ -36,7 +36,9 @@ class Validate {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV)")->required()->type_name("LOG");
+    app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV, or what delta-log import reads)")
+        ->required()
+        ->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
     app.add_option("--effects", effect_file_, "effects that belong to the model (CSV)")->type_name("FILE");
     app.add_option("-o,--output", output_, "residuals t_s, tau, model, residual and state of each drive (CSV)")

@@ -98,11 +98,14 @@ inline void summarise_findings(const std::vector<LogFinding>& findings, Summary&
 class LogGate {
  public:
   void add_to(CLI::App& app) {
-    app.add_flag("--keep-delay", keep_delay_, "leave a delay between torque and position in the logs where one is found");
+    flag_ = app.add_flag("--keep-delay", keep_delay_, "leave a delay between torque and position in the logs where one is found");
   }
 
-  /// Leaves delays in place whatever the flag says: the tool weighs them itself.
-  void leave_delays() { keep_delay_ = true; }
+  /// Leaves delays in place whatever the flag says: the tool weighs them itself. After add_to().
+  void leave_delays() {
+    keep_delay_ = true;
+    flag_->description("always on: a delay between torque and position is one of the effects that are weighed");
+  }
 
   /// Checks and mends. Prints what was found, and adds it to the summary.
   /// \param with_fine  print what is in order, too
@@ -132,6 +135,7 @@ class LogGate {
   }
 
  private:
+  CLI::Option* flag_ = nullptr;
   bool keep_delay_ = false;
 };
 

@@ -104,7 +104,7 @@ inline int run_tool(int argc, char** argv, const ToolText& text, const std::func
   };
   try {
     app.set_version_flag("--version", text.name + " (deltadyn) " DELTADYN_VERSION);
-    app.set_config("--config", "", "TOML file with values for the flags; flags on the command line win");
+    app.set_config("--config", "", "TOML file with values for the flags; flags on the command line win")->type_name("FILE");
     app.add_option("--summary", run.summary_file_, "CSV key,value,unit with the figures the tool prints")->type_name("FILE");
     app.add_option("--seed", run.seed, "seed of everything random; the same seed gives the same output")->capture_default_str();
     app.add_option("--threads", run.threads_, "number of threads, 0: as many as the machine has")

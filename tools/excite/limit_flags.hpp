@@ -37,9 +37,9 @@ class LimitFlags {
  public:
   void add_to(CLI::App& app) {
     workspace_.add_to(app);
+    app.option_defaults()->group("Limits; lists hold one number for all drives, or one for each, with commas");
     const auto list = [&app](DriveFlag<std::vector<double>>& flag, const char* what, const char* turning, const char* sliding) {
-      add_list(app, flag.turning, flag.of_turning,
-               fmt::format("{} [{}], one or one a drive separated by commas [the robot file's]", what, turning));
+      add_list(app, flag.turning, flag.of_turning, fmt::format("{} [{}] [the robot file's]", what, turning));
       add_list(app, flag.sliding, flag.of_sliding, fmt::format("the same of prismatic drives [{}]", sliding));
     };
     app.add_option(range_.turning, range_.of_turning, "position limits lo,hi or lo,hi;lo,hi;.. [rad] [the robot file's]");
@@ -47,11 +47,12 @@ class LimitFlags {
     list(velocity_, "velocity limits", "rad/s", "m/s");
     list(acceleration_, "acceleration limits", "rad/s^2", "m/s^2");
     list(effort_, "torque limits, with --params", "N m", "N");
-    add_list(app, "--platform-velocity-m-s", plate_velocity_, "of the plate, each of x, y, z: one or three [m/s] [not limited]");
-    add_list(app, "--platform-acceleration-m-s2", plate_acceleration_, "of the plate, each of x, y, z [m/s^2] [not limited]");
-    app.add_option("--yaw-velocity-rad-s", yaw_velocity_, "of the fourth coordinate [rad/s] [not limited]");
-    app.add_option("--yaw-acceleration-rad-s2", yaw_acceleration_, "of the fourth coordinate [rad/s^2] [not limited]");
-    app.add_option("--yaw-range-rad", yaw_range_, "largest angle to either side of the fourth coordinate [rad]");
+    add_list(app, "--platform-velocity-m-s", plate_velocity_,
+             "of the plate, along each of x, y, z: one or three [m/s] [not limited]");
+    add_list(app, "--platform-acceleration-m-s2", plate_acceleration_, "the same [m/s^2] [not limited]");
+    app.add_option("--yaw-velocity-rad-s", yaw_velocity_, "of the tool's turning [rad/s] [not limited]");
+    app.add_option("--yaw-acceleration-rad-s2", yaw_acceleration_, "the same [rad/s^2] [not limited]");
+    app.add_option("--yaw-range-rad", yaw_range_, "largest angle of the tool to either side [rad] [the drive's range]");
   }
 
   /// The limits of the flags over those of the robot file; what exceeds the file is told. Throws Error(usage).

@@ -74,6 +74,7 @@ class SearchFlags {
 
  private:
   void add_series(CLI::App& app) {
+    app.option_defaults()->group("Motion");
     app.add_option("--base-frequency-hz", frequency_, "range lower,upper of the base frequency [Hz]")
         ->delimiter(',')
         ->expected(1, 2)
@@ -90,19 +91,21 @@ class SearchFlags {
   }
 
   void add_criterion(CLI::App& app) {
+    app.option_defaults()->group("What makes a motion good");
     app.add_option("--criterion", criterion_, "what is made large (9)")
         ->check(CLI::IsMember({"logdet", "cond", "det", "trace", "min-eigenvalue"}))
         ->capture_default_str();
     app.add_option("--velocity-weight", options_.velocity_weight, "w of (9): weight of the drive velocities beside the criterion")
         ->capture_default_str();
     app.add_option("--away-from-reversals", options_.least_away,
-                   "share of the time that every drive is away from velocity reversals, at least, 0: no matter [1]")
+                   "least share of the time that every drive is away from velocity reversals; 0: no matter")
         ->capture_default_str();
     app.add_option("--cutoff-hz", cutoff_hz_, "cut-off of the identification, which sets what it leaves out near a reversal [Hz]")
         ->capture_default_str();
   }
 
   void add_effort(CLI::App& app) {
+    app.option_defaults()->group("Effort of the search");
     app.add_option("--starts", options_.starts, "starts of the search, 0: as many as the time allows")->capture_default_str();
     app.add_option("--time-limit-s", time_limit_s_, "of the whole tool; the best motion until then is written [s]")
         ->capture_default_str();

@@ -26,6 +26,7 @@ namespace deltadyn::tools {
 class TorqueFlags {
  public:
   void add_to(CLI::App& app) {
+    app.option_defaults()->group("Torque");
     app.add_option("--params", params_file_, "known model name,value,unit (CSV): limits the torque, and gives relative figures")
         ->type_name("FILE");
     app.add_option("--torque-margin", margin_,

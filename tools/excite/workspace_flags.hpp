@@ -20,6 +20,7 @@ namespace deltadyn::tools {
 class WorkspaceFlags {
  public:
   void add_to(CLI::App& app) {
+    app.option_defaults()->group("Workspace");
     app.add_option("--workspace", shape_, "shape that the plate's centre stays in [a ball that the robot reaches]")
         ->check(CLI::IsMember({"half-ball", "ball", "cylinder", "cone", "box"}));
     add_list(app, "--workspace-center-m", centre_, "its centre x,y,z; half-ball: of the flat side, which is up [m]");

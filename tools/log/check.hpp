@@ -31,7 +31,7 @@ class Check {
                                       "zeros of the drives; scale of the torque against the prior's masses; given derivatives. "
                                       "Exit code 5 if a fault is found.");
     set_example(c, "delta-log check fast.csv slow.csv --robot robot.urdf --prior prior.csv --report check.html");
-    c.add_option("logs", log_files_, "logs of this robot (CSV)")->required()->type_name("LOG");
+    c.add_option("logs", log_files_, "logs of this robot (CSV, or what delta-log import reads)")->required()->type_name("LOG");
     c.add_option("--robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     c.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
         ->type_name("FILE");
