@@ -46,6 +46,10 @@ class Spoilt {
     return run(Words{"delta-log", "check"} + logs_ +
                Words{"--robot", robot_file(), "--summary", path("summary.csv"), "--report", path("check.html")} + flags);
   }
+  [[nodiscard]] ToolResult diagnose(const Words& flags) const {
+    return run(Words{"delta-diagnose", robot_file()} + logs_ +
+               Words{"--params", installed(kLogs + "truth.csv"), "-o", path("diagnosis.csv")} + flags);
+  }
   [[nodiscard]] std::map<std::string, std::string> summary() const { return read_summary(path("summary.csv")); }
 
   /// Largest relative error of the drives' friction.
@@ -170,6 +174,14 @@ TEST(FaultyLogs, CheckSaysWhatIdentifyWouldAndWritesAPage) {
   const ToolResult fault = turned.check();
   EXPECT_EQ(fault.code, 5);
   EXPECT_THAT(read_text(turned.path("check.html")), HasSubstr("the torque of drive 1 has the wrong sign"));
+}
+
+TEST(FaultyLogs, ARefusedDiagnosisWritesThePageOfTheCheck) {
+  const Spoilt turned([](Log& log) { log.tau.col(0) *= -1; });
+  const ToolResult result = turned.diagnose({"--report", turned.path("diagnosis.html")});
+  EXPECT_EQ(result.code, 5) << result.out << result.err;
+  EXPECT_FALSE(fs::exists(turned.path("diagnosis.csv")));
+  EXPECT_THAT(read_text(turned.path("diagnosis.html")), HasSubstr("the torque of drive 1 has the wrong sign"));
 }
 
 }  // namespace

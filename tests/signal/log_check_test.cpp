@@ -17,6 +17,7 @@ namespace {
 
 using namespace deltadyn::testing;
 using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -240,6 +241,23 @@ TEST(LogCheck, SplitsAtALongGap) {
   ASSERT_EQ(parts[0].notes.size(), 1U);
   EXPECT_THAT(parts[0].notes.front(), HasSubstr("line 4052, column t_s: a gap of 0.051 s"));
   EXPECT_THROW(check_and_repair(log, delta3()), Error);
+}
+
+// What was said of a part that is not used stays, in as many words as before: one sentence for the numbers that two drives miss.
+TEST(LogCheck, AnUnusablePartIsSaidAndKeepsItsWords) {
+  Log log = good_log();
+  log.tau(1000, 0) = log.tau(1500, 1) = kNan;
+  log.tau.col(2).head(4000).setConstant(5);  // while the drive moves
+  remove_rows(log, 4000, 50);
+  const std::vector<Log> parts = parts_of(log);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].line.front(), 4052);
+  ASSERT_NE(finding(parts[0], "unusable_part"), nullptr);
+  EXPECT_NE(finding(parts[0], "missing_numbers", 0), nullptr);
+  EXPECT_NE(finding(parts[0], "missing_numbers", 1), nullptr);
+  EXPECT_THAT(parts[0].notes,
+              UnorderedElementsAre(HasSubstr("a gap of 0.051 s"), HasSubstr("no number, filled in; the first of 2 in 2 columns"),
+                                   HasSubstr("part 1 is not used")));
 }
 
 TEST(LogCheck, SaysManyGapsOnceAndDropsWhatIsTooShort) {
