@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than the model's
 constexpr Index kFewestRows = 10;       // to judge them by
 constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 1e-3;     // share of the information that is noise; less moves no figure
+constexpr double kFeltNoise = 1e-5;     // share of the information that is noise; less moves no figure
 constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
 
 double seconds_since(Clock::time_point start) {
@@ -33,7 +33,7 @@ DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int 
   return fold;
 }
 
-/// Rows of which the reversals take more than half say little about the motion: then those near reversals are needed, too.
+/// Regular rows that are fewer than those near reversals show little of the motion: reversals are then judged beside a fit of both.
 bool needs_reversals(const DriveFold& regular, const DriveFold& reversal) {
   return regular.rows < reversal.rows;
 }
@@ -45,8 +45,8 @@ std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fol
   if (choice == Reversals::keep) return keep;
   std::vector<DriveFold> folds = fold.regular;
   for (std::size_t j = 0; j < folds.size() && choice == Reversals::automatic; ++j) {
-    keep[j] = needs_reversals(fold.regular[j], fold.reversal[j]);
-    if (keep[j]) folds[j].add(fold.reversal[j]);
+    keep[j] = fold.regular[j].rows < kFewestRows;
+    if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
   }
   const BaseEstimate estimate = estimate_base_parameters(base, folds);
   const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
@@ -70,19 +70,33 @@ std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& kee
   return folds;
 }
 
+/// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations alternates, so that
+/// little of it is left in slow sums; the steps of a coarse one follow the motion about its turning points.
+double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double rate_hz) {
+  constexpr double kCountsPerSample = 3;  // of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
+  constexpr double kFine = 0.05, kCoarse = 0.45;
+  const double step = std::sqrt(12 * motion_band(q, rate_hz).noise_density * rate_hz / 2);
+  const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
+  const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
+  return usual > kCountsPerSample * step ? kFine : kCoarse;
+}
+
 /// DriveNoise::correlation of each drive: mean over the logs, weighted by their rows.
-std::vector<double> correlations(const Robot& robot, const std::vector<PreparedLog>& logs, const Eigen::VectorXd& p,
-                                 const std::vector<bool>& keep, int threads) {
+std::vector<double> correlations(const Robot& robot, const std::vector<Log>& recorded, const std::vector<PreparedLog>& logs,
+                                 const Eigen::VectorXd& p, const std::vector<bool>& keep, int threads) {
   std::vector<double> sum(keep.size(), 0.0), rows(keep.size(), 0.0);
-  for (const PreparedLog& log : logs) {
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const PreparedLog& log = logs[l];
     const Prediction prediction = predict(robot, log, p, threads);
     const auto lags = static_cast<Index>(std::ceil(kNoiseMemory_s * log.rate_hz / static_cast<double>(log.stride)));
+    const double white = log.low_pass ? log.low_pass->white_correlation() : 1.0;
     for (std::size_t j = 0; j < keep.size(); ++j) {
       const auto drive = static_cast<int>(j);
       const auto usable = prediction.usable(drive, keep[j]);
       const auto count = static_cast<double>(usable.count());
       const Eigen::VectorXd residual = prediction.tau.col(drive) - prediction.model.col(drive);
-      sum[j] += count * noise_correlation(residual, usable, std::min<Index>(lags, 50));
+      const double least = white * least_correlation(recorded[l].q.col(drive), log.rate_hz);
+      sum[j] += count * std::max(least, noise_correlation(residual, usable, std::min<Index>(lags, 50), white));
       rows[j] += count;
     }
   }
@@ -115,6 +129,16 @@ std::vector<double> robust_scales(const Robot& robot, const std::vector<Prepared
   return scales;
 }
 
+/// Band of the motion; the cut-off where it was given and the logs are too short to tell.
+double motion_hz(const std::vector<Log>& logs, const Identification& found) {
+  if (found.cutoff) return found.cutoff->cutoff_hz;
+  try {
+    return choose_cutoff(logs).cutoff_hz;
+  } catch (const Error&) {
+    return found.processing.cutoff_hz;
+  }
+}
+
 std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& options) {
   std::vector<PreparedLog> prepared;
   prepared.reserve(logs.size());
@@ -139,6 +163,9 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
     out.cutoff = choose_cutoff(logs);
     out.processing.cutoff_hz = out.cutoff->cutoff_hz;
   }
+
+  const double band_hz = options.processing.filter ? motion_hz(logs, out) : 0.0;
+  if (options.processing.filter) out.processing.keep_motion(band_hz);
 
   const auto fold_start = Clock::now();
   std::vector<PreparedLog> prepared = prepare_all(robot, logs, out.processing);
@@ -177,7 +204,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }
   } else if (options.compensate_noise && options.processing.filter && !averages_periods(prepared)) {
-    NoiseBias found = simulate_noise_bias(robot, out.base, logs, out.processing, keep, options.base.seed);
+    NoiseBias found = noise_bias(robot, out.base, logs, out.processing, keep, band_hz);
     out.noise_share = found.largest_share;
     if (found.largest_share > kFeltNoise) {
       bias = std::move(found);
@@ -186,7 +213,7 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
     }
   }
   fold.regular = as_recorded;  // the residual is reported over all rows with their full weight
-  const std::vector<double> correlation = correlations(robot, prepared, p, keep, options.threads);
+  const std::vector<double> correlation = correlations(robot, logs, prepared, p, keep, options.threads);
   out.base_estimate = estimate_base_parameters(out.base, folds, correlation, bias ? &*bias : nullptr);
 
   ConsistentFitProblem problem;

@@ -122,11 +122,11 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
 }
 
 double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
-                         const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags) {
+                         const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags, double white) {
   const Eigen::VectorXd e = usable.select(residual.array(), 0.0).matrix();
   const auto count = static_cast<double>(usable.count());
   const double variance = e.squaredNorm() / std::max(count, 1.0);
-  if (!(variance > 0)) return 1.0;
+  if (!(variance > 0)) return white;
   double sum = 1.0;
   double uncertainty = 0.0;
   for (Index lag = 1; lag <= std::min<Index>(lags, e.size() - 1); ++lag) {
@@ -136,8 +136,8 @@ double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
     sum += 2 * window * rho;
     uncertainty += 4 * window * window / count;
   }
-  // White noise gives 1 give or take the square root of `uncertainty`: then it is taken as white.
-  return std::abs(sum - 1) < 3 * std::sqrt(uncertainty) ? 1.0 : std::max(sum, 0.05);
+  // White noise gives `white` give or take the square root of `uncertainty`: then it is taken as white.
+  return std::abs(sum - white) < 3 * white * std::sqrt(uncertainty) ? white : std::max(sum, 0.05);
 }
 
 }  // namespace deltadyn

@@ -19,6 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 20;
+constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
 constexpr double kBreakaway_s = 0.02;   // a joint needs about so long to slide again after a reversal
@@ -158,12 +159,16 @@ PreparedLog copy_log(const Robot& robot, const Log& log) {
 
 }  // namespace
 
+void ProcessingOptions::keep_motion(double motion_hz) {
+  motion_over_pass = std::clamp(motion_hz / cutoff_hz, motion_over_pass, std::max(motion_over_pass, kMostOverPass));
+}
+
 void ProcessingOptions::validate() const {
   const auto refuse = [](const char* field, const char* range) {
     throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
   };
   if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
-  if (!(motion_over_pass >= 0.5 && motion_over_pass <= 10)) refuse("motion_over_pass", "it must be 0.5 to 10");
+  if (!(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass)) refuse("motion_over_pass", "it must be 0.02 to 10");
   if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10)) refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
   if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
   if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");

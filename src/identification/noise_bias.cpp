@@ -2,10 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <random>
-
-#include "deltadyn/signal/motion_band.hpp"
 
 #include "log_middle.hpp"
 
@@ -16,106 +12,135 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kSamples = 30'000;    // of each log: the excess is then known to a few per cent, whatever the log's length
+constexpr Index kSamples = 100'000;   // of each log, from its middle
 constexpr Index kRowsPerBlock = 256;  // as in fold_log
-constexpr double kMostNoise = 0.5;    // of a direction's information: beyond, what would be left is known worse than nothing
+constexpr double kMostNoise = 0.99;   // of a direction's information: beyond, nothing is known there
 constexpr double kShown = 1e-3;       // of the largest eigenvalue: weaker directions are for other drives to show
 constexpr double kNoise = 1e-10;      // of the largest eigenvalue: rounding
 
-/// Y^T Y and Y^T tau of the used rows in the base parameters, rows chosen by `use_of` (that of the log without added noise).
-struct Normal {
-  std::vector<MatrixXd> information;
-  std::vector<VectorXd> torque;
-  Normal(Index drives, Index count)
-      : information(static_cast<std::size_t>(drives), MatrixXd::Zero(count, count)),
-        torque(static_cast<std::size_t>(drives), VectorXd::Zero(count)) {}
-  void add(const Normal& other, double weight) {
-    for (std::size_t j = 0; j < information.size(); ++j) {
-      information[j] += weight * other.information[j];
-      torque[j] += weight * other.torque[j];
-    }
+/// Products of one drive's used rows in the base parameters: regressor Y, instruments Z, torque tau.
+struct Products {
+  MatrixXd YtY, ZtY, ZtZ;
+  VectorXd Yt_tau, Zt_tau;
+  explicit Products(Index count = 0)
+      : YtY(MatrixXd::Zero(count, count)), ZtY(YtY), ZtZ(YtY), Yt_tau(VectorXd::Zero(count)), Zt_tau(Yt_tau) {}
+  void add(const Products& other, double times = 1) {
+    YtY += times * other.YtY;
+    ZtY += times * other.ZtY;
+    ZtZ += times * other.ZtZ;
+    Yt_tau += times * other.Yt_tau;
+    Zt_tau += times * other.Zt_tau;
   }
 };
 
-Normal normal_of(const Robot& robot, const BaseParameters& base, const PreparedLog& log, const std::vector<bool>& keep) {
-  const Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock, count = base.count();
-  std::vector<Normal> parts(static_cast<std::size_t>(blocks), Normal(robot.drives(), count));
+/// Base columns of one drive's rows; rows that the fit does not use are zero.
+MatrixXd base_rows(const BaseParameters& base, const RowBlock& block, std::size_t drive, const Eigen::VectorXd& used) {
+  MatrixXd Y(block.rows(), base.count());
+  for (Index c = 0; c < Y.cols(); ++c) Y.col(c) = block.Y[drive].col(base.independent[static_cast<std::size_t>(c)]);
+  return used.asDiagonal() * Y;
+}
+
+/// The rows that two readings of one log share are made the only ones of both.
+void share_rows(PreparedLog& a, PreparedLog& b) {
+  const Index first = std::max(a.first, b.first);
+  const Index last = std::min(a.first + a.rows * a.stride, b.first + b.rows * b.stride);
+  for (PreparedLog* log : {&a, &b}) {
+    log->first = first;
+    log->rows = std::max<Index>(0, (last - first) / log->stride);
+  }
+}
+
+std::vector<Products> products_of(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
+                                  const PreparedLog& narrow, const std::vector<bool>& keep) {
+  const Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
+  const std::vector<Products> none(keep.size(), Products(base.count()));
+  std::vector<std::vector<Products>> parts(static_cast<std::size_t>(blocks), none);
 #pragma omp parallel for schedule(static, 1)
   for (Index b = 0; b < blocks; ++b) {
-    RowBlock block;
-    read_rows(robot, log, b * kRowsPerBlock, std::min(kRowsPerBlock, log.rows - b * kRowsPerBlock), block);
+    const Index first = b * kRowsPerBlock, count = std::min(kRowsPerBlock, log.rows - first);
+    RowBlock wide, instruments;
+    read_rows(robot, log, first, count, wide);
+    read_rows(robot, narrow, first, count, instruments);
     for (std::size_t j = 0; j < keep.size(); ++j) {
       const auto drive = static_cast<Index>(j);
-      MatrixXd Y(block.rows(), count);
-      for (Index c = 0; c < count; ++c) Y.col(c) = block.Y[j].col(base.independent[static_cast<std::size_t>(c)]);
-      VectorXd tau = block.tau.col(drive);
-      for (Index k = 0; k < block.rows(); ++k) {
-        const RowUse use = block.use(k, drive);
-        if (use == RowUse::regular || (use == RowUse::reversal && keep[j])) continue;
-        Y.row(k).setZero();
-        tau(k) = 0;
+      VectorXd used(count);
+      for (Index k = 0; k < count; ++k) {
+        const RowUse use = wide.use(k, drive);
+        used(k) = use == RowUse::regular || (use == RowUse::reversal && keep[j]) ? 1 : 0;
       }
-      parts[static_cast<std::size_t>(b)].information[j] = Y.transpose() * Y;
-      parts[static_cast<std::size_t>(b)].torque[j] = Y.transpose() * tau;
+      const MatrixXd Y = base_rows(base, wide, j, used), Z = base_rows(base, instruments, j, used);
+      const VectorXd tau = wide.tau.col(drive);
+      Products& part = parts[static_cast<std::size_t>(b)][j];
+      part.YtY = Y.transpose() * Y;
+      part.ZtY = Z.transpose() * Y;
+      part.ZtZ = Z.transpose() * Z;
+      part.Yt_tau = Y.transpose() * tau;
+      part.Zt_tau = Z.transpose() * tau;
     }
   }
-  Normal sum(robot.drives(), count);
-  for (const Normal& part : parts) sum.add(part, 1.0);
+  std::vector<Products> sum = none;
+  for (const std::vector<Products>& part : parts) {
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j].add(part[j]);
+  }
   return sum;
 }
 
-/// Std of the white noise of each drive's positions.
-VectorXd noise_std(const Log& log) {
-  VectorXd std(log.drives());
-  const double rate_hz = 1.0 / log.sample_time_s();
-  for (Index j = 0; j < log.drives(); ++j) std(j) = std::sqrt(motion_band(log.q.col(j), rate_hz).noise_density * rate_hz / 2);
-  return std;
+/// Inverse of Z^T Z in the directions that the instruments span.
+MatrixXd inverse_of(const MatrixXd& ZtZ) {
+  const VectorXd scale = ZtZ.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * ZtZ * scale.asDiagonal());
+  const double least = kNoise * eigen.eigenvalues().maxCoeff();
+  const VectorXd inverse = (eigen.eigenvalues().array() > least).select(eigen.eigenvalues().array().inverse(), 0.0);
+  const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  return V * inverse.asDiagonal() * V.transpose();
+}
+
+/// Largest share of the information in any direction that the drive shows well.
+double largest_share_of(const MatrixXd& whole, const MatrixXd& excess) {
+  const VectorXd scale = whole.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * whole * scale.asDiagonal());
+  const MatrixXd D = scale.asDiagonal() * excess * scale.asDiagonal();
+  double largest = 0;
+  for (Index k = 0; k < whole.rows(); ++k) {
+    if (eigen.eigenvalues()(k) < kShown * eigen.eigenvalues().maxCoeff()) continue;
+    const VectorXd v = eigen.eigenvectors().col(k);
+    largest = std::max(largest, v.dot(D * v) / eigen.eigenvalues()(k));
+  }
+  return largest;
 }
 
 }  // namespace
 
-NoiseBias simulate_noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                              const ProcessingOptions& processing, const std::vector<bool>& keep_reversals, std::uint64_t seed,
-                              int draws) {
-  ProcessingOptions options = processing;
-  options.periods = Periods::ignore;
-  Normal excess(robot.drives(), base.count()), whole(robot.drives(), base.count());
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+                     const ProcessingOptions& processing, const std::vector<bool>& keep_reversals, double instrument_hz) {
+  ProcessingOptions wide = processing;
+  wide.periods = Periods::ignore;
+  ProcessingOptions narrow = wide;
+  narrow.motion_over_pass = std::min(wide.motion_over_pass, instrument_hz / wide.cutoff_hz);
+  NoiseBias bias;
+  for (int j = 0; j < robot.drives(); ++j) {
+    bias.information.emplace_back(MatrixXd::Zero(base.count(), base.count()));
+    bias.torque.emplace_back(VectorXd::Zero(base.count()));
+  }
+  if (!(narrow.motion_over_pass < wide.motion_over_pass)) return bias;
+  std::vector<Products> sum(bias.information.size(), Products(base.count()));
   for (const Log& log : logs) {
     const Log part = middle_of(log, kSamples);
-    const double times = static_cast<double>(log.samples()) / static_cast<double>(part.samples());
-    const VectorXd std = noise_std(part);
-    const PreparedLog plain = prepare_log(robot, part, options);
-    const Normal without = normal_of(robot, base, plain, keep_reversals);
-    whole.add(without, times);
-    for (int draw = 0; draw < draws; ++draw) {
-      const MatrixXd noise =
-          MatrixXd::NullaryExpr(part.samples(), part.drives(), [&]() { return normal(random); }) * std.asDiagonal();
-      for (const double sign : {1.0, -1.0}) {
-        Log noisy = part;
-        noisy.q += sign * noise;
-        PreparedLog prepared = prepare_log(robot, noisy, options);
-        prepared.reversal = plain.reversal;  // the same rows on either side
-        excess.add(normal_of(robot, base, prepared, keep_reversals), times / (2.0 * draws));
-      }
-    }
-    excess.add(without, -times);
+    PreparedLog plain = prepare_log(robot, part, wide), smooth = prepare_log(robot, part, narrow);
+    const auto all_rows =
+        static_cast<double>(plain.rows) * static_cast<double>(log.samples()) / static_cast<double>(part.samples());
+    share_rows(plain, smooth);
+    if (plain.rows == 0) continue;
+    const std::vector<Products> products = products_of(robot, base, plain, smooth, keep_reversals);
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j].add(products[j], all_rows / static_cast<double>(plain.rows));
   }
-  NoiseBias bias;
-  bias.information = std::move(excess.information);
-  bias.torque = std::move(excess.torque);
-  for (std::size_t j = 0; j < bias.information.size(); ++j) {
-    const VectorXd scale = whole.information[j].diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const MatrixXd G = scale.asDiagonal() * whole.information[j] * scale.asDiagonal();
-    const MatrixXd D = scale.asDiagonal() * bias.information[j] * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
-    for (Index k = 0; k < G.rows(); ++k) {
-      const double value = eigen.eigenvalues()(k);
-      if (value < kShown * eigen.eigenvalues().maxCoeff()) continue;
-      const VectorXd v = eigen.eigenvectors().col(k);
-      bias.largest_share = std::max(bias.largest_share, v.dot(D * v) / value);
-    }
+  for (std::size_t j = 0; j < sum.size(); ++j) {
+    const Products& s = sum[j];
+    const MatrixXd first_stage = inverse_of(s.ZtZ) * s.ZtY;  // regression of Y on Z
+    bias.information[j] = s.YtY - s.ZtY.transpose() * first_stage;
+    bias.information[j] = 0.5 * (bias.information[j] + bias.information[j].transpose()).eval();
+    bias.torque[j] = s.Yt_tau - first_stage.transpose() * s.Zt_tau;
+    bias.largest_share = std::max(bias.largest_share, largest_share_of(s.YtY, bias.information[j]));
   }
   return bias;
 }

@@ -66,6 +66,15 @@ Index FirDecimator::inputs(Index n_outputs) const {
   return n_outputs <= 0 ? 0 : (n_outputs - 1) * factor_ + taps_.size();
 }
 
+double FirDecimator::white_correlation() const {
+  double sum = 1;
+  for (Index lag = factor_; lag < taps_.size(); lag += factor_) {
+    const Index common = taps_.size() - lag;
+    sum += 2 * taps_.head(common).dot(taps_.tail(common)) / taps_.squaredNorm();
+  }
+  return sum;
+}
+
 double FirDecimator::gain(double frequency_hz) const {
   const Index half = half_width();
   double sum = taps_(half);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/signal/motion_band.hpp"
 
 #include "identification/axis_log.hpp"
 #include "support/descriptions.hpp"
@@ -25,7 +26,7 @@ Estimates estimates(const AxisLog& axis, double cutoff_hz) {
   processing.cutoff_hz = cutoff_hz;
   const std::vector<Log> logs = {axis.make()};
   const DataFold fold = fold_log(*robot, prepare_log(*robot, logs.front(), processing));
-  const NoiseBias bias = simulate_noise_bias(*robot, base, logs, processing, {false});
+  const NoiseBias bias = noise_bias(*robot, base, logs, processing, {false}, choose_cutoff(logs).cutoff_hz);
   Estimates out;
   out.plain = estimate_base_parameters(base, fold.regular).value;
   out.compensated = estimate_base_parameters(base, fold.regular, {}, &bias).value;

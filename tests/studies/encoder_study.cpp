@@ -96,6 +96,7 @@ int main(int argc, char** argv) {
   const int bits = std::stoi(argv[2]), repetitions = std::stoi(argv[3]), first = argc > 4 ? std::stoi(argv[4]) : 1;
   const Machine machine = machine_of(name);
   std::map<double, std::map<std::string, Count>> counts;
+  std::map<double, int> bristles;
   double cutoff_sum = 0;
   for (int k = first; k < first + repetitions; ++k) {
     const std::vector<Log> logs = {log_of(name, machine, bits, static_cast<std::uint64_t>(k))};
@@ -108,6 +109,7 @@ int main(int argc, char** argv) {
       options.processing.cutoff_hz = factor * chosen;
       try {
         const Identification found = identify(*machine.robot, logs, machine.truth, {}, options);
+        for (const PreslidingJoint& joint : found.presliding) bristles[factor] += joint.displacement > 0 ? 1 : 0;
         const Eigen::VectorXd truth = found.base.B * machine.truth, std = found.base_estimate.std();
         for (Eigen::Index i = 0; i < truth.size(); ++i) {
           const std::string& what = found.base.expressions[static_cast<std::size_t>(i)];
@@ -123,6 +125,7 @@ int main(int argc, char** argv) {
   }
   fmt::print("{} {} bit, {} repetitions, cut-off chosen {:.1f} Hz\n", name, bits, repetitions, cutoff_sum / repetitions);
   for (const auto& [factor, by_name] : counts) {
+    fmt::print("  x {:.2f}  {} bristles found, none is there\n", factor, bristles[factor]);
     for (const auto& [what, count] : by_name) {
       fmt::print("  x {:.2f}  {:40.40}  inside {:6.1f} %  mean {:6.2f} std, rms {:6.2f} std\n", factor, what,
                  100.0 * count.inside / count.all, count.bias / count.all, std::sqrt(count.square / count.all));

@@ -42,6 +42,9 @@ struct ProcessingOptions {
   bool low_pass_torque = true;  ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
   int stride = 0;               ///< use every stride-th sample; 0: what the pass band asks for
 
+  /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
+  void keep_motion(double motion_hz);
+
   /// Throws deltadyn::Error naming the field.
   void validate() const;
 };

@@ -33,6 +33,9 @@ class FirDecimator {
   [[nodiscard]] Eigen::Index first_input(Eigen::Index output) const { return output * factor_; }
   [[nodiscard]] Eigen::Index inputs(Eigen::Index n_outputs) const;
 
+  /// Variance of a mean over many outputs of white noise, in units of that of independent outputs with the same variance.
+  [[nodiscard]] double white_correlation() const;
+
   /// Gain at a frequency [Hz].
   [[nodiscard]] double gain(double frequency_hz) const;
 
