@@ -21,6 +21,7 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "identified_extras.hpp"
 #include "layout_flags.hpp"
 #include "log_gate.hpp"
 #include "parameter_tables.hpp"
@@ -68,6 +69,9 @@ class Identify {
                    "rows near velocity reversals; auto: used where the build-up of friction is found or Coulomb's law holds, "
                    "else left out (mask)")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
+        ->capture_default_str();
+    app.add_option("--ripples", ripples_, "auto: waves of the torque over the position are found and belong to the model; none")
+        ->check(CLI::IsMember({"auto", "none"}))
         ->capture_default_str();
     app.add_flag("--robust", robust_, "Huber weights against single bad samples");
     gate_.add_to(app);
@@ -162,6 +166,7 @@ class Identify {
     options.processing = processing_.options();
     options.choose_cutoff = processing_.automatic_cutoff();
     options.reversals = reversals_ == "mask" ? Reversals::mask : (reversals_ == "keep" ? Reversals::keep : Reversals::automatic);
+    options.find_ripples = ripples_ == "auto";
     options.robust = robust_;
     options.base.seed = run.seed;
     options.fit.set = set_ == "full" ? ParameterSet::full : ParameterSet::reduced;
@@ -174,17 +179,6 @@ class Identify {
       }
     }
     return options;
-  }
-
-  static void tell_presliding(const RobotDescription& robot, const Identification& result) {
-    for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
-      const PreslidingJoint& found = result.presliding[joint];
-      if (!(found.displacement > 0)) continue;
-      const auto at = static_cast<int>(joint);
-      fmt::print("friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal; its rows near reversals are used\n",
-                 at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope", found.displacement, found.std,
-                 tools::presliding_unit(robot, at));
-    }
   }
 
   void write_base(const Identification& result) const {
@@ -212,7 +206,7 @@ class Identify {
       fmt::print("motion and torque used up to {:.4g} Hz{}\n", result.processing.cutoff_hz,
                  result.cutoff ? ", chosen from the logs" : "");
     }
-    tell_presliding(robot.description(), result);
+    tools::tell_extra_rows(robot.description(), result, out);
     out.add("samples", result.samples);
     out.add("columns", columns);
     out.add("base_parameters", result.base.count());
@@ -260,7 +254,7 @@ class Identify {
 
   std::string command_line_, robot_file_, output_, base_file_, report_file_, prior_file_, effect_file_, effects_out_;
   std::vector<std::string> log_files_;
-  std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto";
+  std::string set_ = "reduced", metric_ = "relative", regularization_ = "auto", reversals_ = "auto", ripples_ = "auto";
   bool robust_ = false;
   tools::LayoutFlags layout_;
   tools::ProcessingFlags processing_;

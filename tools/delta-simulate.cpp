@@ -18,7 +18,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 #include "deltadyn/simulation/simulate.hpp"
 
-#include "presliding_effects.hpp"
+#include "effects_of_rows.hpp"
 #include "simulate/effect_flag.hpp"
 #include "tool_support.hpp"
 
@@ -102,7 +102,7 @@ class Simulate {
     const ParameterTable table = read_parameters(parameter_file_, description);
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
-    std::vector<Effect> effects = tools::presliding_effects(table, description);
+    std::vector<Effect> effects = tools::effects_of_rows(table, description);
     if (!effects_file_.empty()) {
       for (Effect& effect : read_effects(effects_file_, description)) effects.push_back(std::move(effect));
     }

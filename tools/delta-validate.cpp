@@ -11,6 +11,7 @@
 #include "deltadyn/identification/residual_structure.hpp"
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/io/effect_file.hpp"
+#include "deltadyn/io/extra_rows.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
@@ -75,6 +76,8 @@ class Validate {
       options.cutoff_hz = choose_cutoff(logs).cutoff_hz;
     }
     options.presliding = presliding_of(table, description);
+    options.presliding_damping_s = presliding_damping_of(table, description);
+    options.ripples = ripples_of(table, description);
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
     if (!effects.empty() && !options.filter) {

@@ -10,6 +10,8 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "identified_extras.hpp"
+
 namespace deltadyn::tools {
 
 /// Name and unit of every parameter of the robot, without values.
@@ -34,12 +36,7 @@ inline ParameterTable parameter_table(const Robot& robot, const NominalParameter
   return table;
 }
 
-/// "rad" or "m": of the displacement over which a joint's friction builds up. The telescope slides.
-inline const char* presliding_unit(const RobotDescription& robot, int joint) {
-  return joint < robot.drives() && robot.kind_of_drive(joint) == DriveKind::revolute ? "rad" : "m";
-}
-
-/// What a fit found, and the presliding of the joints that have one.
+/// What a fit found, with the presliding of the joints that have one and the ripples.
 inline ParameterTable parameter_table(const Robot& robot, const Identification& result) {
   ParameterTable table = empty_table(robot);
   for (int k = 0; k < robot.parameters(); ++k) {
@@ -49,18 +46,7 @@ inline ParameterTable parameter_table(const Robot& robot, const Identification& 
     entry.prior = result.fit.prior(k);
     entry.data_share = result.fit.data_share(k);
   }
-  for (std::size_t joint = 0; joint < result.presliding.size(); ++joint) {
-    const PreslidingJoint& found = result.presliding[joint];
-    if (!(found.displacement > 0)) continue;
-    ParameterEntry entry;
-    const auto at = static_cast<int>(joint);
-    entry.name = presliding_name(robot.description(), at);
-    entry.value = found.displacement;
-    entry.std = found.std;
-    entry.unit = presliding_unit(robot.description(), at);
-    entry.data_share = 1;
-    table.entries.push_back(std::move(entry));
-  }
+  add_extra_rows(robot.description(), result, table);
   return table;
 }
 

@@ -100,7 +100,8 @@ bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
 
 bool shape_is_free(EffectId id, std::size_t parameter, const VectorXd& shape) {
   const EffectShape& kind = effect_kind(id).shapes[parameter];
-  if (kind.scale == ShapeScale::logs || id == EffectId::kinematic_offset || kind.name == "recorded" || kind.name == "encoder")
+  if (kind.scale == ShapeScale::logs || id == EffectId::kinematic_offset || kind.name == "recorded" || kind.name == "encoder" ||
+      kind.name == "damping")
     return false;
   if (kind.name == "exponent") return id == EffectId::convex_viscous;
   return id != EffectId::shear_thinning || !(shape(1) > 0);  // the power law's reference rate is a matter of units

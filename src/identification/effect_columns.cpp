@@ -157,7 +157,11 @@ std::vector<EffectColumn> with_memory(const EffectSignals& s, EffectId id, int j
   const Index samples = q.size();
   if (id == EffectId::presliding) {
     Presliding<double> state(shape(0), coulomb_friction(v(0)));
-    return one(joint, samples, [&](Index k) { return state.move(k > 0 ? q(k) - q(k - 1) : 0.0) - coulomb_friction(v(k)); });
+    const double damping = shape.size() > 1 ? shape(1) : 0.0;
+    return one(joint, samples, [&](Index k) {
+      const double bristle = state.move(k > 0 ? q(k) - q(k - 1) : 0.0);
+      return damped_presliding(v(k), bristle, shape(0), damping) - coulomb_friction(v(k));
+    });
   }
   if (id == EffectId::hysteresis) {
     Hysteresis<double> state({shape(0), shape(1)}, coulomb_friction(v(0)));

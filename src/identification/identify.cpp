@@ -7,6 +7,7 @@
 
 #include "deltadyn/identification/noise_bias.hpp"
 #include "deltadyn/identification/prediction.hpp"
+#include "deltadyn/identification/ripple_search.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -146,6 +147,14 @@ std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>&
   return prepared;
 }
 
+/// Looks for presliding. True if there is any.
+bool add_presliding(const Robot& robot, const std::vector<Log>& logs, int threads, Identification& out) {
+  out.presliding = find_presliding(robot, out.base, logs, out.processing, threads);
+  out.processing.presliding = displacements(out.presliding);
+  out.processing.presliding_damping_s = bristle_dampings(out.presliding);
+  return (out.processing.presliding.array() > 0).any();
+}
+
 }  // namespace
 
 Identification identify(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
@@ -172,13 +181,19 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   DataFold fold = fold_all(robot, prepared, options.threads);
   std::vector<bool> keep = keep_reversals(out.base, fold, options.reversals, out.drives);
   report(0.4);
+  const auto prepare_again = [&]() {
+    prepared = prepare_all(robot, logs, out.processing);
+    fold = fold_all(robot, prepared, options.threads);
+    keep = keep_reversals(out.base, fold, options.reversals, out.drives);
+  };
   if (options.processing.filter && options.reversals == Reversals::automatic) {
-    out.presliding = find_presliding(robot, out.base, logs, out.processing, options.threads);
-    out.processing.presliding = displacements(out.presliding);
-    if ((out.processing.presliding.array() > 0).any()) {
-      prepared = prepare_all(robot, logs, out.processing);
-      fold = fold_all(robot, prepared, options.threads);
-      keep = keep_reversals(out.base, fold, options.reversals, out.drives);
+    if (add_presliding(robot, logs, options.threads, out)) prepare_again();
+    if (options.find_ripples) out.processing.ripples = find_ripples(robot, out.base, logs, out.processing, keep);
+    if (!out.processing.ripples.empty()) {
+      // Once more each with the other one known.
+      add_presliding(robot, logs, options.threads, out);
+      out.processing.ripples = find_ripples(robot, out.base, logs, out.processing, keep);
+      prepare_again();
     }
   }
   for (const PreparedLog& log : prepared) out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());

@@ -7,6 +7,7 @@
 
 #include "deltadyn/effects/coulomb_friction.hpp"
 #include "deltadyn/effects/presliding.hpp"
+#include "deltadyn/effects/torque_ripple.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/fourier.hpp"
@@ -53,8 +54,9 @@ Eigen::MatrixXd joint_rates(const Robot& robot, const PreparedLog& log) {
   return rates;
 }
 
-double presliding_of(const ProcessingOptions& options, Index joint) {
-  return joint < options.presliding.size() ? options.presliding(joint) : 0.0;
+/// Value of a joint in a list that may be shorter.
+double value_or_none(const Eigen::VectorXd& of_joints, Index joint) {
+  return joint < of_joints.size() ? of_joints(joint) : 0.0;
 }
 
 /// The bristles' share of Coulomb's friction along a log, for the joints that have presliding (effects/presliding.hpp).
@@ -63,15 +65,28 @@ void add_presliding(const ProcessingOptions& options, const Eigen::MatrixXd& rat
   if (!(options.presliding.array() > 0).any()) return;
   log.coulomb_share.setOnes(rates.rows(), rates.cols());
   for (Index j = 0; j < rates.cols(); ++j) {
-    const double displacement = presliding_of(options, j);
+    const double displacement = value_or_none(options.presliding, j);
     if (!(displacement > 0)) continue;
+    const double damping_s = value_or_none(options.presliding_damping_s, j);
     Presliding<double> bristle(displacement, coulomb_friction(rates(0, j)));
     for (Index k = 0; k < rates.rows(); ++k) {
       // The bar has no position of its own in the log: its rate serves, over the step that leads here.
       const double step = k == 0             ? 0.0
                           : j < log.q.cols() ? log.q(k, j) - log.q(k - 1, j)
                                              : 0.5 * (rates(k, j) + rates(k - 1, j)) / log.rate_hz;
-      log.coulomb_share(k, j) = bristle.move(step) * coulomb_friction(rates(k, j));
+      const double state = bristle.move(step), rate = rates(k, j);
+      log.coulomb_share(k, j) = damped_presliding(rate, state, displacement, damping_s) * coulomb_friction(rate);
+    }
+  }
+}
+
+void add_ripples(const ProcessingOptions& options, PreparedLog& log) {
+  if (options.ripples.empty()) return;
+  log.ripple.setZero(log.q.rows(), log.q.cols());
+  for (const Ripple& ripple : options.ripples) {
+    for (Index k = 0; k < log.q.rows(); ++k) {
+      const RipplePair<double> wave = torque_ripple(log.q(k, ripple.drive), ripple.n);
+      log.ripple(k, ripple.drive) += ripple.cosine * wave.cosine + ripple.sine * wave.sine;
     }
   }
 }
@@ -114,10 +129,11 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
     mask.push_back(
         reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
     rest.push_back(rest_of(mask.back(), log.rate_hz));
-    if (const double displacement = presliding_of(options, j); displacement > 0)
+    if (const double displacement = value_or_none(options.presliding, j); displacement > 0)
       mask.back() = unknown_start(rates.col(j), displacement, log.rate_hz);
   }
   add_presliding(options, rates, log);
+  add_ripples(options, log);
   log.reversal.resize(log.t_s.size(), robot.drives());
   log.rest.resize(log.t_s.size(), robot.drives());
   for (int j = 0; j < robot.drives(); ++j) {
@@ -175,6 +191,8 @@ void ProcessingOptions::validate() const {
   if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
   if (stride < 0) refuse("stride", "it must be at least 0");
   if (!((presliding.array() >= 0).all() && presliding.allFinite())) refuse("presliding", "displacements must be at least 0");
+  if (!((presliding_damping_s.array() >= 0).all() && presliding_damping_s.allFinite()))
+    refuse("presliding_damping_s", "dampings must be at least 0 s");
 }
 
 namespace {
@@ -263,6 +281,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
     out.stride = std::max(1, options.stride);
     out.rows = (samples + out.stride - 1) / out.stride;
     out.reversal.setConstant(samples, robot.drives(), false);
+    add_ripples(options, out);
     (void)joint_rates(robot, out);  // refuses poses out of reach
     return out;
   }
@@ -322,7 +341,8 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   const Index samples = (last_sample - first_sample) / step + 1;
 
   const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
-  Eigen::MatrixXd raw(samples, n * (P + 1));  // Y of drive 1, of drive 2, ..., then the torques
+  // Y of drive 1, of drive 2, ..., then the torques, and those of the ripples if there are any.
+  Eigen::MatrixXd raw(samples, n * (P + (log.ripple.size() > 0 ? 2 : 1)));
   Eigen::MatrixXd Y(n, P);
   for (Index k = 0; k < samples; ++k) {
     const Index at = first_sample + k * step;
@@ -331,7 +351,8 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
     for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
       Y.col(coulomb[joint]) *= log.coulomb_share(at, static_cast<Index>(joint));
     for (int j = 0; j < n; ++j) raw.row(k).segment(j * P, P) = Y.row(j);
-    raw.row(k).tail(n) = log.tau.row(at);
+    raw.row(k).segment(n * P, n) = log.tau.row(at);
+    if (log.ripple.size() > 0) raw.row(k).tail(n) = log.ripple.row(at);
   }
   Eigen::MatrixXd rows;
   if (log.low_pass) {
@@ -343,7 +364,12 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   block.first_row = first_row;
   block.Y.resize(static_cast<std::size_t>(n));
   for (int j = 0; j < n; ++j) block.Y[static_cast<std::size_t>(j)] = rows.middleCols(j * P, P);
-  block.tau = rows.rightCols(n);
+  block.tau = rows.middleCols(n * P, n);
+  block.ripple.resize(0, 0);
+  if (log.ripple.size() > 0) {
+    block.ripple = rows.rightCols(n);
+    block.tau -= block.ripple;
+  }
   block.use.setConstant(count, n, RowUse::regular);
   for (Index k = 0; k < count; ++k) {
     const Index centre = sample_of_row(log, first_row + k);

@@ -43,6 +43,10 @@ Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::Vect
       out.tau.middleRows(first, count) = block.tau;
       out.use.middleRows(first, count) = block.use;
       for (int j = 0; j < n; ++j) out.model.col(j).segment(first, count) = block.Y[static_cast<std::size_t>(j)] * p;
+      if (block.ripple.size() > 0) {
+        out.tau.middleRows(first, count) += block.ripple;
+        out.model.middleRows(first, count) += block.ripple;
+      }
       for (Eigen::Index row = first; row < first + count; ++row) {
         const Eigen::Index sample = sample_of_row(log, row);
         out.t_s(row) = log.t_s(sample);

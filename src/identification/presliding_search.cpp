@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "deltadyn/effects/coulomb_friction.hpp"
 #include "deltadyn/effects/presliding.hpp"
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
-#include "deltadyn/identification/prediction.hpp"
 
 #include "log_middle.hpp"
+#include "partial_fit.hpp"
 
 namespace deltadyn {
 namespace {
@@ -29,14 +28,16 @@ constexpr int kGrid = 13;  // displacements tried from the smallest to the large
 constexpr double kClearGain = 25;  // of the squared residual in units of its noise: five standard deviations for one parameter
 constexpr double kForm =
     0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
-constexpr double kMemory_s = 0.2;  // of the residual, as in identify()
+constexpr double kMemory_s = 0.2;           // of the residual, as in identify()
+constexpr double kWider = 3;                // displacements on either side that are tried with damping
+constexpr double kLongestDamping_s = 0.02;  // what lasts longer is no bristle
 
 /// One log with what the search needs of it.
 struct SearchLog {
   PreparedLog prepared;             ///< with the presliding of the present pass
   MatrixXd rates;                   ///< N x joints with friction
   std::vector<MatrixXd> direction;  ///< of each joint N x drives: torque of unit friction of positive sign
-  MatrixXd residual;                ///< rows x drives
+  BaseRows rows;                    ///< with the presliding of the present pass
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
 };
 
@@ -46,6 +47,7 @@ class Search {
          int threads)
       : robot_(robot), base_(base), processing_(processing), threads_(threads), coulomb_(coulomb_columns(robot)) {
     processing_.presliding.setZero(robot.friction_joints());
+    processing_.presliding_damping_s.setZero(robot.friction_joints());
     processing_.periods = Periods::ignore;  // the bristles' memory runs along the log as it was
     for (const Log& log : logs) logs_.push_back(middle_of(log, kSamples));
     range_.setZero(robot.friction_joints());
@@ -58,17 +60,16 @@ class Search {
       fit();
       if (pass == 0) look_along();
       const VectorXd before = processing_.presliding;
-      for (std::size_t joint = 0; joint < out.size(); ++joint) {
-        out[joint] = best(static_cast<Index>(joint));
-        processing_.presliding(static_cast<Index>(joint)) = out[joint].displacement;
-      }
+      for (std::size_t joint = 0; joint < out.size(); ++joint) out[joint] = best(static_cast<Index>(joint));
+      processing_.presliding = displacements(out);
+      processing_.presliding_damping_s = bristle_dampings(out);
       if (pass > 0 && ((processing_.presliding - before).array().abs() <= 0.01 * before.array()).all()) break;
     }
     return out;
   }
 
  private:
-  /// Base parameters with the present displacements, and what they leave.
+  /// Base parameters with the present displacements, the noise that they leave, and the rows.
   void fit() {
     DataFold fold;
     std::vector<PreparedLog> prepared;
@@ -81,20 +82,18 @@ class Search {
       if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);  // else too little is left to start from
     }
     const BaseEstimate estimate = estimate_base_parameters(base_, folds);
-    p_ = any_parameters(base_, estimate.value, robot_.parameters());
+    const VectorXd p = any_parameters(base_, estimate.value, robot_.parameters());
     if (searched_.empty()) searched_.resize(logs_.size());
     for (Index j = 0; j < robot_.drives(); ++j) noise_(j) = estimate.noise[static_cast<std::size_t>(j)].std;
     for (std::size_t l = 0; l < logs_.size(); ++l) {
       SearchLog& log = searched_[l];
       log.prepared = std::move(prepared[l]);
-      const Prediction prediction = predict(robot_, log.prepared, p_, threads_);
-      log.residual = prediction.residual();
-      log.use = prediction.use;
+      log.rows = base_rows(robot_, base_, log.prepared, log.use);
       const auto lags =
           static_cast<Index>(std::ceil(kMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
       for (Index j = 0; j < robot_.drives(); ++j) {
-        const double memory =
-            noise_correlation(log.residual.col(j), prediction.usable(static_cast<int>(j), false), std::min<Index>(lags, 50));
+        const double memory = noise_correlation(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
+                                                log.use.col(j) == RowUse::regular, std::min<Index>(lags, 50));
         noise_(j) = std::max(noise_(j), estimate.noise[static_cast<std::size_t>(j)].std * std::sqrt(memory));
       }
     }
@@ -134,87 +133,101 @@ class Search {
   }
 
   /// Rows of the friction of one joint, of size one: of its bristle, or of Coulomb's law for displacement 0.
-  [[nodiscard]] MatrixXd column(const SearchLog& log, Index joint, double displacement) const {
+  /// \param damped  with the rate of the bristle's state as a second column
+  [[nodiscard]] Columns columns(const SearchLog& log, Index joint, double displacement, bool damped) const {
     const MatrixXd& direction = log.direction[static_cast<std::size_t>(joint)];
-    MatrixXd values = direction;
+    MatrixXd values = direction, of_rate = direction;
     Presliding<double> bristle(std::max(displacement, 1e-12), coulomb_friction(log.rates(0, joint)));
     for (Index k = 0; k < direction.rows(); ++k) {
-      const double share =
-          displacement > 0 ? bristle.move(k > 0 ? step(log, joint, k) : 0.0) : coulomb_friction(log.rates(k, joint));
-      values.row(k) *= share;
+      const double rate = log.rates(k, joint);
+      const double state = displacement > 0 ? bristle.move(k > 0 ? step(log, joint, k) : 0.0) : coulomb_friction(rate);
+      values.row(k) *= state;
+      if (damped) of_rate.row(k) *= presliding_rate(rate, state, displacement);
     }
-    return low_passed_rows(log.prepared, values);
+    Columns out = {low_passed_rows(log.prepared, values)};
+    if (damped) out.push_back(low_passed_rows(log.prepared, of_rate));
+    return out;
   }
 
-  /// Squared residual over the noise with the friction of one joint replaced by that of another displacement, its amplitude fitted.
-  [[nodiscard]] double cost(Index joint, double displacement, const std::vector<MatrixXd>& target) const {
-    double aa = 0, ab = 0, bb = 0;
-    for (std::size_t l = 0; l < searched_.size(); ++l) {
-      const SearchLog& log = searched_[l];
-      const MatrixXd c = column(log, joint, displacement);
-      for (Index j = 0; j < c.cols(); ++j) {
-        const double weight = 1 / (noise_(j) * noise_(j));
-        for (Index k = 0; k < c.rows(); ++k) {
-          if (c(k, j) == 0 || log.use(k, j) == RowUse::unusable) continue;
-          aa += weight * c(k, j) * c(k, j);
-          ab += weight * c(k, j) * target[l](k, j);
-        }
+  [[nodiscard]] PartialFit::Result result(const PartialFit& fit, Index joint, double displacement, bool damped) const {
+    std::vector<Columns> all;
+    for (const SearchLog& log : searched_) all.push_back(columns(log, joint, displacement, damped));
+    PartialFit::Result out = fit.with(all);
+    // Friction that drives, or bristles that do so, are no explanation.
+    if (out.amplitude.minCoeff() < 0) out.cost = fit.square();
+    return out;
+  }
+
+  /// Rows near reversals count where the friction of this joint is felt; elsewhere that of another joint spoils them.
+  [[nodiscard]] MatrixXd weights(const SearchLog& log, Index joint) const {
+    MatrixXd weight = MatrixXd::Zero(log.rows.tau.rows(), log.rows.tau.cols());
+    const MatrixXd& felt = log.direction[static_cast<std::size_t>(joint)];
+    for (Index j = 0; j < weight.cols(); ++j) {
+      const bool feels = (felt.col(j).array() != 0).any();
+      for (Index k = 0; k < weight.rows(); ++k) {
+        const RowUse use = log.use(k, j);
+        if (use == RowUse::regular || (use == RowUse::reversal && feels)) weight(k, j) = 1 / (noise_(j) * noise_(j));
       }
-      bb += ((log.use != RowUse::unusable).cast<double>() * target[l].array().square())
-                .matrix()
-                .colwise()
-                .sum()
-                .dot(noise_.cwiseAbs2().cwiseInverse());
     }
-    const double amplitude = aa > 0 ? std::max(0.0, ab / aa) : 0.0;
-    return bb - 2 * amplitude * ab + amplitude * amplitude * aa;
+    return weight;
+  }
+
+  /// The joint's Coulomb friction among the base parameters; -1 if the motion does not show it.
+  [[nodiscard]] Index base_index(Index joint) const {
+    const auto at = std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
+    return at == base_.independent.end() ? -1 : at - base_.independent.begin();
   }
 
   [[nodiscard]] PreslidingJoint best(Index joint) const {
     PreslidingJoint out;
-    const double coulomb = p_(coulomb_[static_cast<std::size_t>(joint)]);
-    if (!(range_(joint) > 0) || !(coulomb > 0)) return out;
-    std::vector<MatrixXd> target;
-    for (const SearchLog& log : searched_)
-      target.push_back(log.residual + coulomb * column(log, joint, processing_.presliding(joint)));
+    const Index own = base_index(joint);
+    if (!(range_(joint) > 0) || own < 0) return out;
+    std::vector<BaseRows> rows;
+    for (const SearchLog& log : searched_) {
+      rows.push_back(log.rows);
+      rows.back().weight = weights(log, joint);
+    }
+    const PartialFit fit(std::move(rows), own);
+    const auto cost = [&](double displacement) { return result(fit, joint, displacement, false).cost; };
     const double smallest = kSmallest * range_(joint), ratio = std::pow(kLargest / kSmallest, 1.0 / (kGrid - 1));
     std::vector<double> tried, costs;
     for (int k = 0; k < kGrid; ++k) {
       tried.push_back(smallest * std::pow(ratio, k));
-      costs.push_back(cost(joint, tried.back(), target));
+      costs.push_back(cost(tried.back()));
     }
     const auto at = std::min_element(costs.begin(), costs.end()) - costs.begin();
-    const double without = cost(joint, 0, target);
+    const double without = cost(0);
     if (at == 0 || without - costs[static_cast<std::size_t>(at)] < kClearGain) return out;
-    double low = tried[static_cast<std::size_t>(at - 1)],
-           high = tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))];
-    // Golden section in the logarithm.
-    const double golden = 0.5 * (std::sqrt(5.0) - 1);
-    double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
-    double cost_a = cost(joint, a, target), cost_b = cost(joint, b, target);
-    while (high > 1.01 * low) {
-      if (cost_a < cost_b) {
-        high = b;
-        b = a;
-        cost_b = cost_a;
-        a = high * std::pow(low / high, golden);
-        cost_a = cost(joint, a, target);
-      } else {
-        low = a;
-        a = b;
-        cost_a = cost_b;
-        b = low * std::pow(high / low, golden);
-        cost_b = cost(joint, b, target);
-      }
-    }
-    out.displacement = std::sqrt(low * high);
-    const double found = cost(joint, out.displacement, target);
+    out.displacement = least_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
+                                          tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
+    const double found = cost(out.displacement);
     out.gain = without - found;
-    // A parabola through the costs a tenth apart: one unit of cost is one standard deviation.
-    const double bend = (cost(joint, 1.1 * out.displacement, target) + cost(joint, out.displacement / 1.1, target) - 2 * found) /
-                        std::pow(std::log(1.1), 2);
-    out.std = bend > 0 ? out.displacement * std::hypot(std::sqrt(2 / bend), kForm) : out.displacement;
+    out.std = deviation(cost, out.displacement);
+    add_damping(fit, joint, found, out);
     return out;
+  }
+
+  /// A parabola through the costs a tenth apart: one unit of cost is one standard deviation.
+  template <class Function>
+  [[nodiscard]] static double deviation(const Function& cost, double displacement) {
+    const double bend =
+        (cost(1.1 * displacement) + cost(displacement / 1.1) - 2 * cost(displacement)) / std::pow(std::log(1.1), 2);
+    return bend > 0 ? displacement * std::hypot(std::sqrt(2 / bend), kForm) : displacement;
+  }
+
+  /// Damping of the bristles where that explains clearly more. Without it their displacement comes out too small.
+  void add_damping(const PartialFit& fit, Index joint, double undamped, PreslidingJoint& found) const {
+    const auto cost = [&](double displacement) { return result(fit, joint, displacement, true).cost; };
+    const double displacement = least_in_logarithm(cost, found.displacement / kWider, found.displacement * kWider);
+    const PartialFit::Result best = result(fit, joint, displacement, true);
+    if (undamped - best.cost < kClearGain || !(best.amplitude(0) > 0)) return;
+    const double damping_s = best.amplitude(1) / best.amplitude(0);
+    if (damping_s > kLongestDamping_s) return;
+    found.gain += undamped - best.cost;
+    found.displacement = displacement;
+    found.std = deviation(cost, displacement);
+    found.damping_s = damping_s;
+    found.damping_std_s = best.std(1) / best.amplitude(0);
   }
 
   const Robot& robot_;
@@ -224,7 +237,7 @@ class Search {
   std::vector<Index> coulomb_;
   std::vector<Log> logs_;
   std::vector<SearchLog> searched_;
-  VectorXd p_, range_, noise_;
+  VectorXd range_, noise_;
 };
 
 }  // namespace
@@ -237,6 +250,12 @@ std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParam
 VectorXd displacements(const std::vector<PreslidingJoint>& joints) {
   VectorXd out(static_cast<Index>(joints.size()));
   for (std::size_t k = 0; k < joints.size(); ++k) out(static_cast<Index>(k)) = joints[k].displacement;
+  return out;
+}
+
+VectorXd bristle_dampings(const std::vector<PreslidingJoint>& joints) {
+  VectorXd out(static_cast<Index>(joints.size()));
+  for (std::size_t k = 0; k < joints.size(); ++k) out(static_cast<Index>(k)) = joints[k].damping_s;
   return out;
 }
 

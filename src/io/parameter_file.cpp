@@ -26,6 +26,11 @@ bool is_presliding(const std::string& name) {
   return name.ends_with("." + kPresliding);
 }
 
+/// Rows that are no parameter of the regressor and that nobody misses there (presliding_of(), extra_rows.hpp).
+bool is_extra(const std::string& name) {
+  return is_presliding(name) || name.ends_with("." + kPresliding + "_damping") || name.find(".ripple") != std::string::npos;
+}
+
 /// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
 std::string canonical_unit(const std::string& unit) {
   std::string result;
@@ -57,6 +62,9 @@ std::vector<std::string> plausible_units(const std::string& name) {
   if (quantity == "coulomb" || quantity == "offset") return {"N*m", "N"};
   if (quantity == "rotor_inertia") return {"kg*m^2", "kg"};
   if (quantity == kPresliding) return {"rad", "m"};
+  if (quantity == kPresliding + "_damping") return {"s"};
+  if (quantity == "waves") return {"1/rad", "1/m"};
+  if (quantity == "cosine" || quantity == "sine") return {"N*m", "N"};
   return {};
 }
 
@@ -240,7 +248,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
   }
   const std::unordered_set<std::string> missing(match.missing.begin(), match.missing.end());
   for (const ParameterEntry& entry : table.entries) {
-    if (used.count(&entry) != 0 || is_presliding(entry.name)) continue;  // presliding_of() reads those
+    if (used.count(&entry) != 0 || is_extra(entry.name)) continue;
     // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
     if (const std::string shared = shared_name(entry.name); !shared.empty() && missing.count(shared) != 0) {
       throw Error(fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),

@@ -120,7 +120,7 @@ std::vector<EffectKind> make_catalogue() {
        "reversal-memory",
        Place::drive,
        {{"friction", "{F}", true}},
-       {{"displacement", "{x}", Scale::displacement, log_grid(3e-4, 0.08, 7)}},
+       {{"displacement", "{x}", Scale::displacement, log_grid(3e-4, 0.08, 7)}, {"damping", "s", Scale::absolute, {0}, 0}},
        false,
        true,
        "after a reversal the drive's friction builds up over a displacement instead of jumping",

@@ -12,6 +12,7 @@
 #include "deltadyn/effects/directional_efficiency.hpp"
 #include "deltadyn/effects/load_dependent_friction.hpp"
 #include "deltadyn/effects/position_dependent_friction.hpp"
+#include "deltadyn/effects/presliding.hpp"
 #include "deltadyn/effects/shear_thinning.hpp"
 #include "deltadyn/effects/stribeck.hpp"
 #include "deltadyn/effects/telescope_stribeck.hpp"
@@ -68,6 +69,7 @@ void FrictionLaw::add(const Effect& effect) {
       if (bristle_ > 0) throw Error("presliding is given twice for one joint", where, "give it once", ExitCode::usage);
       bristle_ = first;
       bristle_displacement_ = effect.shape(0);
+      bristle_damping_ = effect.shape.size() > 1 ? effect.shape(1) : 0.0;
       break;
     case EffectId::hysteresis:
       if (loop_) throw Error("hysteresis is given twice for one joint", where, "give it once", ExitCode::usage);
@@ -127,7 +129,10 @@ double FrictionLaw::resistance(const JointMotion& motion) const {
   const double rate = sliding_rate(motion);
   double force = viscous_ * viscous_friction(rate) + coulomb_ * coulomb_friction(rate);
   for (const Effect& effect : effects_) force += effect_force(effect, rate, motion);
-  if (bristle_ > 0) force += bristle_ * (motion.bristle - coulomb_friction(rate));
+  if (bristle_ > 0) {
+    force +=
+        bristle_ * (damped_presliding(rate, motion.bristle, bristle_displacement_, bristle_damping_) - coulomb_friction(rate));
+  }
   if (loop_) force += loop_->amplitude(0) * motion.loop;
   return force;
 }

@@ -15,5 +15,16 @@ TEST(Presliding, BuildsUpOverItsDisplacementWhateverTheStep) {
   EXPECT_EQ(presliding_rate(3.0, 1.0, 0.01), 0.0);
 }
 
+TEST(Presliding, DampingIsAheadOfTheStateUntilItHasBuiltUp) {
+  constexpr double kRate = 0.5, kDisplacement = 0.01, kDamping_s = 2e-3, kStep = 1e-7;
+  Presliding<double> now(kDisplacement, -1.0), later(kDisplacement, -1.0);
+  now.move(0.003);
+  later.move(0.003 + kRate * kStep);
+  const double rate = (later.state() - now.state()) / kStep;
+  EXPECT_NEAR(damped_presliding(kRate, now.state(), kDisplacement, kDamping_s), now.state() + kDamping_s * rate, 1e-5);
+  EXPECT_EQ(damped_presliding(kRate, 1.0, kDisplacement, kDamping_s), 1.0);
+  EXPECT_EQ(damped_presliding(0.0, 0.3, kDisplacement, kDamping_s), 0.3);
+}
+
 }  // namespace
 }  // namespace deltadyn

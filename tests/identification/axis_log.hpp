@@ -15,6 +15,8 @@ namespace deltadyn::testing_support {
 struct AxisLog {
   double inertia = 0.4, viscous = 0.8, coulomb = 1.5;  ///< [kg m^2], [N m s/rad], [N m]
   double presliding = 0;                               ///< displacement of the bristle [rad]; 0: Coulomb's law
+  double bristle_damping_s = 0;                        ///< T of F = Fc (z + T dz/dt)
+  double ripple = 0, waves = 31;                       ///< [N m], a turn
   double torque_noise = 0.05;
   int encoder_bits = 19;
   double base_hz = 0.37, amplitude = 0.6, duration_s = 10, rate_hz = 1000;
@@ -34,10 +36,13 @@ struct AxisLog {
     log.tau = inertia * motion.at(log.t_s, 2, phase) + viscous * v;
     constexpr int kSteps = 10;
     double z = v(0) > 0 ? 1 : -1;
+    const Eigen::VectorXd q = motion.at(log.t_s, 0, phase);
     for (Eigen::Index k = 0; k < log.samples(); ++k) {
+      log.tau(k, 0) += ripple * std::cos(waves * q(k) + 0.4);
       if (presliding > 0) {
         const double next = v(std::min(k + 1, log.samples() - 1));
-        log.tau(k, 0) += coulomb * z + torque_noise * normal(random);
+        const double bristle_rate = (v(k) - std::abs(v(k)) * z) / presliding;
+        log.tau(k, 0) += coulomb * (z + bristle_damping_s * bristle_rate) + torque_noise * normal(random);
         for (int i = 0; i < kSteps; ++i) {
           const double rate = v(k) + (next - v(k)) * (i + 0.5) / kSteps;
           z += (rate - std::abs(rate) * z) / presliding / (kSteps * rate_hz);

@@ -29,6 +29,18 @@ TEST(FrictionLaw, ViscousAndCoulombAreThoseOfTheModel) {
   EXPECT_FALSE(FrictionLaw(1.5, 0).minds_reversals());
 }
 
+TEST(FrictionLaw, DampedBristlesAreAheadWhileTheyBuildUp) {
+  FrictionLaw plain(1.5, 4), damped(1.5, 4);
+  plain.add(effect_of(EffectId::presliding, 0, {4}, {0.01, 0}));
+  damped.add(effect_of(EffectId::presliding, 0, {4}, {0.01, 2e-3}));
+  JointMotion motion = sliding(0.5);
+  motion.bristle = -0.4;
+  EXPECT_DOUBLE_EQ(plain.required(0, motion), 0.75 - 1.6);
+  EXPECT_DOUBLE_EQ(damped.required(0, motion), 0.75 - 1.6 + 4 * 2e-3 * (0.5 + 0.5 * 0.4) / 0.01);
+  motion.bristle = 1;
+  EXPECT_DOUBLE_EQ(damped.required(0, motion), plain.required(0, motion));
+}
+
 TEST(FrictionLaw, TransmittedIsTheInverseOfRequiredForEveryEffect) {
   FrictionLaw law(1.5, 4);
   law.add(effect_of(EffectId::stribeck, 0, {2}, {0.3, 1}));

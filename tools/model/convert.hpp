@@ -14,7 +14,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
-#include "presliding_effects.hpp"
+#include "effects_of_rows.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -47,7 +47,7 @@ class Convert {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-    std::vector<Effect> effects = presliding_effects(table, description);
+    std::vector<Effect> effects = effects_of_rows(table, description);
     if (!effect_file_.empty()) {
       for (Effect& effect : read_effects(effect_file_, description)) effects.push_back(std::move(effect));
     }

@@ -8,7 +8,8 @@ namespace deltadyn {
 /// builds up over a displacement. State z in [-1, 1], the friction as a share of Coulomb's:
 ///   dz/dt = (v - |v| z) / x_s,   F = Fc z,   Fc > 0 [N m | N]
 /// with the bristle displacement x_s > 0 [rad | m], 1e-5 to 0.1 rad. For a joint that has a Coulomb column already the effect is
-/// Fc (z - sign v). Valid between breakaway and gross sliding, any speed. Source: Canudas de Wit et al., IEEE TAC 40(3), 1995.
+/// Fc (z - sign v). With damping of the bristles F = Fc (z + T dz/dt), T = sigma_1 / sigma_0 of LuGre [s], 0 to 0.02 s: right after a
+/// reversal the friction is ahead of its state. Valid between breakaway and gross sliding, any speed. Source: Canudas de Wit et al., IEEE TAC 40(3), 1995.
 template <class T>
 class Presliding {
  public:
@@ -34,6 +35,13 @@ template <class T>
 T presliding_rate(const T& rate, const T& state, const T& displacement) {
   using std::abs;
   return (rate - abs(rate) * state) / displacement;
+}
+
+/// What damped bristles hold of Coulomb's friction.
+/// \param damping  T [s], at least 0
+template <class T>
+T damped_presliding(const T& rate, const T& state, const T& displacement, const T& damping) {
+  return state + damping * presliding_rate(rate, state, displacement);
 }
 
 }  // namespace deltadyn

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/identification/ripple.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/fir_decimator.hpp"
 #include "deltadyn/signal/log.hpp"
@@ -39,8 +40,10 @@ struct ProcessingOptions {
   /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after a reversal
   /// [rad | m] (effects/presliding.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
-  bool low_pass_torque = true;  ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
-  int stride = 0;               ///< use every stride-th sample; 0: what the pass band asks for
+  Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
+  std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
+  bool low_pass_torque = true;           ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
+  int stride = 0;                        ///< use every stride-th sample; 0: what the pass band asks for
 
   /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
   void keep_motion(double motion_hz);
@@ -65,6 +68,7 @@ struct PreparedLog {
   /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for a joint
   /// without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied by it.
   Eigen::MatrixXd coulomb_share;
+  Eigen::MatrixXd ripple;    ///< N x drives: torque of ProcessingOptions::ripples; empty: none
   std::vector<char> filled;  ///< marks of Log::filled; empty: all measured
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< as Log::torque_out; empty: nowhere
   std::vector<std::string> notes;
@@ -89,7 +93,8 @@ enum class RowUse : char {
 struct RowBlock {
   Eigen::Index first_row = 0;
   std::vector<Eigen::MatrixXd> Y;                            ///< for each drive: rows x parameters
-  Eigen::MatrixXd tau;                                       ///< rows x drives, filtered as Y
+  Eigen::MatrixXd tau;                                       ///< rows x drives, filtered as Y, without the torque of ripples
+  Eigen::MatrixXd ripple;                                    ///< rows x drives: that torque; empty: none
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }

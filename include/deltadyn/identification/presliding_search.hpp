@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// How friction builds up after a reversal: the displacement of each joint's bristles, found from the rows near reversals. With it
-/// these rows take part in the fit instead of being left out (effects/presliding.hpp holds the law and its source).
+/// How friction builds up after a reversal: displacement and damping of each joint's bristles, found from the rows near reversals. With
+/// them these rows take part in the fit instead of being left out (effects/presliding.hpp holds the law and its source).
 
 #include <Eigen/Core>
 #include <vector>
@@ -14,9 +14,11 @@ namespace deltadyn {
 
 /// What the search found in one joint with friction.
 struct PreslidingJoint {
-  double displacement = 0;  ///< [rad | m]; 0: Coulomb's law does as well
-  double std = 0;           ///< of the displacement
-  double gain = 0;          ///< fall of the squared residual against Coulomb's law, in units of the noise
+  double displacement = 0;   ///< [rad | m]; 0: Coulomb's law does as well
+  double std = 0;            ///< of the displacement
+  double gain = 0;           ///< fall of the squared residual against Coulomb's law, in units of the noise
+  double damping_s = 0;      ///< of the bristles; 0: the logs show none
+  double damping_std_s = 0;  ///< at the displacement found
 };
 
 /// One value a joint with friction: drives, then the telescope. The first pass rests on rows away from reversals, the next ones on
@@ -29,5 +31,7 @@ struct PreslidingJoint {
 
 /// The displacements alone, as ProcessingOptions::presliding takes them.
 [[nodiscard]] Eigen::VectorXd displacements(const std::vector<PreslidingJoint>& joints);
+/// The dampings alone, as ProcessingOptions::presliding_damping_s takes them.
+[[nodiscard]] Eigen::VectorXd bristle_dampings(const std::vector<PreslidingJoint>& joints);
 
 }  // namespace deltadyn

@@ -52,7 +52,7 @@ class FrictionLaw {
   [[nodiscard]] double effect_force(const Effect& effect, double rate, const JointMotion& motion) const;
 
   double viscous_, coulomb_;
-  double bristle_ = 0, bristle_displacement_ = 0;
+  double bristle_ = 0, bristle_displacement_ = 0, bristle_damping_ = 0;
   double driving_ = 0, back_driving_ = 0;  ///< shares of the load
   bool jumps_ = coulomb_ != 0, side_load_ = false;
   std::vector<Effect> effects_;

@@ -1,11 +1,12 @@
 #pragma once
 
 /// \file
-/// The presliding that a parameter file holds, as effects: for the tools that know friction with a memory only in that form.
+/// The presliding and the ripple that a parameter file holds, as effects: for the tools that know them only in that form.
 
 #include <fmt/format.h>
 #include <vector>
 
+#include "deltadyn/io/extra_rows.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/runtime/effect_catalogue.hpp"
 
@@ -15,6 +16,7 @@ namespace deltadyn::tools {
 /// friction. The telescope's is told to be left out. Throws as presliding_of does.
 inline std::vector<Effect> presliding_effects(const ParameterTable& table, const RobotDescription& robot) {
   const Eigen::VectorXd displacement = presliding_of(table, robot);
+  const Eigen::VectorXd damping = presliding_damping_of(table, robot);
   std::vector<Effect> effects;
   for (int joint = 0; joint < displacement.size(); ++joint) {
     if (!(displacement(joint) > 0)) continue;
@@ -27,10 +29,31 @@ inline std::vector<Effect> presliding_effects(const ParameterTable& table, const
     Effect effect;
     effect.id = EffectId::presliding;
     effect.joint = joint;
-    effect.shape = Eigen::VectorXd::Constant(1, displacement(joint));
+    effect.shape = Eigen::Vector2d(displacement(joint), damping(joint));
     effect.amplitude = Eigen::VectorXd::Constant(1, coulomb->value);
     effects.push_back(std::move(effect));
   }
+  return effects;
+}
+
+/// One effect for each ripple (rows driveK.rippleI). Throws as ripples_of does.
+inline std::vector<Effect> ripple_effects(const ParameterTable& table, const RobotDescription& robot) {
+  std::vector<Effect> effects;
+  for (const Ripple& ripple : ripples_of(table, robot)) {
+    Effect effect;
+    effect.id = EffectId::torque_ripple;
+    effect.joint = ripple.drive;
+    effect.shape = Eigen::VectorXd::Constant(1, ripple.n);
+    effect.amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+/// Both.
+inline std::vector<Effect> effects_of_rows(const ParameterTable& table, const RobotDescription& robot) {
+  std::vector<Effect> effects = presliding_effects(table, robot);
+  for (Effect& effect : ripple_effects(table, robot)) effects.push_back(std::move(effect));
   return effects;
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+
+/// \file
+/// Rows of a parameter file that are no columns of the regressor: damping of bristles and ripple of the torque over the position.
+/// `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [1/rad | 1/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "deltadyn/identification/ripple.hpp"
+#include "deltadyn/io/parameter_file.hpp"
+
+namespace deltadyn {
+
+/// Damping of the bristles of each joint [s], drives first, then the telescope; 0 where the file says nothing.
+/// Throws Error(bad_input) for a joint that the robot does not have and for a negative damping.
+[[nodiscard]] Eigen::VectorXd presliding_damping_of(const ParameterTable& table, const RobotDescription& robot);
+/// Name of that row.
+[[nodiscard]] std::string presliding_damping_name(const RobotDescription& robot, int joint);
+
+/// The ripples of all drives.
+/// Throws Error(bad_input) for a drive that the robot does not have, for waves that are not above 0, and for a missing row of the three.
+[[nodiscard]] std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescription& robot);
+/// Their rows.
+[[nodiscard]] std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples, const RobotDescription& robot);
+
+}  // namespace deltadyn

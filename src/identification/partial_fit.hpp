@@ -1,0 +1,82 @@
+#pragma once
+
+/// \file
+/// Columns tried beside all base parameters: what they take off the squared residual with everything else fitted along. A bristle's
+/// friction near reversals looks like inertia, a slow ripple like gravity; neither must be held where it fits best without the column.
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <cmath>
+#include <vector>
+
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/identification/log_processing.hpp"
+
+namespace deltadyn {
+
+/// The rows of one log in the base parameters.
+struct BaseRows {
+  std::vector<Eigen::MatrixXd> X;  ///< of each drive rows x base parameters
+  Eigen::MatrixXd tau;             ///< rows x drives
+  Eigen::MatrixXd weight;          ///< rows x drives: 1 / variance, or 0 for rows that do not count
+};
+
+/// \param use  what each row may be used for; the weights are left empty
+[[nodiscard]] BaseRows base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
+                                 Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic>& use);
+
+/// Columns of one log: one a amplitude, rows x drives.
+using Columns = std::vector<Eigen::MatrixXd>;
+
+class PartialFit {
+ public:
+  /// \param leave_out  base parameter that takes no part; -1: none
+  explicit PartialFit(std::vector<BaseRows> rows, Eigen::Index leave_out = -1);
+
+  struct Result {
+    double cost = 0;                 ///< squared residual over the variance of the rows
+    Eigen::VectorXd amplitude, std;  ///< one a column
+  };
+  /// \param columns  of each log
+  [[nodiscard]] Result with(const std::vector<Columns>& columns) const;
+  /// Squared residual without any column.
+  [[nodiscard]] double square() const { return square_; }
+  /// What the base parameters leave of the torque of a log, rows x drives.
+  [[nodiscard]] Eigen::MatrixXd residual(std::size_t log) const;
+  [[nodiscard]] const std::vector<BaseRows>& rows() const { return rows_; }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd solved(const Eigen::VectorXd& right) const;
+
+  std::vector<BaseRows> rows_;
+  Eigen::Index leave_out_;
+  Eigen::VectorXd right_, scale_;
+  double square_ = 0;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+};
+
+/// Where a function is least between low and high, both above 0, by golden section in the logarithm.
+/// \param ratio  of the interval's ends at which it stops
+template <class Function>
+double least_in_logarithm(const Function& f, double low, double high, double ratio = 1.01) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden), f_a = f(a), f_b = f(b);
+  while (high > ratio * low) {
+    if (f_a < f_b) {
+      high = b;
+      b = a;
+      f_b = f_a;
+      a = high * std::pow(low / high, golden);
+      f_a = f(a);
+    } else {
+      low = a;
+      a = b;
+      f_a = f_b;
+      b = low * std::pow(high / low, golden);
+      f_b = f(b);
+    }
+  }
+  return std::sqrt(low * high);
+}
+
+}  // namespace deltadyn
