@@ -21,6 +21,7 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "fine_delay.hpp"
 #include "identified_extras.hpp"
 #include "layout_flags.hpp"
 #include "log_gate.hpp"
@@ -93,16 +94,22 @@ class Identify {
     const tools::Prior prior = tools::read_prior(*robot, prior_file_);
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
                                       !prior_file_.empty(), !options.processing.filter, run.summary);
-    const std::vector<LogFinding> findings = tools::all_findings(gate);
-    const ReportContext context{robot_file_, log_files_, prior_file_, command_line_, findings};
+    ReportContext context{robot_file_, log_files_, prior_file_, command_line_, tools::all_findings(gate)};
+    std::vector<LogFinding>& findings = context.findings;
     if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-identify");
-    const std::vector<Log>& logs = gate.logs;
+    std::vector<Log> logs = gate.logs;
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
-    const Identification result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
+    Identification result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
+    if (effects.empty() && !gate_.keeps_delay()) {
+      if (const auto found = tools::mend_fine_delay(*robot, result.base, result.processing, logs, run.summary)) {
+        findings.push_back(*found);
+        result = identify_from(*robot, logs, prior.value, prior.std, options, effects);
+      }
+    }
     if (!effects.empty()) tell_effects(description, effects);
     if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);

@@ -22,6 +22,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
+#include "fine_delay.hpp"
 #include "log_gate.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
@@ -67,10 +68,10 @@ class Validate {
     // The model under test is no prior: a wrong one must show in the residual, not in the check of the logs.
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
                                       !processing_.options().filter, run.summary);
-    const std::vector<LogFinding> findings = tools::all_findings(gate);
-    const ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, findings};
+    ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, tools::all_findings(gate)};
+    std::vector<LogFinding>& findings = context.findings;
     if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-validate");
-    const std::vector<Log>& logs = gate.logs;
+    std::vector<Log> logs = gate.logs;
     ProcessingOptions options = processing_.options();
     if (options.filter && processing_.automatic_cutoff()) {
       options.cutoff_hz = choose_cutoff(logs).cutoff_hz;
@@ -78,6 +79,10 @@ class Validate {
     options.presliding = presliding_of(table, description);
     options.presliding_damping_s = presliding_damping_of(table, description);
     options.ripples = ripples_of(table, description);
+    if (effect_file_.empty() && !gate_.keeps_delay()) {
+      const auto found = tools::mend_fine_delay(*robot, find_base_parameters(*robot), options, logs, run.summary, &match.value);
+      if (found) findings.push_back(*found);
+    }
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
     if (!effects.empty() && !options.filter) {

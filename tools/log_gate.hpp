@@ -121,6 +121,8 @@ class LogGate {
     return result;
   }
 
+  [[nodiscard]] bool keeps_delay() const { return keep_delay_; }
+
   /// Logs with such a fault hold nothing that could be made sense of: says so. The report, if one was asked for, is that of the
   /// check.
   static ExitCode refuse(const Robot& robot, const GateResult& gate, const ReportContext& context, const std::string& report_file,

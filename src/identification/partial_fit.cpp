@@ -82,7 +82,7 @@ PartialFit::Result PartialFit::with(const std::vector<Columns>& columns) const {
 }
 
 MatrixXd PartialFit::residual(std::size_t log) const {
-  const VectorXd beta = solved(right_);
+  const VectorXd beta = base_parameters();
   MatrixXd out = rows_[log].tau;
   for (Index j = 0; j < out.cols(); ++j) out.col(j) -= rows_[log].X[static_cast<std::size_t>(j)] * beta;
   return out;

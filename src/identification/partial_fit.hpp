@@ -41,6 +41,8 @@ class PartialFit {
   [[nodiscard]] Result with(const std::vector<Columns>& columns) const;
   /// Squared residual without any column.
   [[nodiscard]] double square() const { return square_; }
+  /// The base parameters without any column.
+  [[nodiscard]] Eigen::VectorXd base_parameters() const { return solved(right_); }
   /// What the base parameters leave of the torque of a log, rows x drives.
   [[nodiscard]] Eigen::MatrixXd residual(std::size_t log) const;
   [[nodiscard]] const std::vector<BaseRows>& rows() const { return rows_; }

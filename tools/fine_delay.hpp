@@ -1,0 +1,39 @@
+#pragma once
+
+/// \file
+/// A small delay found beside the friction of the model, taken out of the logs and said.
+
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <vector>
+
+#include "deltadyn/identification/fine_delay.hpp"
+#include "deltadyn/io/summary.hpp"
+#include "deltadyn/signal/log_finding.hpp"
+
+namespace deltadyn::tools {
+
+/// Takes the delay out of `logs` if it is certain. Prints what was done and adds it to the summary.
+/// \returns the finding, for reports; nothing if the logs stay as they are
+inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseParameters& base,
+                                                 const ProcessingOptions& processing, std::vector<Log>& logs, Summary& summary,
+                                                 const Eigen::VectorXd* known = nullptr) {
+  const FineDelay found = find_fine_delay(robot, base, logs, processing, known);
+  if (!found.certain) return std::nullopt;
+  logs = without_delay(std::move(logs), found.delay_s);
+  LogFinding finding;
+  finding.level = FindingLevel::mended;
+  finding.key = "fine_delay";
+  finding.value = found.delay_s;
+  finding.std = found.std_s;
+  finding.unit = "s";
+  finding.text = fmt::format("torque is {:.2f} ms {} ({:.2g} ms), as it shows beside the friction of the model: removed",
+                             1e3 * std::abs(found.delay_s), found.delay_s > 0 ? "late" : "early", 1e3 * found.std_s);
+  fmt::print("check: mended: {}\n", finding.text);
+  summary.add("check_fine_delay", found.delay_s, "s");
+  summary.add("check_fine_delay_std", found.std_s, "s");
+  return finding;
+}
+
+}  // namespace deltadyn::tools
