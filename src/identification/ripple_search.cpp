@@ -32,6 +32,7 @@ constexpr Index kPadding = 4;       // points of the spectrum a wave over the ra
 constexpr double kClearGain = 40;   // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
 constexpr double kHalfShare = 0.3;  // of a half's own gain that the amplitude of the other half must bring there
 constexpr Index kPieces = 16;       // of each log, taken in turn by the halves
+constexpr double kMostMemory = 3;   // of what is left, as where structure is told: what else the model lacks can pass for a wave
 constexpr double kMemory_s = 0.2;   // of the residual, as in identify()
 
 struct RippleLog {
@@ -59,26 +60,59 @@ class RippleSearch {
   std::vector<Ripple> run() {
     std::vector<Ripple> out;
     for (int drive = 0; drive < robot_.drives(); ++drive) {
-      for (Index k = 0; k < kMostOfDrive; ++k) {
-        const PartialFit fit(rows_);
-        const double n = candidate(fit, drive);
-        if (!(n > 0)) break;
-        const double refined = refine(fit, drive, n);
-        const std::vector<Columns> waves = columns(drive, refined);
-        if (fit.square() - fit.with(waves).cost < kClearGain || !halves_agree(waves, drive)) break;
-        Ripple found;
-        found.drive = drive;
-        found.n = refined;
-        found.n_std = deviation(fit, drive, refined);
-        out.push_back(found);
-        adopt(waves);
+      const std::vector<BaseRows> before = rows_;
+      const std::vector<Ripple> found = ripples_of(drive);
+      if (!found.empty() && memory_left(drive) > kMostMemory) {
+        rows_ = before;
+        continue;
       }
+      out.insert(out.end(), found.begin(), found.end());
     }
     fill_in_amplitudes(out);
     return out;
   }
 
  private:
+  /// The ripples of one drive one after the other; they belong to the base parameters from then on.
+  std::vector<Ripple> ripples_of(int drive) {
+    std::vector<Ripple> out;
+    for (Index k = 0; k < kMostOfDrive; ++k) {
+      const PartialFit fit(rows_);
+      const double n = candidate(fit, drive);
+      if (!(n > 0)) break;
+      const double refined = refine(fit, drive, n);
+      const std::vector<Columns> waves = columns(drive, refined);
+      if (fit.square() - fit.with(waves).cost < kClearGain || !halves_agree(waves, drive)) break;
+      Ripple found;
+      found.drive = drive;
+      found.n = refined;
+      found.n_std = deviation(fit, drive, refined);
+      out.push_back(found);
+      adopt(waves);
+    }
+    return out;
+  }
+
+  /// Memory of what is left of a drive's torque, mean over the logs: 1 for white noise. Beside other structure a wave is no finding.
+  [[nodiscard]] double memory_left(int drive) const {
+    const PartialFit fit(rows_);
+    double sum = 0, rows = 0;
+    for (std::size_t l = 0; l < logs_.size(); ++l) {
+      const auto [memory, count] = memory_of(fit.residual(l).col(drive), l, drive);
+      sum += memory * count;
+      rows += count;
+    }
+    return rows > 0 ? sum / rows : 1.0;
+  }
+
+  /// Memory of a residual over the rows that count, and their number.
+  [[nodiscard]] std::pair<double, double> memory_of(const VectorXd& residual, std::size_t l, Index drive) const {
+    const PreparedLog& log = logs_[l].prepared;
+    const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows_[l].weight.col(drive).array() > 0;
+    const auto lags = static_cast<Index>(std::ceil(kMemory_s * log.rate_hz / static_cast<double>(log.stride)));
+    return {noise_correlation(residual, usable, std::min<Index>(lags, 50)), static_cast<double>(usable.count())};
+  }
+
   [[nodiscard]] bool counts(const RippleLog& log, Index row, Index drive) const {
     const RowUse use = log.use(row, drive);
     return use == RowUse::regular || (use == RowUse::reversal && keep_[static_cast<std::size_t>(drive)]);
@@ -99,12 +133,10 @@ class RippleSearch {
         double square = 0, count = 0, memory = 1;
         for (std::size_t l = 0; l < logs_.size(); ++l) {
           const VectorXd e = fit.residual(l).col(j);
-          const auto usable = rows_[l].weight.col(j).array() > 0;
-          square += usable.select(e.array(), 0.0).square().sum();
-          count += static_cast<double>(usable.count());
-          const PreparedLog& log = logs_[l].prepared;
-          const auto lags = static_cast<Index>(std::ceil(kMemory_s * log.rate_hz / static_cast<double>(log.stride)));
-          memory = std::max(memory, noise_correlation(e, usable, std::min<Index>(lags, 50)));
+          const auto [of_log, rows] = memory_of(e, l, j);
+          square += (rows_[l].weight.col(j).array() > 0).select(e.array(), 0.0).square().sum();
+          count += rows;
+          memory = std::max(memory, of_log);
         }
         const double weight = count > 0 ? count / std::max(square * memory, 1e-300) : 0.0;
         for (BaseRows& log : rows_)

@@ -53,6 +53,23 @@ TEST(FindRipples, FindsNoneInCleanLogs) {
   }
 }
 
+// What else the model lacks can pass for a wave: beside it none is claimed, however well it fits.
+TEST(FindRipples, ClaimsNoneBesideOtherStructure) {
+  const auto robot = make_robot(axis_description(DriveKind::revolute));
+  std::vector<Log> logs;
+  for (const std::uint64_t seed : {81, 82}) {
+    AxisLog log;
+    log.ripple = 0.3;
+    log.base_hz = 0.11;
+    log.seed = seed;
+    logs.push_back(log.make());
+  }
+  const BaseParameters base = find_base_parameters(*robot);
+  EXPECT_EQ(find_ripples(*robot, base, logs, at_20_hz(), {false}).size(), 1U);
+  for (Log& log : logs) log.tau.col(0).array() += 0.1 * (9 * log.t_s.array()).sin();
+  EXPECT_TRUE(find_ripples(*robot, base, logs, at_20_hz(), {false}).empty());
+}
+
 /// Ripple of two drives on a whole robot; a third drive has none.
 TEST(FindRipples, BelongsToTheModelOfARobot) {
   const auto robot = make_robot(delta_description("delta3"));
