@@ -212,6 +212,10 @@ class Identify {
     if (result.processing.filter) {
       fmt::print("motion and torque used up to {:.4g} Hz{}\n", result.processing.cutoff_hz,
                  result.cutoff ? ", chosen from the logs" : "");
+      if (const ModelBandPart* end = result.model_band ? result.model_band->beyond() : nullptr; end != nullptr) {
+        fmt::print("  above, the torque is not that of this model: {:.2g} ({:.1g}) times it from {:.3g} to {:.3g} Hz\n",
+                   end->found, end->std, end->low_hz, end->high_hz);
+      }
     }
     tools::tell_extra_rows(robot.description(), result, out);
     out.add("samples", result.samples);

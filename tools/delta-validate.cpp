@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltadyn/identification/effect_torque.hpp"
+#include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/identification/residual_structure.hpp"
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/io/effect_file.hpp"
@@ -20,7 +21,6 @@
 #include "deltadyn/report/validation_report.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log_columns.hpp"
-#include "deltadyn/signal/motion_band.hpp"
 
 #include "fine_delay.hpp"
 #include "log_gate.hpp"
@@ -74,7 +74,7 @@ class Validate {
     std::vector<Log> logs = gate.logs;
     ProcessingOptions options = processing_.options();
     if (options.filter && processing_.automatic_cutoff()) {
-      options.cutoff_hz = choose_cutoff(logs).cutoff_hz;
+      options.cutoff_hz = choose_model_cutoff(*robot, find_base_parameters(*robot), logs, options).cutoff_hz;
     }
     options.presliding = presliding_of(table, description);
     options.presliding_damping_s = presliding_damping_of(table, description);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -149,7 +150,9 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
   }
   IdentificationOptions settled = options;
   if (options.choose_cutoff) {
-    settled.processing.cutoff_hz = choose_cutoff(logs).cutoff_hz;
+    settled.processing.cutoff_hz =
+        choose_model_cutoff(robot, find_base_parameters(robot, options.base), logs, options.processing, options.threads)
+            .cutoff_hz;
     settled.choose_cutoff = false;
   }
   const double cutoff_hz = settled.processing.motion_over_pass * settled.processing.cutoff_hz;

@@ -169,8 +169,10 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
   out.processing = options.processing;
   out.base = find_base_parameters(robot, options.base);
   if (options.processing.filter && options.choose_cutoff) {
-    out.cutoff = choose_cutoff(logs);
-    out.processing.cutoff_hz = out.cutoff->cutoff_hz;
+    ModelCutoff chosen = choose_model_cutoff(robot, out.base, logs, out.processing, options.threads);
+    out.processing.cutoff_hz = chosen.cutoff_hz;
+    out.cutoff = std::move(chosen.motion);
+    out.model_band = std::move(chosen.model);
   }
 
   const double band_hz = options.processing.filter ? motion_hz(logs, out) : 0.0;

@@ -11,6 +11,7 @@
 
 #include "gate/given_derivatives.hpp"
 #include "gate/judge.hpp"
+#include "gate/outside_torque.hpp"
 #include "gate/plausibility.hpp"
 #include "gate/torque_timing.hpp"
 
@@ -64,7 +65,10 @@ class Gate {
     coarse_ = sample.coarse;
     judge_positions(points);
     if (out_.stop()) return std::move(out_);
-    judge_timing(sample);
+    std::vector<LogFinding> pushed = leave_out_outside_torque(robot_, base_, out_.logs);
+    const bool changed = !pushed.empty();
+    add(std::move(pushed));
+    judge_timing(changed ? take_sample(out_.logs) : sample);
     judge_scale(pick_points(take_sample(out_.logs), kPoints));
     return std::move(out_);
   }

@@ -180,6 +180,13 @@ MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double
   return band;
 }
 
+Eigen::VectorXd position_noise_std(const Log& log) {
+  Eigen::VectorXd std(log.drives());
+  const double rate_hz = 1.0 / log.sample_time_s();
+  for (Index j = 0; j < log.drives(); ++j) std(j) = std::sqrt(motion_band(log.q.col(j), rate_hz).noise_density * rate_hz / 2);
+  return std;
+}
+
 CutoffChoice choose_cutoff(const std::vector<Log>& logs) {
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   CutoffChoice choice;
@@ -200,6 +207,7 @@ CutoffChoice choose_cutoff(const std::vector<Log>& logs) {
                             shortest_s, rate_hz),
                 logs.front().file, "record at 100 Hz or more for some seconds, or give --cutoff-hz");
   }
+  choice.lowest_hz = lowest;
   choice.noise_limit_hz = noise_limit_hz(logs, choice.bands, lowest, highest);
   choice.cutoff_hz = std::clamp(std::min(std::max(choice.band_hz, kSharp_hz), choice.noise_limit_hz), lowest, highest);
   return choice;

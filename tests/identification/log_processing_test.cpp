@@ -5,6 +5,7 @@
 
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/runtime/error.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {

@@ -13,6 +13,7 @@
 #include "deltadyn/identification/consistent_fit.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
+#include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/identification/presliding_search.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
@@ -27,7 +28,7 @@ enum class Reversals {
 
 struct IdentificationOptions {
   ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false
-  bool choose_cutoff = true;     ///< from the band in which the motion stands out of the encoders' noise
+  bool choose_cutoff = true;     ///< from the band in which the motion stands out of the encoders' noise and the model holds
   Reversals reversals = Reversals::automatic;
   bool robust = false;  ///< Huber weights: single rows that stand out count less
   bool find_ripples =
@@ -56,6 +57,7 @@ struct Identification {
   ConsistentFitSummary fit;
   std::vector<DriveReport> drives;
   std::optional<CutoffChoice> cutoff;       ///< empty if the cut-off was given
+  std::optional<ModelBand> model_band;      ///< the same
   std::vector<PreslidingJoint> presliding;  ///< of each joint with friction; empty if it was not looked for
   ProcessingOptions processing;             ///< as used
   std::vector<bool> keep_reversals;         ///< one a drive: its rows near reversals were used

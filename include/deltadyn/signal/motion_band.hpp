@@ -25,9 +25,14 @@ struct MotionBand {
 /// Throws deltadyn::Error as welch_spectrum does (fewer than 17 samples, a rate that is not positive).
 [[nodiscard]] MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double rate_hz);
 
+/// Standard deviation of the white noise of each drive's positions (encoder step and noise), from their spectra [rad | m].
+/// Throws as motion_band() does.
+[[nodiscard]] Eigen::VectorXd position_noise_std(const Log& log);
+
 /// Cut-off of the motion of several logs of one robot.
 struct CutoffChoice {
   double cutoff_hz = 0;
+  double lowest_hz = 0;       ///< no cut-off below: a log loses too much at its ends
   double band_hz = 0;         ///< the motion of every drive in every log has nearly all of its acceleration below
   double noise_limit_hz = 0;  ///< up to here encoder noise, as acceleration times inertia, stays below the noise of the torque
   std::vector<std::vector<MotionBand>> bands;  ///< logs x drives

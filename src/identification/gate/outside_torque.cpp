@@ -1,0 +1,272 @@
+#include "outside_torque.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+#include "deltadyn/identification/data_fold.hpp"
+#include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/identification/prediction.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/fir_decimator.hpp"
+
+namespace deltadyn::gate {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kBand_hz = 3;      // pushes last some tenths of a second; encoder noise and vibration are far below them here
+constexpr double kThin_hz = 60;     // rate that this band needs: long logs cost no more than they must
+constexpr double kThinPass = 0.3;   // of that rate: the low pass in front of it
+constexpr double kStrong = 8;       // robust standard deviations of the residual, and the largest torque of the drive
+constexpr double kWeak = 6;         // the same in a log in which somebody pushes, and ...
+constexpr double kWeakShare = 0.5;  // ... this share of the rms torque
+constexpr double kEnd = 2.5;        // a stretch goes on as long as the residual stays above
+constexpr double kMostOfMotion = 0.25;
+constexpr int kPasses = 12;       // of the robust fit
+constexpr double kTukey = 4.685;  // 95 % efficient for normal noise
+constexpr double kMedianToSigma = 1.4826;
+constexpr Index kFewestRows = 30;
+
+/// The log at the rate that the band needs.
+Log thinned(const Log& log) {
+  const double rate_hz = 1.0 / log.sample_time_s();
+  const int factor = static_cast<int>(rate_hz / kThin_hz);
+  if (factor < 2) return log;
+  const FirDecimator pass(rate_hz, kThinPass * rate_hz / factor, factor);
+  const Index rows = pass.outputs(log.samples());
+  if (rows < 2) return log;
+  Eigen::MatrixXd in(log.samples(), 2 * log.drives()), out(rows, 2 * log.drives());
+  in << log.q, log.tau;
+  pass.apply(in, 0, rows, out);
+  Log thin;
+  thin.file = log.file;
+  thin.q = out.leftCols(log.drives());
+  thin.tau = out.rightCols(log.drives());
+  thin.t_s.resize(rows);
+  if (!log.filled.empty()) thin.filled.assign(static_cast<std::size_t>(rows), Log::kMeasured);
+  if (log.torque_out.size() > 0) thin.torque_out.resize(rows, log.drives());
+  const Index width = 2 * pass.half_width() + 1;
+  for (Index k = 0; k < rows; ++k) {
+    const Index first = pass.first_input(k);
+    thin.t_s(k) = log.t_s(pass.centre(k));
+    if (log.torque_out.size() > 0) thin.torque_out.row(k) = log.torque_out.middleRows(first, width).colwise().any();
+    if (log.filled.empty()) continue;
+    const auto begin = log.filled.begin() + first;
+    if (std::find(begin, begin + width, Log::kLeftOut) != begin + width) thin.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
+  }
+  return thin;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One log under the low pass.
+struct Seen {
+  std::size_t log = 0;
+  PreparedLog prepared;
+  Prediction rows;
+};
+
+/// A fit that a minority of rows cannot pull.
+class RobustFit {
+ public:
+  RobustFit(const Robot& robot, const BaseParameters& base, std::vector<Seen>& seen) : robot_(robot), base_(base), seen_(seen) {}
+
+  /// False if the motion does not tell the parameters.
+  bool run() {
+    try {
+      VectorXd p = solve(nullptr, {});
+      for (int pass = 0; pass < kPasses; ++pass) {
+        look(p);
+        // The first half of the passes only damps what stands out (Huber's weights), the others leave it out (Tukey's).
+        const bool damp = 2 * pass < kPasses;
+        p = solve(&p, [&](int drive, double residual) {
+          const double u = std::abs(residual) / (kTukey * scale_[static_cast<std::size_t>(drive)]);
+          if (damp) return u < 0.3 ? 1.0 : 0.3 / u;
+          return u < 1 ? std::pow(1 - u * u, 2) : 0.0;
+        });
+      }
+      look(p);
+      return true;
+    } catch (const Error&) {
+      return false;  // too few rows; a pose out of reach is refused by others, with its line
+    }
+  }
+
+  [[nodiscard]] double scale(int drive) const { return scale_[static_cast<std::size_t>(drive)]; }
+
+ private:
+  [[nodiscard]] VectorXd solve(const VectorXd* p, const RowWeight& weight) const {
+    DataFold fold;
+    for (const Seen& one : seen_) fold.add(fold_log(robot_, one.prepared, 1, p, weight));
+    std::vector<DriveFold> folds = fold.regular;
+    for (std::size_t j = 0; j < folds.size(); ++j) folds[j].add(fold.reversal[j]);
+    return any_parameters(base_, estimate_base_parameters(base_, folds).value, robot_.parameters());
+  }
+
+  /// Residuals with these parameters and their robust deviations.
+  void look(const VectorXd& p) {
+    std::vector<std::vector<double>> size(static_cast<std::size_t>(robot_.drives()));
+    for (Seen& one : seen_) {
+      one.rows = predict(robot_, one.prepared, p, 1);
+      const Eigen::MatrixXd r = one.rows.residual();
+      for (Index k = 0; k < r.rows(); ++k) {
+        for (Index j = 0; j < r.cols(); ++j) {
+          if (one.rows.use(k, j) != RowUse::unusable) size[static_cast<std::size_t>(j)].push_back(std::abs(r(k, j)));
+        }
+      }
+    }
+    scale_.clear();
+    for (const std::vector<double>& one : size) scale_.push_back(std::max(kMedianToSigma * median(one), 1e-12));
+  }
+
+  const Robot& robot_;
+  const BaseParameters& base_;
+  std::vector<Seen>& seen_;
+  std::vector<double> scale_;
+};
+
+/// Consecutive rows that somebody pushes in.
+struct Push {
+  Index first = 0, last = 0;
+  double largest = 0;
+};
+
+/// What one drive gave and did not give in a log.
+class DriveRowsSeen {
+ public:
+  DriveRowsSeen(const Seen& seen, int drive, double scale)
+      : residual_(seen.rows.residual().col(drive).cwiseAbs()),
+        moves_(seen.rows.usable(drive, true)),
+        recorded_(recorded(seen)),
+        scale_(scale) {
+    const VectorXd tau = recorded_.select(seen.rows.tau.col(drive).array(), 0.0).matrix();
+    moving_ = moves_.count();
+    largest_torque_ = tau.size() > 0 ? tau.cwiseAbs().maxCoeff() : 0.0;
+    rms_torque_ = std::sqrt(tau.squaredNorm() / std::max<double>(1.0, static_cast<double>(recorded_.count())));
+  }
+
+  [[nodiscard]] Index moving() const { return moving_; }
+  [[nodiscard]] double largest_torque() const { return largest_torque_; }
+
+  [[nodiscard]] std::vector<Push> pushes() const {
+    std::vector<Push> out;
+    const double strong = std::max(largest_torque_, kStrong * scale_);
+    if (moving_ < kFewestRows || !(recorded_ && residual_.array() > strong).any()) return out;
+    const double least = std::max(kWeakShare * rms_torque_, kWeak * scale_);
+    for (Index k = 0; k < residual_.size(); ++k) {
+      if (!above(k, least, strong)) continue;
+      Push push{k, k, residual_(k)};
+      while (push.first > 0 && above(push.first - 1, kEnd * scale_, strong)) --push.first;
+      while (push.last + 1 < residual_.size() && above(push.last + 1, kEnd * scale_, strong)) ++push.last;
+      push.largest = residual_.segment(push.first, push.last - push.first + 1).maxCoeff();
+      k = push.last;
+      out.push_back(push);
+    }
+    return out;
+  }
+
+  [[nodiscard]] Index moving_in(const Push& push) const { return moves_.segment(push.first, push.last - push.first + 1).count(); }
+
+ private:
+  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold.
+  static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen) {
+    const PreparedLog& log = seen.prepared;
+    Eigen::Array<bool, Eigen::Dynamic, 1> out = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(seen.rows.rows(), true);
+    if (log.filled.empty()) return out;
+    const Index reach = log.low_pass->half_width();
+    for (Index k = 0; k < out.size(); ++k) {
+      const auto begin = log.filled.begin() + (sample_of_row(log, k) - reach), end = begin + 2 * reach + 1;
+      out(k) = std::find(begin, end, Log::kLeftOut) == end;
+    }
+    return out;
+  }
+  /// At rest static friction makes residuals that are no push.
+  [[nodiscard]] bool above(Index row, double moving, double at_rest) const {
+    return recorded_(row) && residual_(row) > (moves_(row) ? moving : at_rest);
+  }
+
+  VectorXd residual_;
+  Eigen::Array<bool, Eigen::Dynamic, 1> moves_, recorded_;
+  double scale_, largest_torque_ = 0, rms_torque_ = 0;
+  Index moving_ = 0;
+};
+
+/// Marks the pushes in the log and puts them into words.
+LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& rows, const DriveRowsSeen& seen,
+                     const std::vector<Push>& pushes) {
+  const double spacing = rows.rows() > 1 ? rows.t_s(1) - rows.t_s(0) : 0.0;
+  if (log.torque_out.size() == 0) log.torque_out.setConstant(log.samples(), log.drives(), false);
+  std::string times;
+  double largest = 0, length_s = 0;
+  for (const Push& push : pushes) {
+    const double from = rows.t_s(push.first) - spacing, to = rows.t_s(push.last) + spacing;
+    largest = std::max(largest, push.largest);
+    length_s += to - from;
+    times += fmt::format("{}{:.4g} to {:.4g}", times.empty() ? "" : ", ", from, to);
+    for (Index k = 0; k < log.samples(); ++k) {
+      if (log.t_s(k) >= from && log.t_s(k) <= to) log.torque_out(k, drive) = true;
+    }
+  }
+  LogFinding f;
+  f.level = FindingLevel::mended;
+  f.key = "outside_torque";
+  f.file = log.file;
+  f.drive = drive;
+  f.value = length_s;
+  f.unit = "s";
+  f.text = fmt::format(
+      "drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where the drive gives at most {:.3g}; "
+      "left "
+      "out: t_s = {} ({:.2g} s)",
+      drive + 1, largest, unit, seen.largest_torque(), times, length_s);
+  return f;
+}
+
+std::vector<Seen> see(const Robot& robot, const std::vector<Log>& logs) {
+  std::vector<Seen> seen;
+  ProcessingOptions options;
+  options.cutoff_hz = kBand_hz;
+  options.periods = Periods::ignore;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    try {
+      seen.push_back({l, prepare_log(robot, thinned(logs[l]), options), {}});
+    } catch (const Error&) {
+      continue;  // too short for this band, or refused by others with better words
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::vector<LogFinding> leave_out_outside_torque(const Robot& robot, const BaseParameters& base, std::vector<Log>& logs) {
+  std::vector<LogFinding> findings;
+  std::vector<Seen> seen = see(robot, logs);
+  if (seen.empty()) return findings;
+  RobustFit fit(robot, base, seen);
+  if (!fit.run()) return findings;
+  for (const Seen& one : seen) {
+    for (int j = 0; j < robot.drives(); ++j) {
+      const DriveRowsSeen rows(one, j, fit.scale(j));
+      const std::vector<Push> pushes = rows.pushes();
+      Index out = 0;
+      for (const Push& push : pushes) out += rows.moving_in(push);
+      const double share = static_cast<double>(out) / std::max<double>(1.0, static_cast<double>(rows.moving()));
+      if (pushes.empty() || share > kMostOfMotion) continue;
+      const char* unit = robot.description().kind_of_drive(j) == DriveKind::revolute ? "N m" : "N";
+      findings.push_back(leave_out(logs[one.log], j, unit, one.rows, rows, pushes));
+    }
+  }
+  return findings;
+}
+
+}  // namespace deltadyn::gate
