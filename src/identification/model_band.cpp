@@ -24,7 +24,7 @@ constexpr double kPartRatio = std::numbers::sqrt2;  // half an octave
 constexpr double kHalf =
     0.5;  // of the model's torque: with less of it in the record, leaving the part out explains more than the model
 constexpr double kNextToNothing = 0.25;
-constexpr double kSigmas = 2;
+constexpr double kSigmas = 3;              // within which the record does not hold the whole of the model's torque
 constexpr double kLeastSignal = 2;         // the model's torque over what noise makes of it
 constexpr double kRowsPerIndependent = 4;  // rows of half an octave are taken so many times closer than they are independent
 constexpr double kLowest_hz = 2.5;         // machines that are built to move move faster than that
@@ -64,7 +64,7 @@ struct DriveSums {
   double all = 0;           ///< ... of the recorded one below the part's upper end
   Index rows = 0;
 
-  void add(const DriveSums& other, double weight = 1) {
+  void add(const DriveSums& other, double weight) {
     torque_model += weight * other.torque_model;
     model += weight * other.model;
     chance += weight * other.chance;
@@ -120,23 +120,36 @@ Log noisier(const Log& log, std::mt19937_64& random) {
   return out;
 }
 
-/// Adds the rows of a log between two cut-offs, for each drive those away from reversals [0] and near them [1].
+/// 0 for the base parameters of Coulomb friction, 1 for the others.
+VectorXd without_coulomb(const Robot& robot, const BaseParameters& base) {
+  VectorXd out = VectorXd::Ones(base.count());
+  for (const Index column : coulomb_columns(robot)) {
+    const auto at = std::find(base.independent.begin(), base.independent.end(), static_cast<int>(column));
+    if (at != base.independent.end()) out(at - base.independent.begin()) = 0;
+  }
+  return out;
+}
+
+/// Adds the rows of a log between two cut-offs. Coulomb friction is taken off the torque and no part of the model's: its steps reach
+/// into every band, and how they really look is another question.
 void add_part(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options, double low_hz,
-              const BaseEstimate& estimate, std::mt19937_64& random, std::vector<DriveSums> (&sums)[2]) {
+              const BaseEstimate& estimate, std::mt19937_64& random, std::vector<DriveSums>& sums) {
   const BandRows rows(robot, base, log, options, low_hz), noisy(robot, base, noisier(log, random), options, low_hz);
+  const VectorXd smooth = without_coulomb(robot, base);
   for (Index j = 0; j < rows.tau.cols(); ++j) {
     const auto at = static_cast<std::size_t>(j);
-    const MatrixXd& Y = rows.Y[at];
+    const MatrixXd Y = rows.Y[at] * smooth.asDiagonal();
     const VectorXd model = Y * estimate.value;
-    const VectorXd chance =
-        (Y * estimate.covariance).cwiseProduct(Y).rowwise().sum() + ((noisy.Y[at] - Y) * estimate.value).cwiseAbs2();
+    const VectorXd tau = rows.tau.col(j) - (rows.Y[at] * estimate.value - model);
+    const VectorXd chance = (Y * estimate.covariance).cwiseProduct(Y).rowwise().sum() +
+                            (noisy.Y[at] * smooth.cwiseProduct(estimate.value) - model).cwiseAbs2();
     for (Index k = 0; k < Y.rows(); ++k) {
       if (rows.use(k, j) == RowUse::unusable) continue;
-      DriveSums& sum = sums[rows.use(k, j) == RowUse::reversal ? 1 : 0][at];
-      sum.torque_model += rows.tau(k, j) * model(k);
+      DriveSums& sum = sums[at];
+      sum.torque_model += tau(k) * model(k);
       sum.model += model(k) * model(k);
       sum.chance += chance(k);
-      sum.torque += rows.tau(k, j) * rows.tau(k, j);
+      sum.torque += tau(k) * tau(k);
       sum.all += rows.all(k, j) * rows.all(k, j);
       ++sum.rows;
     }
@@ -146,14 +159,11 @@ void add_part(const Robot& robot, const BaseParameters& base, const Log& log, co
 /// The part of the band, or nothing if too few rows tell it.
 std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                           const ProcessingOptions& options, double low_hz, const BaseEstimate& estimate) {
-  const auto drives = static_cast<std::size_t>(robot.drives());
-  std::vector<DriveSums> sums[2] = {std::vector<DriveSums>(drives), std::vector<DriveSums>(drives)};
+  std::vector<DriveSums> sums(static_cast<std::size_t>(robot.drives()));
   std::mt19937_64 random(kSeed);
   for (const Log& log : logs) add_part(robot, base, log, options, low_hz, estimate, random, sums);
   DriveSums total;
-  for (std::size_t j = 0; j < drives; ++j) {
-    DriveSums& one = sums[0][j];
-    if (one.rows < sums[1][j].rows) one.add(sums[1][j]);
+  for (const DriveSums& one : sums) {
     if (one.all > 0) total.add(one, static_cast<double>(one.rows) / one.all);  // a drive counts by its whole torque
   }
   if (total.rows < kFewestRows || !(total.model > kLeastSignal * total.chance)) return std::nullopt;
@@ -165,7 +175,7 @@ std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParamete
 }
 
 bool fails(const ModelBandPart& part) {
-  return part.found + kSigmas * part.std < kHalf;
+  return part.found + part.std < kHalf && part.found + kSigmas * part.std < 1;
 }
 
 }  // namespace
