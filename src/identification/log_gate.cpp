@@ -4,8 +4,10 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 
 #include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
@@ -13,6 +15,7 @@
 #include "gate/judge.hpp"
 #include "gate/outside_torque.hpp"
 #include "gate/plausibility.hpp"
+#include "gate/torque_noise.hpp"
 #include "gate/torque_timing.hpp"
 
 namespace deltadyn {
@@ -27,6 +30,7 @@ constexpr double kLeastDelay = 0.05;  // of a sample: less is no matter
 // Relative residual of a log without other faults. Above it the model lacks something (friction after reversals, load), and what it
 // lacks can pass for a delay: then the delay must take half of the residual away.
 constexpr double kCleanFit = 0.015;
+constexpr double kNoiseOnly = 1.5;  // times what the noise of the torque makes of the residual
 constexpr double kHalf = 0.5;
 constexpr double kWorthSaying = 0.9;  // of the residual, for a delay that stays
 constexpr double kSharp_s = 6e-4;     // a delay known no better is more likely another effect that bends the torque
@@ -59,16 +63,21 @@ class Gate {
       if (!out_.stop()) judge_scale(points_as_given());
       return std::move(out_);
     }
-    const Sample sample = take_sample(out_.logs);
+    Sample sample = take_sample(out_.logs);
     if (sample.stretches.empty()) return std::move(out_);
-    const Points points = pick_points(sample, kPoints);
+    const std::size_t before = out_.findings.size();
     coarse_ = sample.coarse;
-    judge_positions(points);
+    judge_positions(pick_points(sample, kPoints));
     if (out_.stop()) return std::move(out_);
-    std::vector<LogFinding> pushed = leave_out_outside_torque(robot_, base_, out_.logs);
-    const bool changed = !pushed.empty();
-    add(std::move(pushed));
-    judge_timing(changed ? take_sample(out_.logs) : sample);
+    if (std::vector<LogFinding> pushed = leave_out_outside_torque(robot_, base_, out_.logs); !pushed.empty()) {
+      // What was judged was a pushed machine.
+      sample = take_sample(out_.logs);
+      out_.findings.resize(before);
+      judge_positions(pick_points(sample, kPoints));
+      add(std::move(pushed));
+      if (out_.stop()) return std::move(out_);
+    }
+    judge_timing(sample);
     judge_scale(pick_points(take_sample(out_.logs), kPoints));
     return std::move(out_);
   }
@@ -169,29 +178,62 @@ class Gate {
     out_.findings.push_back(std::move(f));
   }
 
-  void judge_timing(const Sample& sample) {
-    const Rows rows = low_passed_rows(robot_, base_, sample, Reading::as_given(robot_.drives()));
+  [[nodiscard]] Timing timing_of(const Sample& sample) const {
     const std::vector<int> files = file_numbers(out_.logs);
     std::vector<double> least;
     for (std::size_t l = 0; l < files.size(); ++l) {
       if (files[l] == static_cast<int>(least.size())) least.push_back(kLeastDelay * out_.logs[l].sample_time_s());
     }
-    const Timing timing = estimate_timing(sample, rows, least);
+    return estimate_timing(sample, low_passed_rows(robot_, base_, sample, Reading::as_given(robot_.drives())), least);
+  }
+
+  /// Residual up to which nothing but the noise of the torque record is left.
+  static double clean(double noise) { return std::max(kCleanFit, kNoiseOnly * noise); }
+
+  /// The sample in the band in which the model explains the torque, if that ends below the sample's own.
+  [[nodiscard]] std::optional<Sample> within_model_band(const Sample& sample) const {
+    try {
+      const ProcessingOptions processing;
+      const ModelCutoff choice = choose_model_cutoff(robot_, base_, out_.logs, processing);
+      const double band_hz = processing.torque_cutoff_ratio * choice.model.limit_hz;
+      if (choice.model.limit_hz == 0 || band_hz >= sample.band_hz) return std::nullopt;
+      SampleOptions options;
+      options.highest_band_hz = options.lowest_band_hz = band_hz;
+      Sample narrow = take_sample(out_.logs, options);
+      if (!narrow.stretches.empty()) return narrow;
+    } catch (const Error&) {  // NOLINT(bugprone-empty-catch): logs too short for a cut-off, or poses out of reach: others say so
+    }
+    return std::nullopt;
+  }
+
+  void judge_timing(const Sample& sample) {
+    Timing timing = timing_of(sample);
+    double noise = relative_torque_noise(out_.logs, sample);
+    // Where the model does not hold in the whole band, what it lacks passes for a delay: the band is that of the model then.
+    if (const std::optional<Sample> narrow = timing.rms_after > clean(noise) ? within_model_band(sample) : std::nullopt) {
+      timing = timing_of(*narrow);
+      noise = relative_torque_noise(out_.logs, *narrow);
+    }
     if (!timing.significant) {
       LogFinding f;
       f.key = "delay";
       f.value = 0;
       f.std = timing.delay_std.maxCoeff();
       f.unit = "s";
-      f.text = fmt::format("no delay between torque and position ({:.2g} ms)", 1e3 * f.std);
+      f.text = fmt::format("no delay between torque and position{} ({:.2g} ms)",
+                           f.std < kSharp_s ? "" : " that this log could tell", 1e3 * f.std);
       if (f.std > 0) out_.findings.push_back(std::move(f));
       return;
     }
     const bool simple = timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
     const double longest = std::max(timing.delay_s.cwiseAbs().maxCoeff(), timing.lag_s.cwiseAbs().maxCoeff());
     const bool sharp = longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
-    const bool sound = timing.rms_after < kCleanFit || timing.rms_after < kHalf * timing.rms_before;
-    if (!sharp || (!simple && timing.rms_after > kWorthRemoving * timing.rms_before)) return;
+    const bool sound = timing.rms_after < clean(noise) || timing.rms_after < kHalf * timing.rms_before;
+    if (!sharp) {
+      tell_vague(timing);
+      return;
+    }
+    if (!simple && timing.rms_after > kWorthRemoving * timing.rms_before) return;
     if (!sound) {
       tell_doubtful(timing);
       return;
@@ -200,6 +242,21 @@ class Gate {
     tell_timing(timing.delay_s, timing.delay_std, timing, "delay", remove);
     tell_timing(timing.lag_s, timing.lag_std, timing, "lag", remove);
     if (remove) mend(timing);
+  }
+
+  /// A delay that the log does not tell well enough to be worth a warning: a figure for who asks.
+  void tell_vague(const Timing& timing) {
+    Index row = 0, column = 0;
+    const bool lag = timing.delay_s.cwiseAbs().maxCoeff(&row, &column) == 0;
+    if (lag) timing.lag_s.cwiseAbs().maxCoeff(&row, &column);
+    LogFinding f;
+    f.key = lag ? "lag" : "delay";
+    f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
+    f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
+    f.unit = "s";
+    f.text = fmt::format("this log does not tell a delay: {} ({:.2g} ms), residual {:.2g} % with it, {:.2g} % without",
+                         words_of_timing(f.key, "torque", f.value), 1e3 * f.std, 100 * timing.rms_before, 100 * timing.rms_after);
+    out_.findings.push_back(std::move(f));
   }
 
   /// A delay that explains part of the residual, but where much is left, stays where it is.
