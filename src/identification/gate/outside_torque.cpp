@@ -145,8 +145,8 @@ class DriveRowsSeen {
  public:
   DriveRowsSeen(const Seen& seen, int drive, double scale)
       : residual_(seen.rows.residual().col(drive).cwiseAbs()),
-        moves_(seen.rows.usable(drive, true)),
         recorded_(recorded(seen)),
+        moves_(recorded_ && moving(seen, drive)),
         scale_(scale) {
     const VectorXd tau = recorded_.select(seen.rows.tau.col(drive).array(), 0.0).matrix();
     moving_ = moves_.count();
@@ -189,13 +189,26 @@ class DriveRowsSeen {
     }
     return out;
   }
+  /// Rows whose inner half, where most of the low pass' weight is, holds no rest.
+  static Eigen::Array<bool, Eigen::Dynamic, 1> moving(const Seen& seen, int drive) {
+    const PreparedLog& log = seen.prepared;
+    Eigen::Array<bool, Eigen::Dynamic, 1> out(seen.rows.rows());
+    const Index reach = log.low_pass->half_width() / 2;
+    for (Index k = 0; k < out.size(); ++k) {
+      const Index first = sample_of_row(log, k) - reach, count = 2 * reach + 1;
+      out(k) = !log.rest.col(drive).segment(first, count).any() &&
+               !(log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
+    }
+    return out;
+  }
+
   /// At rest static friction makes residuals that are no push.
   [[nodiscard]] bool above(Index row, double moving, double at_rest) const {
     return recorded_(row) && residual_(row) > (moves_(row) ? moving : at_rest);
   }
 
   VectorXd residual_;
-  Eigen::Array<bool, Eigen::Dynamic, 1> moves_, recorded_;
+  Eigen::Array<bool, Eigen::Dynamic, 1> recorded_, moves_;
   double scale_, largest_torque_ = 0, rms_torque_ = 0;
   Index moving_ = 0;
 };
