@@ -132,7 +132,7 @@ std::vector<double> robust_scales(const Robot& robot, const std::vector<Prepared
 
 /// Band of the motion; the cut-off where it was given and the logs are too short to tell.
 double motion_hz(const std::vector<Log>& logs, const Identification& found) {
-  if (found.cutoff) return found.cutoff->cutoff_hz;
+  if (found.cutoff) return found.processing.cutoff_hz;  // the motion that the model explains
   try {
     return choose_cutoff(logs).cutoff_hz;
   } catch (const Error&) {

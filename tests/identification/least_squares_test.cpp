@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
-
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {

@@ -5,7 +5,6 @@
 
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/runtime/error.hpp"
-
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
