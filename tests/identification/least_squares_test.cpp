@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -73,6 +73,8 @@ TEST(NoiseCorrelation, WhiteNoiseIsOneAndCorrelatedNoiseHasItsKnownValue) {
     correlated(k) = state;
   }
   EXPECT_EQ(noise_correlation(white, all, 50), 1.0);
+  EXPECT_EQ(noise_correlation(white, all, 50, 1.05), 1.05);  // as good as white behind that filter
+  EXPECT_NEAR(noise_correlation(white, all, 50, 2.0), 1.0, 0.2);
   EXPECT_NEAR(noise_correlation(correlated, all, 100), 1.8 / 0.2, 1.2);  // (1 + rho) / (1 - rho)
 }
 

@@ -5,6 +5,7 @@
 
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/runtime/error.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -73,6 +74,21 @@ TEST_F(LogProcessing, RepairedSamplesAreNotUsed) {
     const bool near = std::abs(sample_of_row(prepared, k) - 2000) <= reach;
     EXPECT_EQ(block.use(k, 0) == RowUse::unusable, near) << "row " << k;
   }
+}
+
+TEST_F(LogProcessing, ALowCutoffLeavesThePositionsTheirBand) {
+  ProcessingOptions options;
+  const double usual = options.motion_over_pass;
+  options.cutoff_hz = 4;
+  options.keep_motion(12);
+  EXPECT_DOUBLE_EQ(options.motion_over_pass * options.cutoff_hz, 12);
+  options.cutoff_hz = 20;
+  options.motion_over_pass = usual;
+  options.keep_motion(12);
+  EXPECT_DOUBLE_EQ(options.motion_over_pass, usual);
+  options.cutoff_hz = 0.5;
+  options.keep_motion(100);
+  EXPECT_NO_THROW(options.validate());
 }
 
 TEST_F(LogProcessing, PeriodsAreAveragedWithoutLosingTheEnds) {

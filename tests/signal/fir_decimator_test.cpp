@@ -1,5 +1,6 @@
 #include "deltadyn/signal/fir_decimator.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -24,6 +25,26 @@ TEST(FirDecimator, IsSymmetricFlatAndQuietWhereItShould) {
     for (double f = 0; f <= 0.5 * cutoff; f += 0.05 * cutoff) EXPECT_NEAR(filter.gain(f), 1.0, 1e-3) << f;
     for (double f = 1.5 * cutoff; f < 500; f += 0.05 * cutoff) EXPECT_LT(std::abs(filter.gain(f)), 1e-3) << f;
   }
+}
+
+// Sums over long blocks of filtered white noise vary as much as the filter says.
+TEST(FirDecimator, KnowsHowItCorrelatesWhiteNoise) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const int factor : {4, 8, 16}) {
+    const FirDecimator filter(1000, 25.0, factor);
+    const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(400000, 1, [&]() { return normal(random); });
+    Eigen::MatrixXd out(filter.outputs(noise.rows()), 1);
+    filter.apply(noise, 0, out.rows(), out);
+    const Eigen::Index block = 400, blocks = out.rows() / block;
+    double of_sums = 0;
+    for (Eigen::Index b = 0; b < blocks; ++b) of_sums += std::pow(out.col(0).segment(b * block, block).sum(), 2);
+    const double correlation =
+        of_sums / static_cast<double>(blocks * block) / (out.squaredNorm() / static_cast<double>(out.rows()));
+    const double chance = 3 * std::sqrt(2.0 / static_cast<double>(blocks));
+    EXPECT_NEAR(correlation / filter.white_correlation(), 1.0, chance) << factor;
+  }
+  EXPECT_GT(FirDecimator(1000, 25.0, 4).white_correlation(), 3);
 }
 
 TEST(FirDecimator, HasNoLag) {
