@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "deltadyn/identification/noise_bias.hpp"
 #include "deltadyn/identification/prediction.hpp"
@@ -20,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than the model's
 constexpr Index kFewestRows = 10;       // to judge them by
 constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 1e-5;     // share of the information that is noise; less moves no figure
+constexpr double kFeltNoise = 1e-5;     // share of an acceleration's power that is encoder noise; less moves no figure
 constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
 
 double seconds_since(Clock::time_point start) {
@@ -130,6 +131,23 @@ std::vector<double> robust_scales(const Robot& robot, const std::vector<Prepared
   return scales;
 }
 
+/// Largest share, over logs and drives, of the power of the accelerations that is encoder noise: white up to the positions' cut-off f,
+/// of density D, it has (2 pi)^4 D f^5 / 5.
+double acceleration_noise_share(const std::vector<Log>& logs, const std::vector<PreparedLog>& prepared,
+                                const ProcessingOptions& processing) {
+  const double f = processing.motion_over_pass * processing.cutoff_hz;
+  double share = 0;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (Index j = 0; j < logs[l].drives(); ++j) {
+      const double density = motion_band(logs[l].q.col(j), prepared[l].rate_hz).noise_density;
+      const double noise = std::pow(2 * std::numbers::pi, 4) * density * std::pow(f, 5) / 5;
+      const double power = prepared[l].qdd.col(j).squaredNorm() / static_cast<double>(prepared[l].qdd.rows());
+      if (power > 0) share = std::max(share, noise / power);
+    }
+  }
+  return share;
+}
+
 /// Band of the motion; the cut-off where it was given and the logs are too short to tell.
 double motion_hz(const std::vector<Log>& logs, const Identification& found) {
   if (found.cutoff) return found.processing.cutoff_hz;  // the motion that the model explains
@@ -177,6 +195,8 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
 
   const double band_hz = options.processing.filter ? motion_hz(logs, out) : 0.0;
   if (options.processing.filter) out.processing.keep_motion(band_hz);
+  // Noise is kept out by the motion's own band, even where the model explains less of it.
+  const double instrument_hz = out.cutoff ? out.cutoff->cutoff_hz : band_hz;
 
   const auto fold_start = Clock::now();
   std::vector<PreparedLog> prepared = prepare_all(robot, logs, out.processing);
@@ -221,10 +241,9 @@ Identification identify(const Robot& robot, const std::vector<Log>& logs, const 
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }
   } else if (options.compensate_noise && options.processing.filter && !averages_periods(prepared)) {
-    NoiseBias found = noise_bias(robot, out.base, logs, out.processing, keep, band_hz);
-    out.noise_share = found.largest_share;
-    if (found.largest_share > kFeltNoise) {
-      bias = std::move(found);
+    out.noise_share = acceleration_noise_share(logs, prepared, out.processing);
+    if (out.noise_share > kFeltNoise) {
+      bias = noise_bias(robot, out.base, logs, out.processing, keep, instrument_hz);
       out.base_estimate = estimate_base_parameters(out.base, folds, {}, &*bias);
       p = any_parameters(out.base, out.base_estimate.value, robot.parameters());
     }

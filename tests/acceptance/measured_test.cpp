@@ -73,10 +73,11 @@ std::pair<double, double> base_parameter(const std::string& file, const std::str
   return {0, 0};
 }
 
-void expect_near(const std::pair<double, double>& found, double right, const std::string& what) {
+/// \param right_std  of the independent fit
+void expect_near(const std::pair<double, double>& found, double right, const std::string& what, double right_std = 0) {
   if (right == 0) return;
-  // Within its own interval, or 3 %.
-  EXPECT_NEAR(found.first, right, std::max(1.96 * found.second, 0.03 * right)) << what;
+  // Within the interval of both, or 3 %.
+  EXPECT_NEAR(found.first, right, std::max(1.96 * std::hypot(found.second, right_std), 0.03 * right)) << what;
 }
 
 class MeasuredDrive : public ::testing::TestWithParam<Bench> {};
@@ -94,7 +95,9 @@ TEST_P(MeasuredDrive, IsIdentifiedAndValidated) {
   EXPECT_EQ(validate.code, 0) << validate.out << validate.err;
 
   const std::pair<double, double> inertia = base_parameter(base, "Iyy");
-  expect_near(inertia, bench.inertia, "inertia");
+  // Independent fits of four logs of the one pendulum (dfki) differ by so much: 0.193, 0.188, 0.190, 0.188 kg m^2.
+  constexpr double kSpreadOfFits = 0.0024;
+  expect_near(inertia, bench.inertia, "inertia", bench.length > 0 ? kSpreadOfFits : 0);
   expect_near(base_parameter(base, "coulomb"), bench.coulomb, "Coulomb friction");
   expect_near(base_parameter(base, "viscous"), bench.viscous, "viscous friction");
   if (bench.length == 0) return;

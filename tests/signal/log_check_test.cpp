@@ -256,8 +256,8 @@ TEST(LogCheck, AnUnusablePartIsSaidAndKeepsItsWords) {
   EXPECT_NE(finding(parts[0], "missing_numbers", 0), nullptr);
   EXPECT_NE(finding(parts[0], "missing_numbers", 1), nullptr);
   EXPECT_THAT(parts[0].notes,
-              UnorderedElementsAre(HasSubstr("a gap of 0.051 s"), HasSubstr("no number, filled in; the first of 2 in 2 columns"),
-                                   HasSubstr("part 1 is not used")));
+              UnorderedElementsAre(HasSubstr("a gap of 0.051 s"), HasSubstr("column tau1_Nm: no number, filled in"),
+                                   HasSubstr("column tau2_Nm: no number, filled in"), HasSubstr("part 1 is not used")));
 }
 
 TEST(LogCheck, SaysManyGapsOnceAndDropsWhatIsTooShort) {

@@ -61,7 +61,7 @@ struct Identification {
   std::vector<PreslidingJoint> presliding;  ///< of each joint with friction; empty if it was not looked for
   ProcessingOptions processing;             ///< as used
   std::vector<bool> keep_reversals;         ///< one a drive: its rows near reversals were used
-  double noise_share = 0;  ///< of the information in its worst direction that is encoder noise; taken out if it is felt
+  double noise_share = 0;  ///< largest, of the power of an acceleration, that is encoder noise; taken out if it is felt
   Eigen::Index samples = 0;
   double fold_time_s = 0, total_time_s = 0;
   std::vector<std::string> notes;

@@ -60,7 +60,9 @@ LogFinding scale_finding(const RobotDescription& robot, const Ratio& ratio, doub
   f.std = ratio.std;
   f.text = fmt::format("torque is {:.3g} ({:.2g}) times what the masses of the prior need, {}: {}", ratio.value, ratio.std, who,
                        units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std)));
-  f.mend = "give the torque in N m at the joint (N for a carriage), or, if it is right, a --prior with the weighed masses";
+  f.mend =
+      "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille --rated-torque .. (or "
+      "--torque-unit A, a gear ratio) makes such a log; or, if it is right, give a --prior with the weighed masses";
   return f;
 }
 

@@ -22,6 +22,7 @@ constexpr double kNoiseRatio = 3.0;
 /// the acceleration.
 constexpr double kShareOfPositions = 1e-6;
 constexpr double kShareOfTorques = 1e-3;
+constexpr Index kEachColumn = 2;  // columns that are named one by one
 
 struct Knots {
   std::array<double, kMostKnots> t{};
@@ -210,12 +211,13 @@ void fill_missing_numbers(CheckRoom& room) {
     all += tallies.back().count;
     columns += tallies.back().count > 0 ? 1 : 0;
   }
+  const bool each = columns <= kEachColumn;
   bool said = false;
   for (std::size_t k = 0; k < channels.size(); ++k) {
     if (tallies[k].count == 0) continue;
-    const std::string more = columns > 1 ? fmt::format("; the first of {} in {} columns", all, columns)
-                             : all > 1   ? fmt::format("; the first of {}", all)
-                                         : "";
+    const std::string more = !each                  ? fmt::format("; the first of {} in {} columns", all, columns)
+                             : tallies[k].count > 1 ? fmt::format("; the first of {}", tallies[k].count)
+                                                    : "";
     LogFinding finding;
     finding.level = FindingLevel::mended;
     finding.key = "missing_numbers";
@@ -223,7 +225,7 @@ void fill_missing_numbers(CheckRoom& room) {
     finding.value = static_cast<double>(tallies[k].count);
     finding.unit = "rows";
     finding.text = room.where(tallies[k].first, channels[k].name) + ": no number, filled in" + more;
-    room.tell(std::move(finding), !said);
+    room.tell(std::move(finding), each || !said);
     said = true;
   }
 }
