@@ -74,10 +74,10 @@ std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& kee
 
 /// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations alternates, so that
 /// little of it is left in slow sums; the steps of a coarse one follow the motion about its turning points.
-double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double rate_hz) {
+double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double noise_std) {
   constexpr double kCountsPerSample = 3;  // of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
   constexpr double kFine = 0.05, kCoarse = 0.45;
-  const double step = std::sqrt(12 * motion_band(q, rate_hz).noise_density * rate_hz / 2);
+  const double step = std::sqrt(12.0) * noise_std;
   const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
   const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
   return usual > kCountsPerSample * step ? kFine : kCoarse;
@@ -89,6 +89,7 @@ std::vector<double> correlations(const Robot& robot, const std::vector<Log>& rec
   std::vector<double> sum(keep.size(), 0.0), rows(keep.size(), 0.0);
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const PreparedLog& log = logs[l];
+    const Eigen::VectorXd position_noise = position_noise_std(recorded[l]);
     const Prediction prediction = predict(robot, log, p, threads);
     const auto lags = static_cast<Index>(std::ceil(kNoiseMemory_s * log.rate_hz / static_cast<double>(log.stride)));
     const double white = log.low_pass ? log.low_pass->white_correlation() : 1.0;
@@ -97,7 +98,7 @@ std::vector<double> correlations(const Robot& robot, const std::vector<Log>& rec
       const auto usable = prediction.usable(drive, keep[j]);
       const auto count = static_cast<double>(usable.count());
       const Eigen::VectorXd residual = prediction.tau.col(drive) - prediction.model.col(drive);
-      const double least = white * least_correlation(recorded[l].q.col(drive), log.rate_hz);
+      const double least = white * least_correlation(recorded[l].q.col(drive), position_noise(drive));
       sum[j] += count * std::max(least, noise_correlation(residual, usable, std::min<Index>(lags, 50), white));
       rows[j] += count;
     }
@@ -138,8 +139,9 @@ double acceleration_noise_share(const std::vector<Log>& logs, const std::vector<
   const double f = processing.motion_over_pass * processing.cutoff_hz;
   double share = 0;
   for (std::size_t l = 0; l < logs.size(); ++l) {
+    const Eigen::VectorXd std = position_noise_std(logs[l]);
     for (Index j = 0; j < logs[l].drives(); ++j) {
-      const double density = motion_band(logs[l].q.col(j), prepared[l].rate_hz).noise_density;
+      const double density = 2 * std(j) * std(j) / prepared[l].rate_hz;
       const double noise = std::pow(2 * std::numbers::pi, 4) * density * std::pow(f, 5) / 5;
       const double power = prepared[l].qdd.col(j).squaredNorm() / static_cast<double>(prepared[l].qdd.rows());
       if (power > 0) share = std::max(share, noise / power);
