@@ -31,8 +31,8 @@ struct IdentificationOptions {
   bool choose_cutoff = true;     ///< from the band in which the motion stands out of the encoders' noise and the model holds
   Reversals reversals = Reversals::automatic;
   bool robust = false;  ///< Huber weights: single rows that stand out count less
-  bool find_ripples =
-      true;  ///< waves of the torque over the position become part of the model; only where reversals are automatic
+  /// Waves of the torque over the position become part of the model; only where reversals are automatic.
+  bool find_ripples = true;
   bool compensate_noise = true;  ///< take what encoder noise adds to the regressor out of the normal equations
   BaseParameterOptions base;
   ConsistentFitOptions fit;

@@ -17,9 +17,9 @@ namespace deltadyn {
 /// The torque between two frequencies, beside that of a model whose parameters fit the motion below `low_hz`.
 struct ModelBandPart {
   double low_hz = 0, high_hz = 0;
-  double found =
-      0;  ///< factor of the model's torque, without Coulomb friction, in the recorded one (least squares; encoder noise and uncertain parameters
-          ///< taken off): 1 where the model holds, 0 if the record holds nothing of it
+  /// Factor of the model's torque, without Coulomb friction, in the recorded one (least squares; encoder noise and uncertain parameters
+  /// taken off): 1 where the model holds, 0 if the record holds nothing of it.
+  double found = 0;
   double std = 0;
 };
 
@@ -32,7 +32,8 @@ struct ModelBand {
 };
 
 /// Looks from `lowest_hz` on in parts of half an octave until one is found in which less than half of the model's torque, and
-/// certainly not the whole of it, is in the record; if that is the first part, below it, too. Of long logs the middle counts. Where logs tell too little, there is no limit.
+/// certainly not the whole of it, is in the record; if that is the first part, below it, too. Of long logs the middle counts. Where
+/// logs tell too little, there is no limit.
 /// \param processing  its cut-off and periods are not used
 /// Throws deltadyn::Error as prepare_log() does for poses out of reach.
 [[nodiscard]] ModelBand find_model_band(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
