@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "deltadyn/identification/fine_delay.hpp"
@@ -13,6 +14,21 @@
 #include "deltadyn/signal/log_finding.hpp"
 
 namespace deltadyn::tools {
+
+/// The delay by itself and in the sum with what the check of the logs had removed, so that who reads only that key has it, too.
+inline void summarise_fine_delay(const FineDelay& found, Summary& summary) {
+  double removed = 0;
+  std::string verdict;
+  for (const Summary::Row& row : summary.rows()) {
+    if (row.key == "check_delay") removed = std::stod(row.value);
+    if (row.key == "check_verdict") verdict = row.value;
+  }
+  summary.add("check_fine_delay", found.delay_s, "s");
+  summary.add("check_fine_delay_std", found.std_s, "s");
+  summary.add("check_delay", removed + found.delay_s, "s");
+  summary.add("check_delay_std", found.std_s, "s");
+  if (verdict == "fine") summary.add("check_verdict", "mended");
+}
 
 /// Takes the delay out of `logs` if it is certain. Prints what was done and adds it to the summary.
 /// \returns the finding, for reports; nothing if the logs stay as they are
@@ -28,11 +44,10 @@ inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseP
   finding.value = found.delay_s;
   finding.std = found.std_s;
   finding.unit = "s";
-  finding.text = fmt::format("torque is {:.2f} ms {} ({:.2g} ms), as it shows beside the friction of the model: removed",
-                             1e3 * std::abs(found.delay_s), found.delay_s > 0 ? "late" : "early", 1e3 * found.std_s);
+  finding.text = fmt::format("torque is {:.2f} +- {:.2g} ms {}, as it shows beside the friction of the model: removed",
+                             1e3 * std::abs(found.delay_s), 1e3 * found.std_s, found.delay_s > 0 ? "late" : "early");
   fmt::print("check: mended: {}\n", finding.text);
-  summary.add("check_fine_delay", found.delay_s, "s");
-  summary.add("check_fine_delay_std", found.std_s, "s");
+  summarise_fine_delay(found, summary);
   return finding;
 }
 

@@ -38,14 +38,14 @@ inline const char* level_word(FindingLevel level) {
 }
 
 /// Those that the terminal tells: of the reader's the ones that have words of their own in its notes (another drive's finding may
-/// share them), each sentence once, and all of the gate's.
+/// share them), each sentence once, and all of the gate's. What is in order stands in the table of the channels.
 inline std::vector<LogFinding> findings_to_tell(const GateResult& gate) {
   std::vector<LogFinding> out;
   for (const Log& log : gate.logs) {
     for (const LogFinding& f : log.findings) {
       const bool noted = std::find(log.notes.begin(), log.notes.end(), f.text) != log.notes.end();
       const bool told = std::any_of(out.begin(), out.end(), [&](const LogFinding& one) { return one.text == f.text; });
-      if (f.level == FindingLevel::fine || (noted && !told)) out.push_back(f);
+      if (noted && !told) out.push_back(f);
     }
   }
   out.insert(out.end(), gate.findings.begin(), gate.findings.end());
@@ -59,6 +59,7 @@ inline std::string where_of(const LogFinding& f) {
 
 /// Findings as lines, the worst first; what is in order only if asked.
 inline void print_findings(const std::vector<LogFinding>& findings, bool with_fine) {
+  bool uncertain = false;
   for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
     if (level == FindingLevel::fine && !with_fine) continue;
     for (const LogFinding& f : findings) {
@@ -68,8 +69,10 @@ inline void print_findings(const std::vector<LogFinding>& findings, bool with_fi
       const std::string word = level == FindingLevel::fine ? "" : std::string(level_word(level)) + ": ";
       fmt::print(to, "check: {}{}{}\n", word, where_of(f), f.text);
       if (bad && !f.mend.empty()) fmt::print(to, "  mend: {}\n", f.mend);
+      uncertain |= f.text.find("+-") != std::string::npos;
     }
   }
+  if (uncertain) fmt::print("  (a +- is one standard deviation)\n");
 }
 
 /// Keys check_KEY, check_KEY_driveK with their standard deviations, and check_verdict. Of several findings with one key the worst

@@ -67,6 +67,7 @@ class Gate {
     if (sample.stretches.empty()) return std::move(out_);
     const std::size_t before = out_.findings.size();
     coarse_ = sample.coarse;
+    torque_noise_ = relative_torque_noise(out_.logs, sample);
     judge_positions(pick_points(sample, kPoints));
     if (out_.stop()) return std::move(out_);
     if (std::vector<LogFinding> pushed = leave_out_outside_torque(robot_, base_, out_.logs); !pushed.empty()) {
@@ -158,7 +159,7 @@ class Gate {
     f.value = judgement.as_given.residual;
     if (judgement.as_given.unreachable > kOutOfReach) {
       // What reads the rows refuses them with file and line; here is what is known beyond that.
-      f.level = FindingLevel::warning;
+      f.level = FindingLevel::fault;
       f.key = "pose";
       f.value = judgement.as_given.unreachable;
       f.text = fmt::format(
@@ -166,7 +167,7 @@ class Gate {
           100 * judgement.as_given.unreachable);
       f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
     } else if (judgement.as_given.residual > kUnexplained && !coarse_) {
-      f.level = FindingLevel::warning;
+      f.level = judgement.as_given.residual > kNoiseOnly * torque_noise_ ? FindingLevel::fault : FindingLevel::warning;
       f.key = "unexplained";
       f.text = fmt::format(
           "{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, order, unit or zero of the drives",
@@ -220,7 +221,7 @@ class Gate {
       f.value = 0;
       f.std = timing.delay_std.maxCoeff();
       f.unit = "s";
-      f.text = fmt::format("no delay between torque and position{} ({:.2g} ms)",
+      f.text = fmt::format("no delay between torque and position{}: 0 +- {:.2g} ms",
                            f.std < kSharp_s ? "" : " that this log could tell", 1e3 * f.std);
       if (f.std > 0) out_.findings.push_back(std::move(f));
       return;
@@ -254,8 +255,8 @@ class Gate {
     f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
     f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
     f.unit = "s";
-    f.text = fmt::format("this log does not tell a delay: {} ({:.2g} ms), residual {:.2g} % with it, {:.2g} % without",
-                         words_of_timing(f.key, "torque", f.value), 1e3 * f.std, 100 * timing.rms_before, 100 * timing.rms_after);
+    f.text = fmt::format("this log does not tell a delay: at best {}, residual {:.2g} % as recorded, {:.2g} % with that removed",
+                         words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
     out_.findings.push_back(std::move(f));
   }
 
@@ -272,8 +273,8 @@ class Gate {
     f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
     f.unit = "s";
     f.text = fmt::format(
-        "{} as it seems ({:.2g} ms), but that is not certain enough to remove it: residual {:.2g} % with it, {:.2g} % without",
-        words_of_timing(f.key, "torque", f.value), 1e3 * f.std, 100 * timing.rms_before, 100 * timing.rms_after);
+        "{} as it seems, but that is not certain enough to remove it: residual {:.2g} % as recorded, {:.2g} % with it removed",
+        words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
     f.mend = "record a faster motion, or mend the delay where the log is made (delta-log import: delay in the map)";
     out_.findings.push_back(std::move(f));
   }
@@ -296,8 +297,8 @@ class Gate {
         f.std = std(l, j);
         f.unit = "s";
         const std::string who = same_drives ? "torque" : fmt::format("torque of drive {}", j + 1);
-        f.text = fmt::format("{} ({:.2g} ms): {} (residual {:.2g} % with it, {:.2g} % without)",
-                             words_of_timing(key, who, value(l, j)), 1e3 * std(l, j), removed ? "removed" : "left in place",
+        f.text = fmt::format("{}: {} (residual {:.2g} % as recorded, {:.2g} % with it removed)",
+                             words_of_timing(key, who, value(l, j), std(l, j)), removed ? "removed" : "left in place",
                              100 * timing.rms_before, 100 * timing.rms_after);
         if (!removed) f.mend = "leave out --keep-delay, or mend the delay where the log is made";
         out_.findings.push_back(std::move(f));
@@ -305,11 +306,11 @@ class Gate {
     }
   }
 
-  static std::string words_of_timing(const std::string& key, const std::string& who, double value) {
-    const double ms = 1e3 * std::abs(value);
-    if (key == "delay") return fmt::format("{} is {:.2f} ms {}", who, ms, value > 0 ? "late" : "early");
-    return value > 0 ? fmt::format("{} is behind a low pass of {:.2f} ms", who, ms)
-                     : fmt::format("{} is a command, which the motor follows with a lag of {:.2f} ms", who, ms);
+  static std::string words_of_timing(const std::string& key, const std::string& who, double value, double std) {
+    const std::string ms = fmt::format("{:.2f} +- {:.2g} ms", 1e3 * std::abs(value), 1e3 * std);
+    if (key == "delay") return fmt::format("{} is {} {}", who, ms, value > 0 ? "late" : "early");
+    return value > 0 ? fmt::format("{} is behind a low pass of {}", who, ms)
+                     : fmt::format("{} is a command, which the motor follows with a lag of {}", who, ms);
   }
 
   [[nodiscard]] std::string name_of_file(int number) const {
@@ -356,8 +357,9 @@ class Gate {
   const Eigen::VectorXd& prior_std_;
   GateOptions options_;
   BaseParameters base_;
-  double residual_ = 0;  ///< relative, as given; 0 if sound
-  bool coarse_ = false;  ///< Sample::coarse
+  double residual_ = 0;      ///< relative, as given; 0 if sound
+  double torque_noise_ = 0;  ///< what the noise of the torque makes of it
+  bool coarse_ = false;      ///< Sample::coarse
   GateResult out_;
 };
 
@@ -369,7 +371,8 @@ bool GateResult::fault() const {
 
 bool GateResult::stop() const {
   return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
-    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort" && f.key != "pose";
+    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort" &&
+           f.key != "pose" && f.key != "unexplained";
   });
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "deltadyn/report/format.hpp"
+#include "deltadyn/report/log_table.hpp"
 
 #include "drive_figures.hpp"
 
@@ -28,8 +29,11 @@ LevelWords words_of(FindingLevel level) {
 
 std::string figure_of(const LogFinding& f) {
   if (!std::isfinite(f.value)) return "–";
-  const std::string value = format_number(f.value, f.unit, 4);
-  return std::isfinite(f.std) ? fmt::format("{} ± {}", value, format_number(f.std, f.unit, 2)) : value;
+  // Delays are milliseconds.
+  const bool in_ms = f.unit == "s" && std::isfinite(f.std);
+  const double factor = in_ms ? 1e3 : 1.0;
+  const std::string unit = in_ms ? "ms" : f.unit;
+  return std::isfinite(f.std) ? format_with_uncertainty(factor * f.value, factor * f.std, unit) : format_number(f.value, unit, 4);
 }
 
 }  // namespace
@@ -41,6 +45,22 @@ Verdict verdict_of(const std::vector<LogFinding>& findings) {
     if (f.level == FindingLevel::warning) verdict = Verdict::caution;
   }
   return verdict;
+}
+
+std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
+  const auto count = [&](FindingLevel level) {
+    return std::count_if(findings.begin(), findings.end(), [level](const LogFinding& f) { return f.level == level; });
+  };
+  const auto many = [](std::ptrdiff_t number, const char* one) {
+    return number == 0 ? std::string() : fmt::format(", {} {}{}", number, one, number == 1 ? "" : "s");
+  };
+  const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning), mended = count(FindingLevel::mended);
+  const std::string rest =
+      many(warnings, "warning") + (mended == 0 ? "" : fmt::format(", {} finding{} mended", mended, mended == 1 ? "" : "s"));
+  if (faults > 0)
+    return fmt::format("a model from these logs is not to be trusted: {} fault{}{}", faults, faults == 1 ? "" : "s", rest);
+  if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
+  return "no fault was found" + rest;
 }
 
 void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
@@ -55,7 +75,7 @@ void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findin
                 words_of(level).tone);
     }
   }
-  if (!table.empty()) report.table(table, "What the check of the logs found.");
+  if (!table.empty()) report.table(table, "What the check of the logs found; ± is one standard deviation.");
 }
 
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings) {
@@ -98,7 +118,13 @@ std::string log_report(const Robot& robot, const std::vector<Log>& logs, const R
                                                : "A model from these logs is not to be trusted.",
                  lines);
   report.heading("Findings");
-  add_finding_table(report, context.findings, true);
+  // What is in order of single channels stands in a table of its own.
+  std::vector<LogFinding> findings;
+  std::copy_if(context.findings.begin(), context.findings.end(), std::back_inserter(findings),
+               [](const LogFinding& f) { return f.level != FindingLevel::fine || f.file.empty(); });
+  add_finding_table(report, findings, true);
+  report.heading("Channels");
+  add_channel_table(report, description, log_figures(logs));
   report.heading("Data");
   std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
   for (const Log& log : logs) {

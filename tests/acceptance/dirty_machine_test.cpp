@@ -86,6 +86,15 @@ TEST_F(DirtyMachine, GivesAUsefulModel) {
   }
 }
 
+/// The low pass of 0.5 ms shows beside the bristles only. Who reads the check's own keys has it, too.
+TEST_F(DirtyMachine, TheKeysOfTheCheckHoldTheFineDelay) {
+  const auto summary = read_summary(path("summary.csv"));
+  EXPECT_NE(number(summary, "check_fine_delay"), 0);
+  EXPECT_EQ(number(summary, "check_delay"), number(summary, "check_fine_delay"));
+  EXPECT_EQ(number(summary, "check_delay_std"), number(summary, "check_fine_delay_std"));
+  EXPECT_EQ(summary.at("check_verdict"), "mended");
+}
+
 /// On a motion that took no part, rows near reversals with it, little is left but the noise of the torque behind the low pass.
 TEST_F(DirtyMachine, PredictsAnotherMotion) {
   succeed({"delta-validate", path("robot.urdf"), "--params", path("params.csv"), data_ + "nothing_hidden/holdout.csv",

@@ -79,7 +79,7 @@ TEST(FaultyLogs, ADelayIsRemovedAndSaid) {
     const Spoilt logs([&](Log& log) { testing_support::make_late(log, delay, 0); });
     const ToolResult result = logs.identify();
     EXPECT_EQ(result.code, 0) << result.out << result.err;
-    EXPECT_THAT(result.out, ContainsRegex("check: mended: torque is [0-9.]+ ms (late|early) .*removed"));
+    EXPECT_THAT(result.out, ContainsRegex("check: mended: torque is [0-9.]+ .- [0-9.]+ ms (late|early): removed"));
     EXPECT_NEAR(std::stod(logs.summary().at("check_delay")), delay, 1e-4);
     EXPECT_LT(logs.friction_error(), 0.01);
   }
@@ -168,12 +168,32 @@ TEST(FaultyLogs, CheckSaysWhatIdentifyWouldAndWritesAPage) {
   const Spoilt sound([](Log&) {});
   const ToolResult fine = sound.check();
   EXPECT_EQ(fine.code, 0) << fine.out << fine.err;
-  EXPECT_THAT(fine.out, HasSubstr("no fault was found"));
+  const Lines lines = to_lines(fine.out);
+  EXPECT_EQ(lines.back(), "verdict: no fault was found");
+  EXPECT_LT(lines.size(), 20U) << "a table a log, not a line a figure\n" << fine.out;
+  EXPECT_THAT(fine.out, ContainsRegex("4 +[0-9.]+ rad +[^ ].* 100 %"));
+  EXPECT_EQ(fine.out.find("quantised to 0"), std::string::npos) << fine.out;
   EXPECT_THAT(read_text(sound.path("check.html")), HasSubstr("Nothing was found that speaks against these logs"));
   const Spoilt turned([](Log& log) { log.tau.col(0) *= -1; });
   const ToolResult fault = turned.check();
   EXPECT_EQ(fault.code, 5);
   EXPECT_THAT(read_text(turned.path("check.html")), HasSubstr("the torque of drive 1 has the wrong sign"));
+}
+
+// A torque that has nothing to do with the motion: the words, the exit code and the verdict of the fit agree.
+TEST(FaultyLogs, ATorqueThatNothingExplainsIsAFault) {
+  const Spoilt other([](Log& log) {
+    for (Eigen::Index k = 0; k < log.samples(); ++k) {
+      for (int j = 0; j < 4; ++j)
+        log.tau(k, j) = 15 * std::sin((2.1 + 0.9 * j) * log.t_s(k) + j) + 9 * std::sin(6.3 * log.t_s(k));
+    }
+  });
+  const ToolResult check = other.check();
+  EXPECT_EQ(check.code, 5) << check.out << check.err;
+  EXPECT_THAT(check.err, ContainsRegex("fault: [0-9]+ % of the torque is explained by no parameters of this robot"));
+  EXPECT_THAT(check.out, HasSubstr("not to be trusted: 1 fault"));
+  EXPECT_EQ(check.out.find("no fault"), std::string::npos) << check.out;
+  EXPECT_EQ(other.identify().code, 5);
 }
 
 TEST(FaultyLogs, ARefusedDiagnosisWritesThePageOfTheCheck) {

@@ -12,6 +12,7 @@
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/report/log_report.hpp"
+#include "deltadyn/report/log_table.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 
 #include "log_gate.hpp"
@@ -58,9 +59,11 @@ class Check {
       write_file(report_file_, log_report(*robot, gate.logs, context));
       fmt::print("wrote {}\n", report_file_);
     }
-    const bool fault = gate.fault();
-    if (!fault) fmt::print("no fault was found\n");
-    return fault ? ExitCode::not_trusted : ExitCode::done;
+    for (const LogFigures& log : log_figures(gate.logs)) {
+      for (const std::string& line : channel_lines(description, log)) fmt::print("{}\n", line);
+    }
+    fmt::print("verdict: {}\n", check_verdict_in_words(tools::all_findings(gate)));
+    return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
   }
 
   std::string command_line_, robot_file_, prior_file_, report_file_;

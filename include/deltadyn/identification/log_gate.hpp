@@ -25,8 +25,8 @@ struct GateResult {
   std::vector<LogFinding> findings;  ///< of the gate alone; Log::findings holds those of the reader
   /// A finding of level fault.
   [[nodiscard]] bool fault() const;
-  /// A fault that makes a fit senseless (signs, order, units), other than one that only scales its result, or poses out of reach,
-  /// which the fit refuses with their line.
+  /// A fault that makes a fit senseless (signs, order, units), other than one that only scales its result, poses out of reach,
+  /// which the fit refuses with their line, and torque without an explanation, which a diagnosis may find.
   [[nodiscard]] bool stop() const;
 };
 

@@ -29,4 +29,7 @@ void weigh_findings(const std::vector<LogFinding>& findings, Assessment& assessm
 /// The worst level among the findings.
 [[nodiscard]] Verdict verdict_of(const std::vector<LogFinding>& findings);
 
+/// The same in words, with how many faults, warnings and mends there are: "to be used with care: no fault, 2 warnings".
+[[nodiscard]] std::string check_verdict_in_words(const std::vector<LogFinding>& findings);
+
 }  // namespace deltadyn

@@ -262,7 +262,7 @@ class Judge {
     e.drive = drive;
     say("torque_scale_drive",
         fmt::format(
-            "the torque of drive {} is {:.4g} ({:.2g}) times what the other drives need: unit, torque constant or gear ratio?",
+            "the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque constant or gear ratio?",
             drive + 1, e.value, e.std),
         "give the torque of every drive in N m at the joint (N for a carriage)");
   }

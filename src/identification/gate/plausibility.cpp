@@ -58,7 +58,7 @@ LogFinding scale_finding(const RobotDescription& robot, const Ratio& ratio, doub
   f.drive = drive;
   f.value = ratio.value;
   f.std = ratio.std;
-  f.text = fmt::format("torque is {:.3g} ({:.2g}) times what the masses of the prior need, {}: {}", ratio.value, ratio.std, who,
+  f.text = fmt::format("torque is {:.3g} +- {:.2g} times what the masses of the prior need, {}: {}", ratio.value, ratio.std, who,
                        units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std)));
   f.mend =
       "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille --rated-torque .. (or "
@@ -91,7 +91,7 @@ bool add_sign_findings(const RobotDescription& robot, const TorqueScale& scale, 
   f.drive = negative.size() == 1 ? negative.front() : -1;
   f.value = worst;
   f.std = worst_std;
-  f.text = fmt::format("torque of {} has the wrong sign{}: the inertia comes out at {:.3g} ({:.2g}) times that of the prior",
+  f.text = fmt::format("torque of {} has the wrong sign{}: the inertia comes out at {:.3g} +- {:.2g} times that of the prior",
                        drives_in_words(negative, robot.drives()), all_limbs ? "" : " (or its position has)", worst, worst_std);
   f.mend = "turn the sign of the torque (delta-log import: sign = -1 in the map)";
   out.push_back(std::move(f));
@@ -130,8 +130,8 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
     f.value = g.value;
     f.std = g.data_std;
     f.text = fmt::format(
-        "gravity acts the other way: its torques are {:.3g} ({:.2g}) times those of the prior, the inertia {:.3g} times", g.value,
-        g.data_std, inertia);
+        "gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} times",
+        g.value, g.data_std, inertia);
     f.mend = "check how the base hangs: gravity in the robot file, and the direction of positive positions";
     out.push_back(std::move(f));
     return out;
@@ -165,7 +165,7 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   if (yaw_far > 0 && (small || yaw_prior < kWeighed)) {
     LogFinding f = scale_finding(robot, yaw, yaw_prior, small, fmt::format("on drive {}", limbs + 1), static_cast<int>(limbs));
     f.text =
-        fmt::format("the inertia about drive {} is {:.3g} ({:.2g}) times that of the prior: {}", limbs + 1, yaw.value, yaw.std,
+        fmt::format("the inertia about drive {} is {:.3g} +- {:.2g} times that of the prior: {}", limbs + 1, yaw.value, yaw.std,
                     small ? "position in degrees, or unit of the torque?"
                           : "rotor inertia of a geared motor (--rotor-inertia), or unit of the torque?");
     out.push_back(std::move(f));

@@ -21,6 +21,11 @@ void add(const CheckRoom& room, const char* key, Index drive, double value, cons
   room.tell(std::move(finding));
 }
 
+std::string step_in_words(const std::string& column, double step, const std::string& unit) {
+  return step > 0 ? fmt::format("{} is quantised to {:.3g} {}", column, step, unit)
+                  : column + " has no step that is visible beside its noise";
+}
+
 }  // namespace
 
 void measure_channels(CheckRoom& room) {
@@ -30,7 +35,7 @@ void measure_channels(CheckRoom& room) {
     const std::string length = room.turns(d) ? "rad" : "m";
     const std::string effort = room.turns(d) ? "N*m" : "N";
     const ChannelQuality q = measure_channel(log.q.col(d));
-    add(room, "step", d, q.step, length, fmt::format("{} is quantised to {:.3g} {}", names.q, q.step, length));
+    add(room, "step", d, q.step, length, step_in_words(names.q, q.step, length));
     add(room, "noise", d, q.noise, length, fmt::format("{} has noise of {:.3g} {}", names.q, q.noise, length));
     add(room, "travel", d, q.travel, length, fmt::format("{} travels {:.4g} {}", names.q, q.travel, length));
     if (room.stale_positions[static_cast<std::size_t>(d)] == 1) {
@@ -38,7 +43,7 @@ void measure_channels(CheckRoom& room) {
     }
     if (log.tau.size() == 0) continue;
     const ChannelQuality tau = measure_channel(log.tau.col(d));
-    add(room, "torque_step", d, tau.step, effort, fmt::format("{} is quantised to {:.3g} {}", names.tau, tau.step, effort));
+    add(room, "torque_step", d, tau.step, effort, step_in_words(names.tau, tau.step, effort));
     add(room, "torque_noise", d, tau.noise, effort, fmt::format("{} has noise of {:.3g} {}", names.tau, tau.noise, effort));
   }
 }

@@ -39,6 +39,15 @@ void extend(const Eigen::Ref<const Eigen::VectorXd>& q, double band, Index& begi
   while (begin > 0 && takes(begin - 1)) --begin;
 }
 
+void tell_moving(const CheckRoom& room, Index drive, double share) {
+  LogFinding finding;
+  finding.key = "moving";
+  finding.drive = static_cast<int>(drive);
+  finding.value = share;
+  finding.text = fmt::format("{}: drive {} moves in {:.3g} % of the samples", room.log.file, drive + 1, 100.0 * share);
+  room.tell(std::move(finding));
+}
+
 }  // namespace
 
 void leave_rest_out(CheckRoom& room) {
@@ -50,7 +59,10 @@ void leave_rest_out(CheckRoom& room) {
   const Index block = std::max<Index>(4, shortest / 2);
   Eigen::Index all = 0;
   for (Index d = 0; d < log.drives(); ++d) {
-    if (!room.moves(d)) continue;  // never moves: another finding
+    if (!room.moves(d)) {  // another finding says so
+      tell_moving(room, d, 0);
+      continue;
+    }
     const auto q = log.q.col(d);
     const double band = band_of(measure_channel(q));
     Index resting = 0;
@@ -68,6 +80,7 @@ void leave_rest_out(CheckRoom& room) {
       resting += end - begin;
     }
     all += resting;
+    tell_moving(room, d, 1.0 - static_cast<double>(resting) / static_cast<double>(n));
   }
   LogFinding finding;
   finding.key = "standstill";
