@@ -117,6 +117,7 @@ class Builder {
                                                word_of(channel.quantity), channel.source));
       }
     }
+    result.log.notes.insert(result.log.notes.end(), remarks_.begin(), remarks_.end());
     choose_grid();
     fill(result);
     cut_to_common_span(result.log);
@@ -156,6 +157,7 @@ class Builder {
       one.taken.step_s = usual_step_s(one.series.t_s);
     }
     prepared_.push_back(std::move(one));
+    if (!channel.remark.empty()) remarks_.push_back(fmt::format("{}: '{}': {}", recording_.file, channel.name, channel.remark));
   }
 
   /// Stamps from the first row of the first time line on.
@@ -312,6 +314,7 @@ class Builder {
   const ColumnMap& map_;
   const RobotDescription& robot_;
   std::vector<Prepared> prepared_;
+  std::vector<std::string> remarks_;
   const Prepared* grid_of_ = nullptr;
   Eigen::VectorXd grid_s_;
   std::vector<long> grid_line_;
@@ -379,6 +382,7 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_)) {
       if (needed) ask(question.what, question.mend);
     }
+    note_joints_beyond(quantity);
     const ChannelMap* guessed = map_.find(quantity, 1);
     if (guessed != nullptr && read_header_words(guessed->source, "").origin == Origin::commanded) {
       recording_.notes.push_back(fmt::format("{}: '{}' is a commanded {} by its name; it is taken, as no measured one is there",
@@ -400,29 +404,6 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
 
 void LogImport::ask(const std::string& what, const std::string& mend, const std::string& where) {
   open_.push_back({what, mend, where.empty() ? recording_.file : where});
-}
-
-std::string LogImport::map_text() const {
-  std::vector<std::string> remarks = {fmt::format("Guessed from {}: {}.", recording_.file, recording_.form)};
-  for (const Open& open : open_) {
-    remarks.push_back("STILL OPEN: " + open.what);
-    std::string mend = "  " + open.mend;
-    for (auto at = mend.find('\n'); at != std::string::npos; at = mend.find('\n', at + 3)) mend.replace(at, 1, "\n# ");
-    remarks.push_back(mend);
-  }
-  remarks.push_back("Every column of the recording, with its range:");
-  for (const RecordedChannel& channel : recording_.channels) {
-    const auto known = !channel.values.array().isNaN();
-    if (channel.text_line > 0 || !known.any()) {
-      remarks.push_back(fmt::format("  \"{}\"  no numbers", channel.name));
-      continue;
-    }
-    const double high = known.select(channel.values.array(), -HUGE_VAL).maxCoeff(),
-                 low = known.select(channel.values.array(), HUGE_VAL).minCoeff();
-    remarks.push_back(fmt::format("  \"{}\"{}  {:.6g} to {:.6g}", channel.name,
-                                  channel.unit.empty() ? "" : " [" + channel.unit + "]", low, high));
-  }
-  return to_toml(map_, remarks);
 }
 
 ImportedLog LogImport::log() const {

@@ -1,6 +1,7 @@
 #include "deltadyn/io/log_file.hpp"
 
 #include <cctype>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
@@ -181,6 +182,15 @@ bool is_position_name(std::string_view name) {
   return unit == "_rad" || unit == "_deg" || unit == "_m";
 }
 
+/// Positions of drives that the robot does not have.
+std::vector<std::string> positions_beyond(const CsvReader& reader, int drives) {
+  std::vector<std::string> names;
+  for (const std::string& name : reader.columns()) {
+    if (is_position_name(name) && std::atoi(name.c_str() + 1) > drives) names.push_back(name);
+  }
+  return names;
+}
+
 /// Whether the header is one of these tools' logs: t_s and a position, separated by commas.
 bool is_contract_header(std::string_view line) {
   bool time = false, position = false;
@@ -233,9 +243,10 @@ Log read_contract(const std::string& path, const RobotDescription& robot, const 
       {sources(reader, robot, Block::qdd, options.need_derivatives, log.notes), &log.qdd},
       {sources(reader, robot, Block::tau, options.need_torque, log.notes), &log.tau},
   };
-  if (const auto extra = find_source(reader, Block::q, DriveKind::revolute, robot.drives())) {
-    log.notes.push_back(fmt::format("{}: the robot {} has {} drives, the column {} is not used", path, robot.type, robot.drives(),
-                                    reader.columns()[extra->column]));
+  if (const auto extra = positions_beyond(reader, robot.drives()); !extra.empty()) {
+    const std::string taken = robot.drives() == 1 ? "drive, so q1 was" : fmt::format("drives, so q1 to q{} were", robot.drives());
+    log.notes.push_back(fmt::format("{}: the robot {} has {} {} taken; {} {} not used", path, robot.type, robot.drives(), taken,
+                                    fmt::join(extra, ", "), extra.size() == 1 ? "is" : "are"));
   }
 
   std::vector<double> values;  // row after row

@@ -124,6 +124,21 @@ TEST(Create, MakesAnAxis) {
   }
 }
 
+// The advice says the flags that make the same machine: gravity acts along a vertical axis, and at 60 degrees to one that leans by 30.
+TEST(Create, OfAnAxisThatIsNotHorizontalNamesTheGravityThatIsAlike) {
+  const testing::TemporaryFolder folder;
+  const Words create = {"delta-model", "create", "axis", "--arm", "0.3", "-o", folder.path("axis.urdf")};
+  for (const auto& [axis, gravity] : {std::pair("0,0,1", "--gravity-direction 0,-1,0"),
+                                      std::pair("0,0.8660254037844386,0.5", "--gravity-direction 0,-0.5,-0.866025")}) {
+    const ToolResult refused = run(create + Words{"--axis-direction", axis});
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find("leave --axis-direction out"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find(gravity), std::string::npos) << refused.err;
+    const std::string flag = gravity;
+    succeed(create + Words{flag.substr(0, flag.find(' ')), flag.substr(flag.find(' ') + 1)});
+  }
+}
+
 TEST(Create, WritesTheShippedFileAgainByteForByte) {
   const testing::TemporaryFolder folder;
   succeed({"delta-model",

@@ -13,6 +13,7 @@
 namespace deltadyn {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using namespace testing;
 
@@ -388,7 +389,9 @@ TEST(LogImport, NamesOfALogOfTheseToolsMeanTheirDrive) {
   const auto row = [](int, double t) { return fmt::format("{:.3f};1;2;3;11;12;13\n", t); };
   const std::string file = folder.write("a.csv", recorded("t_s;q3_rad;q1_rad;q2_rad;tau3_Nm;tau1_Nm;tau2_Nm\n", row));
   const RobotDescription two = drives(2);
-  const Log log = LogImport({file}, two, {}).log().log;  // the third is not used
+  const Log log = LogImport({file}, two, {}).log().log;
+  EXPECT_THAT(log.notes, Contains(HasSubstr("2 drives, so as position 'q1_rad', 'q2_rad' were taken; 'q3_rad' is not used")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("as torque 'tau1_Nm', 'tau2_Nm' were taken; 'tau3_Nm' is not used")));
   EXPECT_EQ(log.q(5, 0), 2.0);
   EXPECT_EQ(log.q(5, 1), 3.0);
   EXPECT_EQ(log.tau(5, 1), 13.0);
@@ -465,6 +468,53 @@ TEST(LogImport, MapTextOfAnIncompleteGuessNamesEveryColumnAndIsAMap) {
   EXPECT_THAT(map, HasSubstr("\"y\""));
   const ColumnMap back = read_column_map(folder.write("map.toml", map), robot);
   EXPECT_EQ(back.time_source, "t_s");
+}
+
+// What the names do not say is for the user to fill in: no more than drive, quantity and unit.
+TEST(LogImport, MapTextHoldsABlockForEveryColumnThatIsNotTaken) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  const std::string text = recorded("t_s,left [deg],right [Nm],heat\n",
+                                    [](int, double t) { return fmt::format("{},{},{},20\n", t, position(t), torque(t)); });
+  const std::string file = folder.write("log.csv", text);
+  std::string map = LogImport({file}, robot, {}).map_text();
+  const std::string block = "# [[channel]]\n# drive = DRIVE\n# quantity = QUANTITY\n# source = \"heat\"\n# unit = \"UNIT\"\n";
+  ASSERT_THAT(map, HasSubstr(block));
+  // Filled in, the block is a channel.
+  std::string filled = block;
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"# ", ""}, {"DRIVE", "1"}, {"QUANTITY", "\"velocity\""}, {"UNIT", "rpm"}}) {
+    for (auto at = filled.find(from); at != std::string::npos; at = filled.find(from)) filled.replace(at, from.size(), to);
+  }
+  map.replace(map.find(block), block.size(), filled);
+  const ColumnMap back = read_column_map(folder.write("map.toml", map), robot);
+  ASSERT_NE(back.find(Quantity::velocity, 1), nullptr);
+  EXPECT_EQ(back.find(Quantity::velocity, 1)->source, "heat");
+}
+
+// The Scope scales on its screen; the rows are raw, and so is a unit after "Unit ScaleFactor" not theirs.
+TEST(LogImport, SaysThatTheScalesOfTheScopesScreenWereNotApplied) {
+  const TemporaryFolder folder;
+  std::string text = "Name\tProject\nFile\tx.csv\nStarttime of export\t132959733843760000\nEndtime of export\t1\n\n\n";
+  text += "Name\tActPos\tActTorque\tplain\nSampleTime[ms]\t1\t1\t1\nOffset\t1\t0\t0\nScaleFactor\t-1\t1\t1\n";
+  text += "Unit\trad (Angle)\tNm (Torque)\trad (Angle)\nUnit ScaleFactor\t1\t-10\t1\nUnit Offset\t0\t10\t0\n\n";
+  for (int k = 0; k < 100; ++k) text += fmt::format("{}\t{}\t{}\t0\n", k, 0.01 * k, 2 * k);
+  const RobotDescription robot = one_drive();
+  const std::string file = folder.write("scope.csv", text);
+  MapDefaults units;
+  units.torque_unit = "mNm";
+  ImportOptions options;
+  options.defaults = units;
+  const std::string map = folder.write("map.toml",
+                                       "[[channel]]\ndrive = 1\nquantity = \"position\"\nsource = \"ActPos\"\n"
+                                       "[[channel]]\ndrive = 1\nquantity = \"torque\"\nsource = \"ActTorque\"\n");
+  options.map_file = map;
+  const Log log = LogImport({file}, robot, options).log().log;
+  EXPECT_NEAR(log.q(50, 0), 0.5, 1e-12);
+  EXPECT_THAT(log.notes,
+              Contains(HasSubstr("'ActPos': ScaleFactor -1, Offset 1, Unit ScaleFactor 1 and Unit Offset 0 of the header are "
+                                 "of the Scope's display")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("the unit Nm is of the display, too, and was not taken")));
 }
 
 }  // namespace

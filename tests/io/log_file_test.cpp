@@ -105,6 +105,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadLog{"NoRates", DriveKind::revolute, "t_s,q1_rad,tau1_Nm", true, {"qd1_rad_s is missing"}}),
     [](const auto& information) { return std::string(information.param.name); });
 
+TEST(LogFile, SaysWhichJointsOfALongerArmAreNotUsed) {
+  const TemporaryFolder folder;
+  std::string text = "t_s,q1_rad,q2_rad,q3_rad\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("{},1,2,3\n", 0.001 * k);
+  LogReadOptions options;
+  options.check = options.need_torque = false;
+  const Log log = read_log(folder.write("arm.csv", text), axis(DriveKind::revolute), options);
+  ASSERT_EQ(log.notes.size(), 1U);
+  EXPECT_THAT(log.notes[0], HasSubstr("has 1 drive, so q1 was taken; q2_rad, q3_rad are not used"));
+}
+
 TEST(LogFile, TorqueMayBeMissingIfNotNeeded) {
   const TemporaryFolder folder;
   LogReadOptions options;

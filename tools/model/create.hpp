@@ -4,6 +4,7 @@
 /// `delta-model create`: a robot file from a few lengths.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -194,6 +195,18 @@ class Create {
     }
   }
 
+  /// What says the same with a horizontal axis: the frame turned so that the axis is its y, and gravity turned along.
+  static std::string gravity_instead_of(const Eigen::Vector3d& axis, const Eigen::Vector3d& gravity) {
+    if (gravity.isZero()) return "leave --axis-direction out: without gravity all directions are alike";
+    const Eigen::Vector3d seen = Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitY()) * gravity.normalized();
+    std::string text;
+    for (int k = 0; k < 3; ++k) text += fmt::format("{}{:.6g}", k > 0 ? "," : "", std::abs(seen(k)) < 1e-12 ? 0.0 : seen(k));
+    return fmt::format(
+        "leave --axis-direction out (the axis then is 0,1,0) and lean gravity against it as it is against yours: "
+        "--gravity-direction {}",
+        text);
+  }
+
   void add_axis(RobotDescription& robot) const {
     const std::string kind = drive_kind_.value_or("revolute");
     if (kind != "revolute" && kind != "prismatic")
@@ -207,8 +220,7 @@ class Create {
       const Eigen::Vector3d axis =
           axis_direction_.empty() ? Eigen::Vector3d(0, 1, 0) : direction_of(axis_direction_, "--axis-direction");
       if (std::abs(axis.z()) > 1e-9)
-        refuse_usage("the axis of a revolute drive is horizontal in the base frame",
-                     "turn gravity instead by --gravity-direction");
+        refuse_usage("the axis of a revolute drive is horizontal in the base frame", gravity_instead_of(axis, robot.gravity));
       limb.azimuth = std::atan2(-axis.x(), axis.y());  // the axis is +y of the limb frame
       limb.p_DE_0 = Eigen::Vector3d(arm_.value_or(0), 0, 0);
     }

@@ -57,6 +57,10 @@ class LogImport {
   [[nodiscard]] ImportedLog log() const;
 
  private:
+  [[nodiscard]] bool is_taken(const RecordedChannel& channel) const;
+  /// Says which joints of a machine with more of them than the robot has drives were taken, and which not.
+  void note_joints_beyond(Quantity quantity);
+  [[nodiscard]] std::string map_of_the_rest() const;
   void ask(const std::string& what, const std::string& mend, const std::string& where = "");
 
   const RobotDescription& robot_;

@@ -32,6 +32,7 @@ struct RecordedChannel {
   double sample_time_s = 0.0;        ///< of the channel itself where the form says so, else 0
   long text_line = 0;                ///< line of the first field that is no number; 0: none
   std::string text;                  ///< that field
+  std::string remark;                ///< what the file says of the channel that was not applied, and why; empty: nothing
   bool clock = false;                ///< dates or times of day: values in s, origin in ns since 1970 (or midnight)
 };
 

@@ -78,6 +78,32 @@ std::string unit_of(const Header& header, std::size_t column) {
   return std::string(trimmed(unit));
 }
 
+/// A setting of the Scope's display: how a raw value becomes one on the screen.
+double setting_of(const Header& header, const std::string& row, std::size_t column, double usual) {
+  const std::string text = field_of(header, row, column);
+  double value = 0;
+  const bool fine = !text.empty() && parse_number(text, text.find(',') == std::string::npos ? '.' : ',', value);
+  return fine && std::isfinite(value) ? value : usual;
+}
+
+/// The rows hold the recorded variable as it is: the Scope scales and shifts on its screen only, and the unit after "Unit
+/// ScaleFactor" is that of the screen. A channel with such settings says so, and its unit is unknown if that is scaled.
+void take_display_settings(const Header& header, std::size_t column, RecordedChannel& channel) {
+  const double scale = setting_of(header, "ScaleFactor", column, 1), offset = setting_of(header, "Offset", column, 0);
+  const double unit_scale = setting_of(header, "Unit ScaleFactor", column, 1),
+               unit_offset = setting_of(header, "Unit Offset", column, 0);
+  if (scale == 1 && offset == 0 && unit_scale == 1 && unit_offset == 0) return;
+  channel.remark = fmt::format(
+      "ScaleFactor {:.6g}, Offset {:.6g}, Unit ScaleFactor {:.6g} and Unit Offset {:.6g} of the header are of the Scope's "
+      "display; the "
+      "rows hold the recorded variable without them, so they were not applied (scale and offset in the column map would)",
+      scale, offset, unit_scale, unit_offset);
+  if (unit_scale == 1 && unit_offset == 0) return;
+  if (!channel.unit.empty())
+    channel.remark += fmt::format("; the unit {} is of the display, too, and was not taken", channel.unit);
+  channel.unit.clear();
+}
+
 double sample_time_of(const Header& header, std::size_t column) {
   const std::string text = field_of(header, "SampleTime[ms]", column);
   double value = 0;
@@ -175,6 +201,7 @@ void add_group(const Header& header, Group& group, Recording& recording) {
     const std::string symbol = field_of(header, "SymbolName", group.time + 1 + k);
     if (!symbol.empty()) channel.aliases.push_back(symbol);
     channel.unit = unit_of(header, group.time + 1 + k);
+    take_display_settings(header, group.time + 1 + k, channel);
     channel.timeline = recording.timelines.size() - 1;
     channel.sample_time_s = sample_time_of(header, group.time + 1 + k);
     auto& values = group.values[k];
