@@ -121,6 +121,15 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
   return out;
 }
 
+void add_uncertainty(const BaseParameters& base, const Eigen::VectorXd& std, BaseEstimate& estimate) {
+  const Eigen::VectorXd wider = (1 + std.array().square() / estimate.covariance.diagonal().array()).sqrt();
+  const Eigen::MatrixXd A_B = columns(estimate.A, base.independent) * wider.cwiseInverse().asDiagonal();
+  estimate.covariance = wider.asDiagonal() * estimate.covariance * wider.asDiagonal();
+  estimate.log_det -= 2 * wider.array().log().sum();
+  estimate.A = A_B * base.B;
+  estimate.b = A_B * estimate.value;
+}
+
 double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
                          const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags, double white) {
   const Eigen::VectorXd e = usable.select(residual.array(), 0.0).matrix();

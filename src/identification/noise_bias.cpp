@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 constexpr Index kSamples = 100'000;   // of each log, from its middle
 constexpr Index kRowsPerBlock = 256;  // as in fold_log
 constexpr double kMostNoise = 0.99;   // of a direction's information: beyond, nothing is known there
-constexpr double kShown = 1e-3;       // of the largest eigenvalue: weaker directions are for other drives to show
 constexpr double kNoise = 1e-10;      // of the largest eigenvalue: rounding
 
 /// Products of one drive's used rows in the base parameters: regressor Y, instruments Z, torque tau.
@@ -95,20 +94,6 @@ MatrixXd inverse_of(const MatrixXd& ZtZ) {
   return V * inverse.asDiagonal() * V.transpose();
 }
 
-/// Largest share of the information in any direction that the drive shows well.
-double largest_share_of(const MatrixXd& whole, const MatrixXd& excess) {
-  const VectorXd scale = whole.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * whole * scale.asDiagonal());
-  const MatrixXd D = scale.asDiagonal() * excess * scale.asDiagonal();
-  double largest = 0;
-  for (Index k = 0; k < whole.rows(); ++k) {
-    if (eigen.eigenvalues()(k) < kShown * eigen.eigenvalues().maxCoeff()) continue;
-    const VectorXd v = eigen.eigenvectors().col(k);
-    largest = std::max(largest, v.dot(D * v) / eigen.eigenvalues()(k));
-  }
-  return largest;
-}
-
 }  // namespace
 
 NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
@@ -140,7 +125,6 @@ NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::
     bias.information[j] = s.YtY - s.ZtY.transpose() * first_stage;
     bias.information[j] = 0.5 * (bias.information[j] + bias.information[j].transpose()).eval();
     bias.torque[j] = s.Yt_tau - first_stage.transpose() * s.Zt_tau;
-    bias.largest_share = std::max(bias.largest_share, largest_share_of(s.YtY, bias.information[j]));
   }
   return bias;
 }

@@ -3,9 +3,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/signal/motion_band.hpp"
+
 namespace deltadyn {
 
 using Eigen::Index;
+
+namespace {
+
+/// Noise of each recorded torque that passes the low pass of the rows, taken as white: as dense as beyond the pass band, in the median
+/// band of a third of an octave. 0 where a log is too short to show it.
+Eigen::VectorXd torque_noise(const PreparedLog& log) {
+  constexpr Index kShortest = 60;
+  constexpr double kBeyond = 0.01;  // gain of the low pass
+  Eigen::VectorXd noise = Eigen::VectorXd::Zero(log.tau.cols());
+  if (log.tau.rows() < kShortest || !log.low_pass) return noise;
+  for (Index j = 0; j < noise.size(); ++j) {
+    const MotionBand band = motion_band(log.tau.col(j), log.rate_hz);
+    std::vector<double> beyond;
+    for (Index k = 0; k < band.density.size(); ++k) {
+      if (std::abs(log.low_pass->gain(band.frequency_hz(k))) < kBeyond) beyond.push_back(band.density(k));
+    }
+    if (beyond.empty()) continue;
+    const auto middle = beyond.begin() + static_cast<std::ptrdiff_t>(beyond.size() / 2);
+    std::nth_element(beyond.begin(), middle, beyond.end());
+    noise(j) = std::sqrt(*middle * log.rate_hz / 2 * log.low_pass->taps().squaredNorm());
+  }
+  return noise;
+}
+
+}  // namespace
 
 std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives) {
   std::vector<ValidatedDrive> out(drives);
@@ -13,9 +40,10 @@ std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs,
   for (std::size_t j = 0; j < drives; ++j) {
     const auto drive = static_cast<Index>(j);
     ValidatedDrive& figures = out[j];
-    double square = 0, tau_square = 0, reversal_square = 0;
+    double square = 0, tau_square = 0, reversal_square = 0, noise_square = 0;
     for (const ValidatedLog& log : logs) {
       const Prediction& rows = log.prediction;
+      const Index before = figures.rows;
       for (Index k = 0; k < rows.rows(); ++k) {
         const double e = rows.tau(k, drive) - rows.model(k, drive);
         if (rows.use(k, drive) == RowUse::regular) {
@@ -28,7 +56,10 @@ std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs,
           ++figures.reversal_rows;
         }
       }
+      const double noise = log.torque_noise.size() > 0 ? log.torque_noise(drive) : 0.0;
+      noise_square += noise * noise * static_cast<double>(figures.rows - before);
     }
+    figures.torque_noise = root_mean(noise_square, figures.rows);
     figures.rms_residual = root_mean(square, figures.rows);
     figures.relative_residual = tau_square > 0 ? std::sqrt(square / tau_square) : 0.0;
     figures.rms_with_reversals = root_mean(square + reversal_square, figures.rows + figures.reversal_rows);
@@ -48,6 +79,7 @@ Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eige
     one.rate_hz = prepared.rate_hz;
     one.row_rate_hz = prepared.rate_hz / static_cast<double>(prepared.stride);
     one.notes = std::move(prepared.notes);
+    one.torque_noise = torque_noise(prepared);
     one.prediction = predict(robot, prepared, p, threads);
     out.logs.push_back(std::move(one));
   }

@@ -13,12 +13,13 @@ namespace {
 
 using Eigen::Index;
 
-std::vector<DriveFigures> figures_of(const Identification& identification) {
+std::vector<DriveFigures> figures_of(const Identification& identification, const std::vector<double>& torque_noise) {
   std::vector<DriveFigures> out;
   for (const DriveReport& drive : identification.drives) {
     const auto rows = static_cast<double>(drive.rows + drive.masked_rows);
-    out.push_back(
-        {drive.rms, drive.rms_torque, drive.reversal_ratio, rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0});
+    out.push_back({drive.rms, drive.rms_torque, drive.reversal_ratio,
+                   rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0,
+                   out.size() < torque_noise.size() ? torque_noise[out.size()] : 0.0});
   }
   return out;
 }
@@ -232,7 +233,7 @@ std::vector<std::string> urgent_gaps(const std::vector<PriorGap>& gaps) {
 
 Assessment assess_identification(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey,
                                  const IdentificationEvidence& evidence) {
-  const std::vector<DriveFigures> drives = figures_of(identification);
+  const std::vector<DriveFigures> drives = figures_of(identification, evidence.torque_noise);
   const std::vector<PriorGap> gaps = prior_gaps(identification.fit, identification.base, evidence.parameter_effect);
   Assessment out;
   out.structure = evidence.structure;

@@ -102,6 +102,7 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
 IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification, const Validation& training) {
   IdentificationEvidence evidence;
   evidence.structure = structure_left(training);
+  for (const ValidatedDrive& drive : training.drives) evidence.torque_noise.push_back(drive.torque_noise);
   const BaseEstimate& estimate = identification.base_estimate;
   evidence.on_logs = torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
   evidence.in_workspace = torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
@@ -129,6 +130,16 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
   const auto drive = static_cast<int>(worst);
   Check check{"Size of the residual", "", grade_residual(relative), ""};
   check.figure = fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
+  const double noise = drives.empty() ? 0.0 : drives[worst].torque_noise;
+  if (check.verdict == Verdict::bad && drives[worst].rms < kNoiseOfRecord * noise) {
+    check.verdict = Verdict::caution;
+    check.meaning = fmt::format(
+        "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust parameters as "
+        "far as "
+        "their intervals say, and record the torque faster or through a low pass.",
+        format_number(noise, torque_unit_of(robot, drive), 3));
+    return check;
+  }
   switch (check.verdict) {
     case Verdict::good: check.meaning = "Small: as feed-forward the model leaves little to the feedback loop."; break;
     case Verdict::caution:

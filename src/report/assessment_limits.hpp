@@ -10,6 +10,9 @@ namespace deltadyn {
 inline constexpr double kGoodResidual = 0.05;
 inline constexpr double kUsableResidual = 0.15;
 
+/// A residual up to this many times the noise of the torque record is a matter of the record, not of the model.
+inline constexpr double kNoiseOfRecord = 1.5;
+
 /// A dependence of the residual on the motion that chance gives less often than once in a hundred logs ...
 inline constexpr double kRareByChance = 0.01;
 /// ... and that explains a tenth of its mean square is worth telling ...

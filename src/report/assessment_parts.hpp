@@ -13,6 +13,7 @@ struct DriveFigures {
   double rms_torque = 0;      ///< over the same rows
   double reversal_ratio = 1;  ///< residual near reversals over that elsewhere
   double masked_share = 0;    ///< rows near reversals that were left out, of all
+  double torque_noise = 0;    ///< white noise of the torque record, rms in the same rows
 
   [[nodiscard]] double relative() const { return rms_torque > 0 ? rms / rms_torque : (rms > 0 ? 1.0 : 0.0); }
 };

@@ -43,6 +43,27 @@ TEST(LeastSquares, NoiseLevelIsFoundDriveByDrive) {
   EXPECT_NEAR(estimate.noise[3].std, 0.02, 0.001);
 }
 
+TEST(LeastSquares, FurtherUncertaintyStandsInCovarianceAndFactorAlike) {
+  const auto robot = make_robot(delta_description("delta4"));
+  const BaseParameters base = find_base_parameters(*robot);
+  SyntheticOptions synthetic;
+  synthetic.torque_noise = 0.2;
+  const BaseEstimate before = estimate_base_parameters(base, folds(*robot, synthetic));
+  BaseEstimate after = before;
+  const Eigen::VectorXd more = 0.75 * before.std();
+  add_uncertainty(base, more, after);
+  EXPECT_LT((after.std() - 1.25 * before.std()).cwiseQuotient(before.std()).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(after.value, before.value);
+  // A p = b is solved by the estimate, with the covariance's inverse as information.
+  const Eigen::VectorXd p = any_parameters(base, after.value, robot->parameters());
+  EXPECT_LT((after.A * p - after.b).norm(), 1e-9 * after.b.norm());
+  Eigen::MatrixXd A_B(after.A.rows(), base.count());
+  for (int k = 0; k < base.count(); ++k) A_B.col(k) = after.A.col(base.independent[static_cast<std::size_t>(k)]);
+  const Eigen::MatrixXd identity = A_B * after.covariance * A_B.transpose();
+  EXPECT_NEAR(identity.trace(), base.count(), 1e-6 * base.count());
+  EXPECT_NEAR(after.log_det, before.log_det - 2 * base.count() * std::log(1.25), 1e-6);
+}
+
 TEST(LeastSquares, NamesWhatTheMotionDoesNotShow) {
   const auto robot = make_robot(delta_description("delta4"));
   ProcessingOptions options;

@@ -15,7 +15,6 @@ using namespace testing_support;
 
 struct Estimates {
   Eigen::VectorXd plain, compensated;
-  double share = 0;
   Eigen::Index inertia = 0;  ///< place of the moving inertia
 };
 
@@ -30,7 +29,6 @@ Estimates estimates(const AxisLog& axis, double cutoff_hz) {
   Estimates out;
   out.plain = estimate_base_parameters(base, fold.regular).value;
   out.compensated = estimate_base_parameters(base, fold.regular, {}, &bias).value;
-  out.share = bias.largest_share;
   const auto inertia = std::find_if(base.expressions.begin(), base.expressions.end(),
                                     [](const std::string& name) { return name.find("Iyy") != std::string::npos; });
   out.inertia = inertia - base.expressions.begin();
@@ -61,7 +59,6 @@ TEST(NoiseBias, LeavesFineEncodersAlone) {
   AxisLog axis;
   axis.encoder_bits = 22;
   const Estimates found = estimates(axis, 20);
-  EXPECT_LT(found.share, 1e-5);
   EXPECT_LT((found.plain - found.compensated).cwiseAbs().maxCoeff(), 1e-5 * found.plain.cwiseAbs().maxCoeff());
 }
 

@@ -16,6 +16,7 @@ struct ValidatedLog {
   double rate_hz = 0;      ///< of the log
   double row_rate_hz = 0;  ///< of the rows
   Prediction prediction;
+  Eigen::VectorXd torque_noise;  ///< white noise of each drive's recorded torque, rms in the rows [N m | N]
   std::vector<std::string> notes;
 };
 
@@ -25,6 +26,7 @@ struct ValidatedDrive {
   double relative_residual = 0;   ///< rms residual over rms torque
   double max_residual = 0;        ///< largest |residual|
   double rms_with_reversals = 0;  ///< rows near reversals included
+  double torque_noise = 0;        ///< rms over the logs, weighted by their rows
   Eigen::Index rows = 0, reversal_rows = 0;
 };
 

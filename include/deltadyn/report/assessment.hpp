@@ -69,6 +69,7 @@ struct IdentificationEvidence {
   std::optional<StructureLeft> structure;  ///< of the training logs
   TorqueUncertainty on_logs, in_workspace;
   Eigen::VectorXd parameter_effect;  ///< parameter_effect() of the fit
+  std::vector<double> torque_noise;  ///< of each drive's record, rms in the rows of the training logs [N m | N]; may be empty
 };
 
 [[nodiscard]] IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification,

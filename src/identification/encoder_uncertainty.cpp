@@ -1,0 +1,63 @@
+#include "encoder_uncertainty.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "deltadyn/signal/differentiate_log.hpp"
+#include "deltadyn/signal/requantise.hpp"
+
+#include "log_middle.hpp"
+
+namespace deltadyn {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int kPhases = 8;          // tell a standard deviation to a quarter
+constexpr Index kSamples = 20'000;  // of each log: longer ones average no less
+constexpr double kFineSteps = 20;   // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4)
+constexpr std::uint64_t kSeed = 1;
+
+/// Does a drive pass so few steps in a sample, rms over its log, that their error may follow the motion?
+bool coarse(const Log& log, const VectorXd& step) {
+  for (Index j = 0; j < log.drives(); ++j) {
+    const VectorXd moved = log.q.col(j).tail(log.samples() - 1) - log.q.col(j).head(log.samples() - 1);
+    const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
+    if (step(j) > 0 && usual > 0 && usual < kFineSteps * step(j)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+VectorXd encoder_std(const std::vector<Log>& logs, double motion_hz,
+                     const std::function<VectorXd(const std::vector<Log>&)>& estimate) {
+  std::vector<Log> middles;
+  std::vector<VectorXd> steps;
+  bool any = false;
+  for (const Log& log : logs) {
+    middles.push_back(middle_of(log, kSamples));
+    steps.push_back(position_steps(middles.back()));
+    any = any || coarse(middles.back(), steps.back());
+  }
+  if (!any) return {};
+  std::vector<Eigen::MatrixXd> smooth;
+  for (const Log& log : middles) smooth.push_back(differentiate_log(log, motion_hz).q);
+  std::mt19937_64 random(kSeed);
+  std::vector<VectorXd> found;
+  VectorXd mean;
+  for (int k = 0; k < kPhases; ++k) {
+    std::vector<Log> again;
+    for (std::size_t l = 0; l < middles.size(); ++l) again.push_back(requantised(middles[l], smooth[l], steps[l], random));
+    found.push_back(estimate(again));
+    mean = k == 0 ? found.back() : VectorXd(mean + found.back());
+  }
+  mean /= kPhases;
+  VectorXd square = VectorXd::Zero(mean.size());
+  for (const VectorXd& one : found) square += (one - mean).cwiseAbs2();
+  return (square / (kPhases - 1)).cwiseSqrt();
+}
+
+}  // namespace deltadyn
