@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "deltadyn/identification/base_parameters.hpp"
@@ -36,7 +37,9 @@ constexpr double kWorthSaying = 0.9;  // of the residual, for a delay that stays
 constexpr double kSharp_s = 6e-4;     // a delay known no better is more likely another effect that bends the torque
 constexpr double kWorthRemoving =
     0.98;  // of the residual: delays of single drives and lags must show in it, as noise can feign them
-constexpr double kLongest_s = 0.025;   // no recorder or drive is later; what looks so is slow friction or a spring
+constexpr double kLongest_s = 0.025;  // no recorder or drive is later; what looks so is slow friction or a spring
+constexpr double kSteady = 3.0;       // standard deviations by which a timing may differ in a lower band
+constexpr double kLowestTiming_hz = 4;
 constexpr double kOutOfReach = 0.01;   // share of poses
 constexpr double kMassesMean = 0.15;   // relative residual above which estimated masses are not compared with the prior's
 constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
@@ -207,12 +210,43 @@ class Gate {
     return std::nullopt;
   }
 
-  void judge_timing(const Sample& sample) {
+  /// Sum of delay and lag of each log and drive, and its standard deviation.
+  static std::pair<Eigen::MatrixXd, Eigen::MatrixXd> lateness(const Timing& timing) {
+    return {timing.delay_s + timing.lag_s, (timing.delay_std.array().square() + timing.lag_std.array().square()).sqrt()};
+  }
+
+  /// Is a timing the same in a lower band, as far as that band tells it?
+  static bool holds(const Timing& timing, const Timing& lower) {
+    const auto [late, std] = lateness(timing);
+    const auto [late_lower, std_lower] = lateness(lower);
+    const Eigen::ArrayXXd chance = (std_lower.array().square() - std.array().square()).max(0.25 * std.array().square()).sqrt();
+    return ((late - late_lower).array().abs() < kSteady * chance).all();
+  }
+
+  /// A drive's loop answers the noise of its encoder: that torque is real, while the acceleration beside it is not all seen, and both
+  /// together look like a delay. It shrinks with the band much faster than what a band tells of a real one: the highest band whose
+  /// timing holds in the next lower one is taken.
+  [[nodiscard]] Timing steady_timing(Sample sample) const {
     Timing timing = timing_of(sample);
+    while (timing.significant && sample.band_hz > kLowestTiming_hz) {
+      SampleOptions options;
+      options.highest_band_hz = options.lowest_band_hz = sample.band_hz / std::numbers::sqrt2;
+      Sample lower = take_sample(out_.logs, options);
+      if (lower.stretches.empty()) return timing;
+      Timing there = timing_of(lower);
+      if (holds(timing, there)) return timing;
+      timing = std::move(there);
+      sample = std::move(lower);
+    }
+    return timing;
+  }
+
+  void judge_timing(const Sample& sample) {
+    Timing timing = steady_timing(sample);
     double noise = relative_torque_noise(out_.logs, sample);
     // Where the model does not hold in the whole band, what it lacks passes for a delay: the band is that of the model then.
     if (const std::optional<Sample> narrow = timing.rms_after > clean(noise) ? within_model_band(sample) : std::nullopt) {
-      timing = timing_of(*narrow);
+      timing = steady_timing(*narrow);
       noise = relative_torque_noise(out_.logs, *narrow);
     }
     if (!timing.significant) {

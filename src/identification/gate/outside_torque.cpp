@@ -30,6 +30,7 @@ constexpr int kPasses = 12;       // of the robust fit
 constexpr double kTukey = 4.685;  // 95 % efficient for normal noise
 constexpr double kMedianToSigma = 1.4826;
 constexpr Index kFewestRows = 30;
+constexpr Index kRowsPerBlock = 256;
 
 /// The log at the rate that the band needs.
 Log thinned(const Log& log) {
@@ -73,6 +74,37 @@ struct Seen {
   std::size_t log = 0;
   PreparedLog prepared;
   Prediction rows;
+  std::vector<Eigen::MatrixXd> Y;  ///< one a drive: rows x parameters; every pass of the fit needs them
+
+  Seen(const Robot& robot, std::size_t number, PreparedLog ready)
+      : log(number),
+        prepared(std::move(ready)),
+        rows(predict(robot, prepared, VectorXd::Zero(robot.parameters()), 1)),
+        Y(static_cast<std::size_t>(robot.drives()), Eigen::MatrixXd(prepared.rows, robot.parameters())) {
+    for (Index first = 0; first < prepared.rows; first += kRowsPerBlock) {
+      RowBlock block;
+      read_rows(robot, prepared, first, std::min(kRowsPerBlock, prepared.rows - first), block);
+      for (std::size_t j = 0; j < Y.size(); ++j) Y[j].middleRows(first, block.rows()) = block.Y[j];
+    }
+  }
+
+  /// Adds the rows of one drive that may be used, scaled by the square root of their weight.
+  void fold(int drive, const RowWeight& weight, DriveFold& out) const {
+    const Eigen::MatrixXd& all = Y[static_cast<std::size_t>(drive)];
+    for (Index first = 0; first < all.rows(); first += kRowsPerBlock) {
+      const Index end = std::min(all.rows(), first + kRowsPerBlock);
+      Eigen::MatrixXd used(end - first, all.cols());
+      VectorXd tau(end - first);
+      Index count = 0;
+      for (Index k = first; k < end; ++k) {
+        if (rows.use(k, drive) == RowUse::unusable) continue;
+        const double scale = weight ? std::sqrt(weight(drive, rows.tau(k, drive) - rows.model(k, drive))) : 1.0;
+        used.row(count) = scale * all.row(k);
+        tau(count++) = scale * rows.tau(k, drive);
+      }
+      if (count > 0) out.add(used.topRows(count), tau.head(count));
+    }
+  }
 };
 
 /// A fit that a minority of rows cannot pull.
@@ -83,12 +115,12 @@ class RobustFit {
   /// False if the motion does not tell the parameters.
   bool run() {
     try {
-      VectorXd p = solve(nullptr, {});
+      VectorXd p = solve({});
       for (int pass = 0; pass < kPasses; ++pass) {
         look(p);
         // The first half of the passes only damps what stands out (Huber's weights), the others leave it out (Tukey's).
         const bool damp = 2 * pass < kPasses;
-        p = solve(&p, [&](int drive, double residual) {
+        p = solve([&](int drive, double residual) {
           const double u = std::abs(residual) / (kTukey * scale_[static_cast<std::size_t>(drive)]);
           if (damp) return u < 0.3 ? 1.0 : 0.3 / u;
           return u < 1 ? std::pow(1 - u * u, 2) : 0.0;
@@ -104,11 +136,11 @@ class RobustFit {
   [[nodiscard]] double scale(int drive) const { return scale_[static_cast<std::size_t>(drive)]; }
 
  private:
-  [[nodiscard]] VectorXd solve(const VectorXd* p, const RowWeight& weight) const {
-    DataFold fold;
-    for (const Seen& one : seen_) fold.add(fold_log(robot_, one.prepared, 1, p, weight));
-    std::vector<DriveFold> folds = fold.regular;
-    for (std::size_t j = 0; j < folds.size(); ++j) folds[j].add(fold.reversal[j]);
+  [[nodiscard]] VectorXd solve(const RowWeight& weight) const {
+    std::vector<DriveFold> folds(static_cast<std::size_t>(robot_.drives()), DriveFold(robot_.parameters()));
+    for (const Seen& one : seen_) {
+      for (std::size_t j = 0; j < folds.size(); ++j) one.fold(static_cast<int>(j), weight, folds[j]);
+    }
     return any_parameters(base_, estimate_base_parameters(base_, folds).value, robot_.parameters());
   }
 
@@ -116,7 +148,7 @@ class RobustFit {
   void look(const VectorXd& p) {
     std::vector<std::vector<double>> size(static_cast<std::size_t>(robot_.drives()));
     for (Seen& one : seen_) {
-      one.rows = predict(robot_, one.prepared, p, 1);
+      for (std::size_t j = 0; j < one.Y.size(); ++j) one.rows.model.col(static_cast<Index>(j)) = one.Y[j] * p;
       const Eigen::MatrixXd r = one.rows.residual();
       for (Index k = 0; k < r.rows(); ++k) {
         for (Index j = 0; j < r.cols(); ++j) {
@@ -251,7 +283,7 @@ std::vector<Seen> see(const Robot& robot, const std::vector<Log>& logs) {
   options.periods = Periods::ignore;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     try {
-      seen.push_back({l, prepare_log(robot, thinned(logs[l]), options), {}});
+      seen.emplace_back(robot, l, prepare_log(robot, thinned(logs[l]), options));
     } catch (const Error&) {
       continue;  // too short for this band, or refused by others with better words
     }

@@ -38,7 +38,7 @@ struct SampleOptions {
   int stretches = 12;           ///< a log that is longer than its share
   double highest_band_hz = 40;
   double lowest_band_hz = 8;
-  double acceleration_noise = 0.02;  ///< the band falls until the noise of the acceleration is below this share of its rms
+  double acceleration_noise = 0.003;  ///< the band falls until the noise of the acceleration is below this share of its rms
 };
 
 /// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the log with
