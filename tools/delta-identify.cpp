@@ -114,17 +114,19 @@ class Identify {
     if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
 
-    write_parameters(output_, tools::parameter_table(*robot, result));
-    if (!base_file_.empty()) write_base(result);
     const Validation training = validate(
         *robot,
         without_effects(*robot, logs, result.fit.p, effects, result.processing.motion_over_pass * result.processing.cutoff_hz),
         result.fit.p, result.processing);
     Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     weigh_findings(findings, assessment);
+    ParameterTable table = tools::parameter_table(*robot, result);
+    if (assessment.verdict == Verdict::bad) table.remark = "NOT TO BE TRUSTED. " + assessment.headline;
+    write_parameters(output_, table);
+    if (!base_file_.empty()) write_base(result);
     if (!report_file_.empty()) write_file(report_file_, identification_report(*robot, result, training, survey, context));
     const ExitCode code = tell(*robot, result, survey, assessment, run);
-    tools::point_to_diagnosis(assessment, findings, robot_file_, output_, log_files_, "");
+    tools::point_to_diagnosis(assessment, findings, {robot_file_, output_, log_files_, "", processing_.reading_flags()});
     return code;
   }
 
@@ -259,6 +261,7 @@ class Identify {
     }
     out.add("verdict", tools::verdict_word(assessment.verdict));
     tools::print_assessment(assessment);
+    if (assessment.verdict == Verdict::bad) fmt::print(stderr, "  {} is there to be looked at, not to be used\n", output_);
     out.add("structure_left", assessment.structure ? "yes" : "no");
     return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }

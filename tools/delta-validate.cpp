@@ -100,7 +100,8 @@ class Validate {
     run.summary.add("verdict", tools::verdict_word(assessment.verdict));
     run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
     tools::print_assessment(assessment);
-    tools::point_to_diagnosis(assessment, findings, robot_file_, parameter_file_, {"TRAINING_LOGS.csv"}, log_files_.front());
+    tools::point_to_diagnosis(assessment, findings,
+                              {robot_file_, parameter_file_, {}, log_files_.front(), processing_.reading_flags()});
     run.summary.add("structure_left", assessment.structure ? "yes" : "no");
     return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
   }

@@ -28,6 +28,11 @@ inline double number_of(const std::string& text, const std::string& flag, const 
   throw Error(fmt::format("{} {} is neither a number nor {}", flag, text, words), "", "give one of these", ExitCode::usage);
 }
 
+/// A word of a command line, in quotes where it holds blanks.
+inline std::string quoted_word(const std::string& word) {
+  return word.find(' ') == std::string::npos ? word : "'" + word + "'";
+}
+
 /// The flags and what they mean.
 class ProcessingFlags {
  public:
@@ -55,6 +60,8 @@ class ProcessingFlags {
     return options;
   }
   [[nodiscard]] bool automatic_cutoff() const { return cutoff_ == "auto"; }
+  /// What another tool needs to read the same logs: " --map map.toml", or nothing.
+  [[nodiscard]] std::string reading_flags() const { return map_.empty() ? "" : " --map " + quoted_word(map_); }
 
   /// Reads the logs and prints what the reader had to say besides its findings, which LogGate tells. A log with gaps comes in parts
   /// (Log::part).
@@ -109,24 +116,43 @@ inline void print_assessment(const Assessment& assessment) {
   fmt::print(to, "{}{}\n", assessment.verdict == Verdict::good ? "" : "warning: ", assessment.headline);
 }
 
+/// The command of delta-diagnose for these files. What a tool cannot know stays a word in capitals.
+struct DiagnosisCommand {
+  static constexpr const char* kTraining = "TRAINING_LOGS.csv";  ///< for validate: logs of the fit are not in the parameter file
+  static constexpr const char* kHoldout = "ANOTHER_LOG.csv";     ///< for identify: all its logs took part in the fit
+  std::string robot, parameters;
+  std::vector<std::string> logs;  ///< of the fit; empty: not known
+  std::string holdout;            ///< a log that took no part in it; empty: not known
+  std::string flags;              ///< further ones, each with a blank before it
+
+  [[nodiscard]] std::string text() const {
+    std::string words;
+    for (const std::string& log : logs) words += " " + quoted_word(log);
+    return fmt::format("delta-diagnose {} --params {}{} --holdout {}{} -o diagnosis.csv", quoted_word(robot),
+                       quoted_word(parameters), logs.empty() ? std::string(" ") + kTraining : words,
+                       holdout.empty() ? kHoldout : quoted_word(holdout), flags);
+  }
+  /// What the words in capitals stand for; empty if there are none.
+  [[nodiscard]] std::string legend() const {
+    if (logs.empty()) return fmt::format("{}: the logs that the parameters were identified from", kTraining);
+    return holdout.empty() ? fmt::format("{}: a log that took no part in the fit", kHoldout) : "";
+  }
+};
+
 /// Structure that the model leaves has a name in most cases: says where it is and how to find the name. A timing error that was mended
 /// counts, too: the diagnosis tells a lag of the drive from a delay of the recorder.
-/// \param logs     the training logs, or those that were validated
-/// \param holdout  a log that took no part; empty: the user is to give one
-inline void point_to_diagnosis(const Assessment& assessment, const std::vector<LogFinding>& findings, const std::string& robot,
-                               const std::string& parameters, const std::vector<std::string>& logs, const std::string& holdout) {
+inline void point_to_diagnosis(const Assessment& assessment, const std::vector<LogFinding>& findings, DiagnosisCommand command) {
   const bool mended_timing = std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
     return f.level == FindingLevel::mended && (f.key.rfind("delay", 0) == 0 || f.key.rfind("lag", 0) == 0);
   });
   if (!assessment.structure && !mended_timing) return;
   if (assessment.structure) {
-    const StructureLeft& left = *assessment.structure;
-    fmt::print("structure is left in the residual of drive {} ({}): {:.2g} % of the torque, following its {}\n", left.drive + 1,
-               left.file, 100 * std::max(left.of_torque, left.of_torque_there), left.coordinate);
+    fmt::print("{}\n", structure_in_words(*assessment.structure));
+  } else {
+    command.flags += " --keep-delay";
   }
-  fmt::print("  to name what is {}: delta-diagnose {} --params {} {} --holdout {}{} -o diagnosis.csv\n",
-             assessment.structure ? "missing" : "behind the timing", robot, parameters, fmt::join(logs, " "),
-             holdout.empty() ? "ANOTHER_LOG.csv" : holdout, assessment.structure ? "" : " --keep-delay");
+  fmt::print("  to name what is {}: {}\n", assessment.structure ? "missing" : "behind the timing", command.text());
+  if (const std::string legend = command.legend(); !legend.empty()) fmt::print("  ({})\n", legend);
 }
 
 /// The whole command line, for reports.

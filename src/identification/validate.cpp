@@ -32,6 +32,28 @@ Eigen::VectorXd torque_noise(const PreparedLog& log) {
   return noise;
 }
 
+constexpr double kOtherLaw = 3.0;  // residual near reversals over that elsewhere: from here on friction follows another law there
+
+bool has_bristles(const ProcessingOptions& processing, Index drive) {
+  return processing.presliding.size() > drive && processing.presliding(drive) > 0;
+}
+
+/// With the drive's own reversals in the model, what is left out near reversals is those of the telescope, and the rows after the start
+/// of a log. A model that predicts them, too, is judged by them, too.
+void use_predicted_reversals(Index drive, const ValidatedDrive& figures, std::vector<ValidatedLog>& logs) {
+  const auto rows = static_cast<double>(figures.rows), reversal_rows = static_cast<double>(figures.reversal_rows);
+  if (rows == 0 || reversal_rows == 0) return;
+  const double all = figures.rms_with_reversals * figures.rms_with_reversals * (rows + reversal_rows);
+  const double regular = figures.rms_residual * figures.rms_residual;
+  if (all - regular * rows > kOtherLaw * kOtherLaw * regular * reversal_rows) return;
+  for (ValidatedLog& log : logs) {
+    auto use = log.prediction.use.col(drive);
+    for (Index k = 0; k < use.size(); ++k) {
+      if (use(k) == RowUse::reversal) use(k) = RowUse::regular;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives) {
@@ -83,7 +105,14 @@ Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eige
     one.prediction = predict(robot, prepared, p, threads);
     out.logs.push_back(std::move(one));
   }
-  out.drives = drive_figures(out.logs, static_cast<std::size_t>(robot.drives()));
+  const auto drives = static_cast<std::size_t>(robot.drives());
+  out.drives = drive_figures(out.logs, drives);
+  for (std::size_t j = 0; j < drives; ++j) {
+    const auto drive = static_cast<Index>(j);
+    if (has_bristles(processing, drive)) use_predicted_reversals(drive, out.drives[j], out.logs);
+  }
+  out.drives = drive_figures(out.logs, drives);
+  for (std::size_t j = 0; j < drives; ++j) out.drives[j].bristles = has_bristles(processing, static_cast<Index>(j));
   return out;
 }
 

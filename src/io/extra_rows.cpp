@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <fmt/format.h>
+#include <numbers>
 #include <optional>
 
 #include "deltadyn/runtime/error.hpp"
@@ -29,6 +30,11 @@ std::optional<std::array<int, 2>> ripple_of_waves(const std::string& name) {
     return std::nullopt;
   --out[0];
   return out;
+}
+
+/// 2 pi where the waves of a file are counted a metre, as the law counts them in rad; files of before count rad, too (1/rad, 1/m).
+double rad_of_waves(const std::string& unit) {
+  return unit == "waves/m" ? 2 * std::numbers::pi : 1.0;
 }
 
 }  // namespace
@@ -68,11 +74,11 @@ std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescripti
     }
     if (!(entry.value > 0)) {
       throw Error(fmt::format("{} waves are none", entry.value), place_of(table, entry, "value"),
-                  "give the waves per rad (or m) times 2 pi, or remove the ripple's three rows");
+                  "give the waves a turn (or a metre), or remove the ripple's three rows");
     }
     Ripple ripple;
     ripple.drive = (*of)[0];
-    ripple.n = entry.value;
+    ripple.n = rad_of_waves(entry.unit) * entry.value;
     const std::string stem = fmt::format("drive{}.ripple{}.", ripple.drive + 1, (*of)[1]);
     const ParameterEntry *cosine = table.find(stem + "cosine"), *sine = table.find(stem + "sine");
     if (cosine == nullptr || sine == nullptr) {
@@ -101,7 +107,8 @@ std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples, cons
       entry.data_share = 1;
       rows.push_back(std::move(entry));
     };
-    add("waves", ripple.n, turns ? "1/rad" : "1/m", ripple.n_std);
+    const char* unit = turns ? "waves/turn" : "waves/m";
+    add("waves", ripple.n / rad_of_waves(unit), unit, ripple.n_std / rad_of_waves(unit));
     add("cosine", ripple.cosine, turns ? "N*m" : "N", ripple.amplitude_std);
     add("sine", ripple.sine, turns ? "N*m" : "N", ripple.amplitude_std);
   }

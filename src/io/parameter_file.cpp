@@ -63,7 +63,7 @@ std::vector<std::string> plausible_units(const std::string& name) {
   if (quantity == "rotor_inertia") return {"kg*m^2", "kg"};
   if (quantity == kPresliding) return {"rad", "m"};
   if (quantity == kPresliding + "_damping") return {"s"};
-  if (quantity == "waves") return {"1/rad", "1/m"};
+  if (quantity == "waves") return {"waves/turn", "waves/m", "1/rad", "1/m"};
   if (quantity == "cosine" || quantity == "sine") return {"N*m", "N"};
   return {};
 }
@@ -187,7 +187,8 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
     extra.used = std::any_of(table.entries.begin(), table.entries.end(),
                              [&](const ParameterEntry& entry) { return !std::isnan(entry.*extra.member); });
   }
-  std::string text = "name,value,unit";
+  std::string text = table.remark.empty() ? "" : "# " + table.remark + "\n";
+  text += "name,value,unit";
   for (const Extra& extra : extras) {
     if (extra.used) text += fmt::format(",{}", extra.column);
   }

@@ -15,11 +15,13 @@ using Eigen::Index;
 
 std::vector<DriveFigures> figures_of(const Identification& identification, const std::vector<double>& torque_noise) {
   std::vector<DriveFigures> out;
-  for (const DriveReport& drive : identification.drives) {
+  for (std::size_t j = 0; j < identification.drives.size(); ++j) {
+    const DriveReport& drive = identification.drives[j];
     const auto rows = static_cast<double>(drive.rows + drive.masked_rows);
     out.push_back({drive.rms, drive.rms_torque, drive.reversal_ratio,
                    rows > 0 ? static_cast<double>(drive.masked_rows) / rows : 0.0,
-                   out.size() < torque_noise.size() ? torque_noise[out.size()] : 0.0});
+                   out.size() < torque_noise.size() ? torque_noise[out.size()] : 0.0,
+                   j < identification.presliding.size() && identification.presliding[j].displacement > 0});
   }
   return out;
 }
@@ -147,34 +149,37 @@ Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
 }
 
 struct Counts {
-  int fitted = 0, data = 0, both = 0, prior = 0;
+  int fitted = 0, data = 0, both = 0, sums = 0, prior = 0, neither = 0;
 };
 
-Counts count_sources(const ConsistentFitSummary& fit) {
+Counts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
   Counts counts;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     if (!fit.fitted[i]) continue;
     ++counts.fitted;
-    switch (source_of(fit.data_share(static_cast<Index>(i)))) {
-      case Source::data: ++counts.data; break;
-      case Source::both: ++counts.both; break;
-      case Source::prior: ++counts.prior; break;
+    switch (decided_by(fit, visibility[i], static_cast<Index>(i))) {
+      case DecidedBy::data: ++counts.data; break;
+      case DecidedBy::both: ++counts.both; break;
+      case DecidedBy::sums: ++counts.sums; break;
+      case DecidedBy::prior: ++counts.prior; break;
+      case DecidedBy::neither: ++counts.neither; break;
     }
   }
   return counts;
 }
 
-Check check_prior(const ConsistentFitSummary& fit, const std::vector<PriorGap>& gaps) {
-  const Counts counts = count_sources(fit);
+Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility, const std::vector<PriorGap>& gaps) {
+  const Counts counts = count_sources(fit, visibility);
   const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
-  check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} from the prior", counts.data,
-                             counts.fitted, counts.both, counts.prior);
+  check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} known only in sums, {} from the prior",
+                             counts.data, counts.fitted, counts.both, counts.sums, counts.prior);
+  if (counts.neither > 0) check.figure += fmt::format(", {} from neither", counts.neither);
   if (motion_lacks) {
     check.meaning = "Some parameters that a motion can show were not shown by these logs; they are named below.";
-  } else if (counts.prior > 0) {
+  } else if (counts.prior + counts.sums + counts.neither > 0) {
     check.meaning =
-        "Those from the prior act on the drives only in sums with others: the torque is right, the single values are not "
+        "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values are not "
         "measured.";
   } else {
     check.meaning = "No value rests on the prior.";
@@ -182,16 +187,17 @@ Check check_prior(const ConsistentFitSummary& fit, const std::vector<PriorGap>& 
   return check;
 }
 
-/// Names of parameters that the data decided, friction in one word where it is all there.
-std::string trusted_values(const ConsistentFitSummary& fit) {
+/// Names of parameters that are measured, friction in one word where it is all there.
+std::string trusted_values(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
+  const auto measured = [&](std::size_t i) { return fit.fitted[i] && is_measured(fit, visibility[i], static_cast<Index>(i)); };
+
   std::vector<std::string> names;
   int friction = 0, friction_from_data = 0;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const std::string& name = fit.names[i];
-    const bool data = fit.fitted[i] && source_of(fit.data_share(static_cast<Index>(i))) == Source::data;
     if (name.ends_with(".viscous") || name.ends_with(".coulomb")) {
       ++friction;
-      friction_from_data += data ? 1 : 0;
+      friction_from_data += measured(i) ? 1 : 0;
     }
   }
   const bool all_friction = friction > 0 && friction == friction_from_data;
@@ -199,7 +205,7 @@ std::string trusted_values(const ConsistentFitSummary& fit) {
     const std::string& name = fit.names[i];
     const bool is_friction = name.ends_with(".viscous") || name.ends_with(".coulomb");
     if (all_friction && is_friction) continue;
-    if (fit.fitted[i] && source_of(fit.data_share(static_cast<Index>(i))) == Source::data) names.push_back(name);
+    if (measured(i)) names.push_back(name);
   }
   if (all_friction) names.insert(names.begin(), "friction of all joints");
   constexpr std::size_t kNamed = 8;  // more do not fit a line; all stand in the table
@@ -235,6 +241,7 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
                                  const IdentificationEvidence& evidence) {
   const std::vector<DriveFigures> drives = figures_of(identification, evidence.torque_noise);
   const std::vector<PriorGap> gaps = prior_gaps(identification.fit, identification.base, evidence.parameter_effect);
+  const std::vector<Visibility> visibility = parameter_visibility(identification.base);
   Assessment out;
   out.structure = evidence.structure;
   const Check size = check_residual_size(robot, drives), shape = check_residual_shape(evidence.structure);
@@ -242,7 +249,7 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
                 shape,
                 check_torque_knowledge(robot, evidence),
                 check_mass_matrix(robot, survey),
-                check_prior(identification.fit, gaps),
+                check_prior(identification.fit, visibility, gaps),
                 check_consistency(identification),
                 check_solver(identification.fit),
                 check_excitation(identification),
@@ -250,10 +257,8 @@ Assessment assess_identification(const Robot& robot, const Identification& ident
   conclude({fmt::format("The model can be trusted on motions like the recorded ones: the residual is {}.", size.figure),
             "Usable with care", "Do not use this model yet"},
            out);
-  if (out.verdict != Verdict::bad) {
-    const std::string trusted = trusted_values(identification.fit);
-    if (!trusted.empty()) out.lines.push_back("Measured by these logs: " + trusted + ".");
-  }
+  const std::string trusted = trusted_values(identification.fit, visibility);
+  if (!trusted.empty()) out.measured = "Measured by these logs: " + trusted + ".";
   const std::vector<std::string> urgent = urgent_gaps(gaps);
   out.lines.insert(out.lines.end(), urgent.begin(), urgent.end());
   remark_on_rest(shape, out.checks.back(), out);

@@ -49,7 +49,23 @@ std::string motion_advice(const std::string& parameter, const std::string& owner
 }  // namespace
 
 bool held_by_prior(const ConsistentFitSummary& fit, Eigen::Index i) {
-  return std::abs(fit.p(i) - fit.prior(i)) <= kHeldByPrior * fit.std(i);
+  const double moved = std::abs(fit.p(i) - fit.prior(i));
+  return moved <= kHeldByPrior * fit.std(i) && moved <= kPoorlySeen * std::abs(fit.prior(i));
+}
+
+DecidedBy decided_by(const ConsistentFitSummary& fit, Visibility visibility, Eigen::Index i) {
+  const Source source = source_of(fit.data_share(i));
+  const bool sums = visibility == Visibility::combined, vague = fit.std(i) > kPoorlySeen * std::abs(fit.p(i));
+  if (source == Source::prior) {
+    if (held_by_prior(fit, i)) return DecidedBy::prior;
+    return sums ? DecidedBy::sums : DecidedBy::neither;
+  }
+  if (sums && vague) return DecidedBy::sums;
+  return source == Source::data ? DecidedBy::data : DecidedBy::both;
+}
+
+bool is_measured(const ConsistentFitSummary& fit, Visibility visibility, Eigen::Index i) {
+  return decided_by(fit, visibility, i) == DecidedBy::data && fit.std(i) <= kWellSeen * std::abs(fit.p(i));
 }
 
 std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base, const Eigen::VectorXd& effect) {
@@ -186,6 +202,24 @@ std::string file_name(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
+bool worth_acting_on(const StructureLeft& structure) {
+  return structure.of_torque > kRelevantStructure || structure.of_torque_there > kGoodResidual;
+}
+
+std::string structure_in_words(const StructureLeft& structure) {
+  const std::string what =
+      structure.coordinate == "time" ? "slow waves that follow none of its coordinates" : "following its " + structure.coordinate;
+  std::string text =
+      fmt::format("structure is left in the residual of {} ({}), {}: {} of the torque in this log", drive_name(structure.drive),
+                  file_name(structure.file), what, format_percent(structure.of_torque, 2));
+  if (structure.of_torque_there > 0) {
+    text += fmt::format(", at speeds of {} to {} (SI) {} of the torque there", format_number(structure.speed_low, 2),
+                        format_number(structure.speed_high, 2), format_percent(structure.of_torque_there, 2));
+  }
+  if (!worth_acting_on(structure)) text += "; small: delta-diagnose may name it, the model can do without";
+  return text;
+}
+
 Check check_residual_shape(const std::optional<StructureLeft>& structure) {
   Check check{"Shape of the residual", "like noise", Verdict::good, ""};
   if (!structure) {
@@ -197,36 +231,45 @@ Check check_residual_shape(const std::optional<StructureLeft>& structure) {
                      ? fmt::format("slow waves in {} ({})", drive, log)
                      : fmt::format("{} of it follows the {} of {} ({})", format_percent(structure->share, 2),
                                    structure->coordinate, drive, log);
-  const bool relevant = structure->of_torque > kRelevantStructure || structure->of_torque_there > kGoodResidual;
-  check.verdict = relevant ? Verdict::caution : Verdict::good;
-  check.meaning = fmt::format("That part is {} of the torque in this log{}", format_percent(structure->of_torque, 2),
-                              relevant ? "" : ", too little to act on");
-  if (structure->of_torque_there > 0) {
-    check.meaning += fmt::format("; at {} to {} {} it is {} of the torque there", format_number(structure->speed_low, 2),
-                                 format_number(structure->speed_high, 2), "(SI)", format_percent(structure->of_torque_there, 2));
-  }
-  check.meaning += ": " + meaning_of_dependence(structure->coordinate) + ".";
+  check.verdict = worth_acting_on(*structure) ? Verdict::caution : Verdict::good;
+  check.meaning = structure_in_words(*structure) + ". Behind it: " + meaning_of_dependence(structure->coordinate) + ".";
+  check.meaning.front() = 'S';
   return check;
 }
 
 Check check_reversals(const std::vector<DriveFigures>& drives) {
   Check check{"Velocity reversals", "no worse than elsewhere", Verdict::good,
               "Coulomb friction describes the reversals well enough."};
-  std::vector<std::string> worse;
+  std::vector<std::string> worse, used;
   double ratio = 1, masked = 0;
+  bool bristles = !drives.empty();
   for (std::size_t j = 0; j < drives.size(); ++j) {
-    if (drives[j].reversal_ratio >= kOtherLaw) worse.push_back(drive_name(static_cast<int>(j)));
-    ratio = std::max(ratio, drives[j].reversal_ratio);
-    masked = std::max(masked, drives[j].masked_share);
+    const DriveFigures& drive = drives[j];
+    masked = std::max(masked, drive.masked_share);
+    bristles = bristles && drive.bristles;
+    // A few rows about the start of a log, where nobody knows the state of the friction, are no matter.
+    if (drive.reversal_ratio < kOtherLaw || (drive.masked_share > 0 && drive.masked_share < kNoMatterMasked)) continue;
+    (drive.masked_share > 0 ? worse : used).push_back(drive_name(static_cast<int>(j)));
+    ratio = std::max(ratio, drive.reversal_ratio);
   }
+  const auto larger = [ratio](const std::vector<std::string>& who) {
+    return fmt::format("residual there up to {:.1f} times that elsewhere ({})", ratio, join_words(who));
+  };
   if (!worse.empty()) {
-    check.figure = fmt::format("residual there up to {:.1f} times that elsewhere ({})", ratio, join_words(worse));
+    check.figure = larger(worse);
     check.meaning =
-        "Near standstill the sign of the velocity is uncertain and friction does not follow Coulomb's law; all other figures "
-        "leave these rows "
-        "out. Do not trust the torque in the first instants after a reversal.";
-  } else if (masked > 0) {
+        "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in the first "
+        "instants after a reversal the model's torque is off by that much more.";
+  } else if (!used.empty()) {
+    check.figure = larger(used);
+    check.meaning =
+        "These rows are used all the same (--reversals keep) and pull at the friction: compare with --reversals auto.";
+  } else if (masked >= kNoMatterMasked) {
     check.figure = fmt::format("left out, at most {} of a drive's rows", format_percent(masked, 2));
+    check.meaning = "The sign of the velocity is uncertain there. The model predicts these rows about as well as the others.";
+  } else if (bristles) {
+    check.figure = "rows there are used";
+    check.meaning = "The model holds how friction builds up after a reversal.";
   }
   if (masked > kFewMasked) {
     check.verdict = Verdict::caution;
@@ -246,6 +289,13 @@ Verdict worst_of(const std::vector<Check>& checks) {
   Verdict worst = Verdict::good;
   for (const Check& check : checks) worst = std::max(worst, check.verdict);
   return worst;
+}
+
+std::vector<std::string> Assessment::told() const {
+  std::vector<std::string> out = lines;
+  // A result that is not to be trusted has measured nothing.
+  if (verdict != Verdict::bad && !measured.empty()) out.insert(out.begin(), measured);
+  return out;
 }
 
 void conclude(const Headlines& headlines, Assessment& out) {

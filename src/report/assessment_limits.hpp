@@ -53,6 +53,8 @@ inline constexpr double kHeldByPrior = 3.0;
 /// Rows near velocity reversals that may be left out: of a log that loses more than two thirds, the figures speak for the lesser
 /// part of the motion only. Whether the rest tells enough is not asked here but by the uncertainty of the torque.
 inline constexpr double kFewMasked = 0.67;
+/// A share of left-out rows that is no matter: the rows about the start of each log, before the first reversal.
+inline constexpr double kNoMatterMasked = 0.02;
 /// Residual near reversals over that elsewhere, from which on friction there is another law. As in identify().
 inline constexpr double kOtherLaw = 3.0;
 

@@ -14,6 +14,7 @@ struct DriveFigures {
   double reversal_ratio = 1;  ///< residual near reversals over that elsewhere
   double masked_share = 0;    ///< rows near reversals that were left out, of all
   double torque_noise = 0;    ///< white noise of the torque record, rms in the same rows
+  bool bristles = false;      ///< the model holds how friction builds up after a reversal
 
   [[nodiscard]] double relative() const { return rms_torque > 0 ? rms / rms_torque : (rms > 0 ? 1.0 : 0.0); }
 };

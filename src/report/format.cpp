@@ -89,6 +89,13 @@ std::string format_with_uncertainty(double value, double uncertainty, std::strin
                    unit);
 }
 
+std::string format_estimate(double value, double uncertainty, std::string_view unit) {
+  // An interval that dwarfs the value must not hide it: 0.2 ± 30, not 0 ± 30.
+  if (value != 0.0 && std::isfinite(value) && std::isfinite(uncertainty) && uncertainty > std::abs(value))
+    return with_unit(format_number(value, 2) + " ± " + format_number(uncertainty, 2), unit);
+  return format_with_uncertainty(value, uncertainty, unit);
+}
+
 std::string format_interval(double low, double high, std::string_view unit) {
   const double length = high - low;
   if (!std::isfinite(length) || length <= 0.0) return with_unit(format_number(low, 4) + " … " + format_number(high, 4), unit);

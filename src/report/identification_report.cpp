@@ -96,7 +96,7 @@ std::string identification_report(const Robot& robot, const Identification& iden
       "Identification of " + description.name,
       fmt::format("{}, {} {}, {} {}", description.type, description.drives(), description.drives() == 1 ? "drive" : "drives",
                   training.logs.size(), training.logs.size() == 1 ? "log" : "logs"));
-  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
+  report.verdict(assessment.verdict, assessment.headline, assessment.told());
   add_log_check(report, context.findings);
   report.key_figures(key_figures(robot, identification, survey));
 
@@ -108,7 +108,9 @@ std::string identification_report(const Robot& robot, const Identification& iden
   report.heading("What to measure next");
   add_gap_table(report, prior_gaps(identification.fit, identification.base, evidence.parameter_effect));
   report.heading("Parameters");
+  if (assessment.verdict == Verdict::bad) report.paragraph("None of these values is to be trusted: see the verdict.");
   add_parameter_tables(report, robot, identification);
+  add_extras_table(report, robot, identification);
   report.heading("Base parameters");
   add_base_parameters(report, identification);
   report.heading("Residual");

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "deltadyn/report/format.hpp"
 
@@ -14,11 +15,13 @@ using Eigen::Index;
 
 constexpr double kInterval95 = 1.96;
 
-const char* words_for(Source source) {
-  switch (source) {
-    case Source::data: return "data";
-    case Source::both: return "both";
-    case Source::prior: return "prior";
+const char* words_for(DecidedBy decided) {
+  switch (decided) {
+    case DecidedBy::data: return "data";
+    case DecidedBy::both: return "both";
+    case DecidedBy::sums: return "only sums";
+    case DecidedBy::prior: return "prior";
+    case DecidedBy::neither: return "neither";
   }
   return "";
 }
@@ -80,32 +83,33 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
       continue;
     }
     const Source source = source_of(fit.data_share(k));
-    const bool neither = source == Source::prior && !held_by_prior(fit, k);
+    const DecidedBy decided = decided_by(fit, visibility[i], k);
+    const bool neither = decided == DecidedBy::neither;
     any_neither |= neither;
     table.row({fit.names[i], unit, format_number(fit.prior(k)),
-               neither ? format_number(fit.p(k), 2) + " (?)" : format_with_uncertainty(fit.p(k), kInterval95 * fit.std(k)),
-               fmt::format("{:.0f} %", 100 * fit.data_share(k)), neither ? "neither" : words_for(source),
-               unbroken(words_for(visibility[i]))},
+               neither ? format_number(fit.p(k), 2) + " (?)" : format_estimate(fit.p(k), kInterval95 * fit.std(k)),
+               fmt::format("{:.0f} %", 100 * fit.data_share(k)), words_for(decided), unbroken(words_for(visibility[i]))},
               source != Source::prior               ? Tone::plain
               : visibility[i] == Visibility::hidden ? Tone::muted
                                                     : Tone::caution);
   }
-  report.table(
-      table,
-      fmt::format(
-          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away; marked rows (below "
-          "{:.0f} %) are the prior, hardly touched; grey ones do not act on the drives at all.",
-          100 * kPriorDecides));
+  report.table(table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took "
+                                  "away, where the prior counts "
+                                  "with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly tell: they lean "
+                                  "on the prior and on the rest of "
+                                  "their body; grey ones do not act on the drives at all.",
+                                  100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
-      "parameters below say, and "
-      "with them the torque; the single value leans on the prior and carries its uncertainty. It matters if you use the body on "
-      "its own.");
+      "parameters below "
+      "say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole interval. It "
+      "matters if you "
+      "use the body on its own.");
   if (any_neither) {
     report.note(
-        "(?): the data hardly show the value and the chosen weight of the prior is too small to hold it; take it as unknown. It "
-        "acts too little on "
-        "the torque to matter there.");
+        "(?): neither the data nor the prior, at the weight that was chosen, hold the value; it moved to keep its body "
+        "consistent. Take it "
+        "as unknown. It acts too little on the torque to matter there.");
   }
   if (!others.empty()) {
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
@@ -116,6 +120,30 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
       inside.table(others);
     });
   }
+}
+
+void add_extras_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
+  Table table({{"joint", Align::left}, {"what", Align::left}, {"figure ± std"}});
+  for (std::size_t joint = 0; joint < identification.presliding.size(); ++joint) {
+    const PreslidingJoint& found = identification.presliding[joint];
+    if (!(found.displacement > 0)) continue;
+    const auto at = static_cast<int>(joint);
+    const std::string name = at < robot.drives() ? drive_name(at) : "telescope";
+    const char* unit = at < robot.drives() ? position_unit_of(robot, at) : "m";
+    table.row({name, "friction builds up after a reversal over", format_with_uncertainty(found.displacement, found.std, unit)});
+    if (found.damping_s > 0)
+      table.row({"", "bristles damped by", format_with_uncertainty(1e3 * found.damping_s, 1e3 * found.damping_std_s, "ms")});
+  }
+  for (const Ripple& ripple : identification.processing.ripples) {
+    const bool turning = turns(robot, ripple.drive);
+    const double n = turning ? 1.0 : 1.0 / (2 * std::numbers::pi);
+    table.row({drive_name(ripple.drive), "wave of the torque over the position (cogging, tooth meshing)",
+               format_with_uncertainty(std::hypot(ripple.cosine, ripple.sine), ripple.amplitude_std,
+                                       torque_unit_of(robot, ripple.drive))});
+    table.row({"", "its waves", format_with_uncertainty(n * ripple.n, n * ripple.n_std, turning ? "a turn" : "a metre")});
+  }
+  if (table.empty()) return;
+  report.table(table, "Found beside the parameters and part of the model: delta-validate takes them from the parameter file.");
 }
 
 void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {

@@ -68,7 +68,7 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   HtmlReport report("Validation of " + description.name,
                     fmt::format("{}, {} drives, {} {}", description.type, description.drives(), validation.logs.size(),
                                 validation.logs.size() == 1 ? "log" : "logs"));
-  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
+  report.verdict(assessment.verdict, assessment.headline, assessment.told());
   add_log_check(report, context.findings);
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {

@@ -194,7 +194,27 @@ TEST(FaultyLogs, ATorqueThatNothingExplainsIsAFault) {
   EXPECT_THAT(check.err, ContainsRegex("fault: [0-9]+ % of the torque is explained by no parameters of this robot"));
   EXPECT_THAT(check.out, HasSubstr("not to be trusted: 1 fault"));
   EXPECT_EQ(check.out.find("no fault"), std::string::npos) << check.out;
-  EXPECT_EQ(other.identify().code, 5);
+  const ToolResult fit = other.identify({"--report", other.path("fit.html")});
+  EXPECT_EQ(fit.code, 5);
+  // Who looks at the files all the same is told there, too.
+  EXPECT_EQ(read_text(other.path("params.csv")).find("# NOT TO BE TRUSTED"), 0U);
+  EXPECT_THAT(fit.err, HasSubstr("params.csv is there to be looked at"));
+  const std::string page = read_text(other.path("fit.html"));
+  EXPECT_EQ(page.find("Measured by these logs"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("None of these values is to be trusted"));
+}
+
+// Logs that the tool knows stand in the command; what it cannot know is a word in capitals that is explained.
+TEST(FaultyLogs, TheCommandOfTheDiagnosisHasTheFilesThatAreKnown) {
+  const Spoilt late([](Log& log) { testing_support::make_late(log, 0, 3e-3); });
+  const ToolResult fit = late.identify();
+  EXPECT_THAT(fit.out, HasSubstr(late.path("identification_fast.csv") + " " + late.path("identification_slow.csv") +
+                                 " --holdout ANOTHER_LOG.csv"));
+  EXPECT_THAT(fit.out, HasSubstr("(ANOTHER_LOG.csv: a log that took no part in the fit)"));
+  const ToolResult check =
+      run({"delta-validate", Spoilt::robot_file(), "--params", late.path("params.csv"), late.path("identification_fast.csv")});
+  EXPECT_THAT(check.out, HasSubstr("TRAINING_LOGS.csv --holdout " + late.path("identification_fast.csv")));
+  EXPECT_THAT(check.out, HasSubstr("(TRAINING_LOGS.csv: the logs that the parameters were identified from)"));
 }
 
 TEST(FaultyLogs, ARefusedDiagnosisWritesThePageOfTheCheck) {

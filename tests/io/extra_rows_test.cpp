@@ -1,6 +1,7 @@
 #include "deltadyn/io/extra_rows.hpp"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "deltadyn/runtime/error.hpp"
 
@@ -30,6 +31,22 @@ TEST(RippleRows, ReadBackAsTheyWere) {
   }
   // The rows are no columns of the regressor, and nobody is told that they are not used.
   EXPECT_TRUE(match_parameters(read, {"drive1.coulomb"}).warnings.empty());
+}
+
+// One unit everywhere: waves a turn, or a metre of a sliding drive. Files that count rad, as the law does, are read as they are.
+TEST(RippleRows, CountWavesATurnOrAMetre) {
+  const RobotDescription robot = testing_support::delta_description("delta4"),
+                         linear = testing_support::delta_description("linear-delta3");
+  EXPECT_EQ(ripple_rows({{0, 31, 0.1, 0.1, 0.5, 0}}, robot)[0].unit, "waves/turn");
+  EXPECT_EQ(ripple_rows({{0, 31, 0.1, 0.1, 0.5, 0}}, robot)[0].value, 31);
+  ParameterTable table;
+  table.entries = ripple_rows({{0, 100 * 2 * std::numbers::pi, 0.1, 0.1, std::numbers::pi, 0}}, linear);
+  EXPECT_EQ(table.entries[0].unit, "waves/m");
+  EXPECT_NEAR(table.entries[0].value, 100, 1e-12);
+  EXPECT_NEAR(table.entries[0].std, 0.5, 1e-12);
+  EXPECT_NEAR(ripples_of(table, linear)[0].n, 100 * 2 * std::numbers::pi, 1e-9);
+  table.entries[0].unit = "1/m";
+  EXPECT_NEAR(ripples_of(table, linear)[0].n, 100, 1e-12);
 }
 
 TEST(RippleRows, AreRefusedInPartsAndForOtherDrives) {

@@ -67,6 +67,13 @@ TEST(FormatUncertainty, WithUnit) {
   EXPECT_EQ(format_with_uncertainty(1.2e-5, 1e-6, "kg_m2"), "(1.20 ± 0.10) × 10⁻⁵ kg m²");
 }
 
+TEST(FormatEstimate, ShowsAValueThatItsIntervalDwarfs) {
+  EXPECT_EQ(format_estimate(0.2, 30, "kg"), "0.20 ± 30 kg");
+  EXPECT_EQ(format_estimate(-1.9e-5, 0.0012), "-1.9 × 10⁻⁵ ± 0.0012");
+  EXPECT_EQ(format_estimate(0, 1.2), "0.0 ± 1.2");
+  EXPECT_EQ(format_estimate(1.23449, 0.0123), "1.234 ± 0.012");
+}
+
 TEST(FormatInterval, DigitsFollowItsLength) {
   EXPECT_EQ(format_interval(1.2112, 1.2634, "kg"), "1.2112 … 1.2634 kg");
   EXPECT_EQ(format_interval(-3.0, 4.0), "-3.00 … 4.00");

@@ -1,9 +1,11 @@
 #include "deltadyn/report/identification_report.hpp"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "deltadyn/report/assessment.hpp"
+#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "report/synthetic_run.hpp"
@@ -35,7 +37,7 @@ Assessment assess(const SyntheticRun& run) {
 
 std::string all_text(const Assessment& assessment) {
   std::string text = assessment.headline;
-  for (const std::string& line : assessment.lines) text += "\n" + line;
+  for (const std::string& line : assessment.told()) text += "\n" + line;
   return text;
 }
 
@@ -142,6 +144,81 @@ TEST(IdentificationAssessment, ReversalsThatTakeMostOfTheLogAreTold) {
   EXPECT_THAT(all_text(assess(run)), HasSubstr("up to 5.0 times that elsewhere (drive\u00A01)"));
   run.identification.drives[0].masked_rows = 4 * run.identification.drives[0].rows;
   EXPECT_EQ(assess(run).verdict, Verdict::caution);
+}
+
+// Rows that are used are not said to be left out, and a few about the start of a log are no matter.
+TEST(IdentificationAssessment, ReversalsAreSaidAsTheFitTookThem) {
+  SyntheticRun run = copy_of(good_run());
+  for (DriveReport& drive : run.identification.drives) drive.masked_rows = 0;
+  run.identification.presliding.assign(3, PreslidingJoint{});
+  for (PreslidingJoint& joint : run.identification.presliding) joint.displacement = 1e-3;
+  run.identification.drives[0].masked_rows = 1;
+  run.identification.drives[0].reversal_ratio = 12;
+  const auto reversals = [&] { return assess(run).checks.back(); };
+  EXPECT_EQ(reversals().figure, "rows there are used");
+  run.identification.drives[0].masked_rows = run.identification.drives[0].rows / 4;
+  EXPECT_THAT(reversals().figure, HasSubstr("up to 12.0 times"));
+  EXPECT_THAT(reversals().meaning, HasSubstr("left out of all other figures"));
+  run.identification.drives[0].masked_rows = 0;
+  EXPECT_THAT(reversals().meaning, HasSubstr("used all the same"));
+  for (const Check& check : assess(run).checks) {
+    if (check.verdict == Verdict::good) {
+      EXPECT_EQ(check.meaning.find("not trust"), std::string::npos) << check.meaning;
+    }
+  }
+}
+
+TEST(IdentificationAssessment, OnlyValuesWithSmallIntervalsAreMeasured) {
+  SyntheticRun run = copy_of(good_run());
+  ConsistentFitSummary& fit = run.identification.fit;
+  const Assessment before = assess(run);
+  EXPECT_THAT(before.measured, HasSubstr("friction of all joints"));
+  const auto coulomb = std::find(fit.names.begin(), fit.names.end(), "drive2.coulomb") - fit.names.begin();
+  fit.std(coulomb) = 0.11 * std::abs(fit.p(coulomb));
+  const Assessment after = assess(run);
+  EXPECT_EQ(after.measured.find("friction of all joints"), std::string::npos) << after.measured;
+  EXPECT_EQ(after.measured.find("drive2.coulomb"), std::string::npos) << after.measured;
+  // What is not to be trusted has measured nothing, whatever the check that says so.
+  Assessment bad = before;
+  LogFinding fault;
+  fault.level = FindingLevel::fault;
+  fault.text = "the torque is of another machine";
+  weigh_findings({fault}, bad);
+  EXPECT_THAT(all_text(before), HasSubstr("Measured by these logs"));
+  EXPECT_EQ(all_text(bad).find("Measured"), std::string::npos) << all_text(bad);
+}
+
+TEST(DecidedBy, TellsValuesFromSums) {
+  ConsistentFitSummary fit;
+  fit.p.resize(5);
+  fit.p << 1, 1, 1, 1, 1;
+  fit.prior.resize(5);
+  fit.prior << 3, 3, 1, 3, 3;
+  fit.std.resize(5);
+  fit.std << 0.01, 20, 20, 20, 20;
+  fit.data_share.resize(5);
+  fit.data_share << 0.99, 0.99, 0.1, 0.1, 0.1;
+  EXPECT_EQ(decided_by(fit, Visibility::combined, 0), DecidedBy::data);
+  EXPECT_TRUE(is_measured(fit, Visibility::combined, 0));
+  EXPECT_EQ(decided_by(fit, Visibility::combined, 1), DecidedBy::sums);
+  EXPECT_FALSE(is_measured(fit, Visibility::alone, 1));
+  EXPECT_EQ(decided_by(fit, Visibility::combined, 2), DecidedBy::prior);
+  EXPECT_EQ(decided_by(fit, Visibility::combined, 3), DecidedBy::sums);
+  EXPECT_EQ(decided_by(fit, Visibility::hidden, 4), DecidedBy::neither);
+}
+
+TEST(IdentificationReport, ShowsBristlesAndWavesThatTheModelHolds) {
+  SyntheticRun run = copy_of(good_run());
+  EXPECT_EQ(page_of(run).find("builds up after a reversal over"), std::string::npos);
+  run.identification.presliding.assign(3, PreslidingJoint{});
+  run.identification.presliding[1].displacement = 2.5e-3;
+  run.identification.presliding[1].std = 1e-4;
+  run.identification.presliding[1].damping_s = 2e-3;
+  run.identification.presliding[1].damping_std_s = 1e-4;
+  run.identification.processing.ripples = {{0, 31, 0.03, 0.04, 0.4, 0.002}};
+  const std::string page = page_of(run);
+  for (const char* words : {"0.00250 ± 0.00010 rad", "2.00 ± 0.10 ms", "0.0500 ± 0.0020 N m", "31.00 ± 0.40 a turn"})
+    EXPECT_THAT(page, HasSubstr(words));
 }
 
 TEST(PriorGaps, SayWhatToMeasure) {

@@ -53,6 +53,22 @@ TEST(ValidationAssessment, TheTrueModelPredicts) {
   EXPECT_THAT(assessment.lines, Contains(HasSubstr("looks like measurement noise")));
 }
 
+// The terminal's line and the report's say the same of a structure that is small.
+TEST(StructureInWords, SaysWhetherItIsWorthActingOn) {
+  StructureLeft left;
+  left.file = "folder/slow.csv";
+  left.drive = 1;
+  left.coordinate = "velocity";
+  left.of_torque = 0.034;
+  EXPECT_EQ(
+      structure_in_words(left),
+      "structure is left in the residual of drive\u00A02 (slow.csv), following its velocity: 3.4 % of the torque in this log");
+  left.of_torque = 0.0047;
+  left.coordinate = "time";
+  EXPECT_THAT(structure_in_words(left), HasSubstr("slow waves that follow none of its coordinates: 0.47 % of the torque"));
+  EXPECT_THAT(structure_in_words(left), HasSubstr("small: delta-diagnose may name it"));
+}
+
 TEST(ValidationAssessment, WrongParametersArePutInTheHeadline) {
   const Case wrong = make_case("delta3", 0.01, 0.5);
   EXPECT_EQ(wrong.assess().verdict, Verdict::bad);

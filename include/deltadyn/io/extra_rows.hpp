@@ -2,7 +2,7 @@
 
 /// \file
 /// Rows of a parameter file that are no columns of the regressor: damping of bristles and ripple of the torque over the position.
-/// `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [1/rad | 1/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
+/// `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [waves/turn | waves/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
 
 #include <Eigen/Core>
 #include <string>

@@ -24,7 +24,8 @@ struct ParameterEntry {
 };
 
 struct ParameterTable {
-  std::string file;  ///< where it came from, for messages
+  std::string file;    ///< where it came from, for messages
+  std::string remark;  ///< one line, written as a comment above the header; not read back
   std::vector<ParameterEntry> entries;
 
   /// Null if there is no such name.

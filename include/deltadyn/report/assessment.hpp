@@ -28,10 +28,17 @@ struct Check {
 struct Assessment {
   Verdict verdict = Verdict::good;  ///< the worst one of the checks
   std::string headline;             ///< one sentence
-  std::vector<std::string> lines;   ///< what is trustworthy, what is not, what to do next
+  std::string measured;             ///< "Measured by these logs: ...", true unless the verdict is bad
+  std::vector<std::string> lines;   ///< what is not trustworthy, what to do next
   std::vector<Check> checks;
   std::optional<StructureLeft> structure;  ///< what the model leaves in the residual, for delta-diagnose to name
+
+  /// The lines below the headline: what is measured, if the verdict lets it stand, then `lines`.
+  [[nodiscard]] std::vector<std::string> told() const;
 };
+
+/// What is left in a residual, in one sentence without its full stop: for the terminal and the report alike.
+[[nodiscard]] std::string structure_in_words(const StructureLeft& structure);
 
 /// How a parameter shows in the torques of the drives.
 enum class Visibility {
@@ -63,6 +70,19 @@ struct PriorGap {
 
 /// False if the estimate of a parameter lies so far from its prior that the prior cannot have decided it.
 [[nodiscard]] bool held_by_prior(const ConsistentFitSummary& fit, Eigen::Index parameter);
+
+/// What a reader may think of a value.
+enum class DecidedBy {
+  data,
+  both,
+  sums,    ///< the data know sums with others; the value by itself may be far off
+  prior,   ///< the prior's value, hardly moved
+  neither  ///< moved to keep its body consistent, with nothing that holds it
+};
+[[nodiscard]] DecidedBy decided_by(const ConsistentFitSummary& fit, Visibility visibility, Eigen::Index parameter);
+
+/// The data decided it, and its standard deviation is small beside it.
+[[nodiscard]] bool is_measured(const ConsistentFitSummary& fit, Visibility visibility, Eigen::Index parameter);
 
 /// What the judgement on an identification rests on besides the fit.
 struct IdentificationEvidence {

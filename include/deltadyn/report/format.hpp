@@ -20,6 +20,9 @@ namespace deltadyn {
 /// negative one means unknown: then the value stands alone, with four significant digits if unknown.
 [[nodiscard]] std::string format_with_uncertainty(double value, double uncertainty, std::string_view unit = "");
 
+/// The same, but an uncertainty larger than the value does not round it away: "0.20 ± 30".
+[[nodiscard]] std::string format_estimate(double value, double uncertainty, std::string_view unit = "");
+
 /// An interval with matching digits, e.g. "1.21 … 1.26 kg"; the ends are given to a hundredth of the interval's length.
 [[nodiscard]] std::string format_interval(double low, double high, std::string_view unit = "");
 
