@@ -14,6 +14,7 @@
 
 #include "gate/given_derivatives.hpp"
 #include "gate/judge.hpp"
+#include "gate/mirror.hpp"
 #include "gate/outside_torque.hpp"
 #include "gate/plausibility.hpp"
 #include "gate/torque_noise.hpp"
@@ -82,7 +83,12 @@ class Gate {
       if (out_.stop()) return std::move(out_);
     }
     judge_timing(sample);
-    judge_scale(pick_points(take_sample(out_.logs), kPoints));
+    const Sample mended = take_sample(out_.logs);
+    judge_scale(pick_points(mended, kPoints));
+    if (!out_.fault() && !coarse_) {
+      if (std::optional<LogFinding> mirrored = mirror_finding(robot_, base_, mended))
+        out_.findings.push_back(*std::move(mirrored));
+    }
     return std::move(out_);
   }
 
@@ -145,6 +151,10 @@ class Gate {
       f.text += fmt::format("{}{}", k == 1 ? "; as well explained: " : "; or: ", judgement.winners[k].words);
     }
     f.mend = first.mend;
+    if (is_turned_yaw(robot_.description(), first)) {
+      f.text += "; as well explained: the limbs are numbered clockwise";
+      f.mend += "; or swap the columns of limbs 2 and 3: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above";
+    }
     out_.findings.push_back(std::move(f));
     add(std::move(limits));
   }

@@ -17,7 +17,16 @@ struct Recording {
   double rate_hz = 1000, noise = 0.1, encoder_bits = 19, duration_s = 8;
   double fast_hz = 0.35;  ///< base frequency of the fast log
   std::uint64_t seed = 1;
+  double unbalance = 0;  ///< of the tool [kg m]: tells left from right
 };
+
+Eigen::VectorXd truth_of(const Robot& robot, const Recording& how) {
+  Eigen::VectorXd p = delta_truth(robot);
+  for (int k = 0; k < robot.parameters(); ++k) {
+    if (robot.parameter_names()[static_cast<std::size_t>(k)] == "tool.mcx") p(k) = how.unbalance;
+  }
+  return p;
+}
 
 /// A fast log and a slow one, as a drive records them.
 std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
@@ -32,7 +41,7 @@ std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
     synthetic.with_derivatives = false;
     synthetic.seed = 10 * how.seed + part;
     synthetic.base_frequency_hz = part == 0 ? how.fast_hz : 0.15;
-    logs.push_back(synthetic_log(robot, delta_truth(robot), synthetic));
+    logs.push_back(synthetic_log(robot, truth_of(robot, how), synthetic));
     logs.back().file = part == 0 ? "fast" : "slow";
   }
   return logs;
@@ -209,6 +218,74 @@ TEST(LogGateScale, WeighedMassesMakeItCertain) {
   ASSERT_NE(finding, nullptr) << told(result);
   EXPECT_NEAR(finding->value, 1.5, 0.05);
   EXPECT_FALSE(result.stop());
+}
+
+void turn_yaw(Log& log) {
+  log.q.col(3) *= -1;
+  log.tau.col(3) *= -1;
+}
+
+void number_clockwise(Log& log) {
+  log.q.col(1).swap(log.q.col(2));
+  log.tau.col(1).swap(log.tau.col(2));
+}
+
+// One of the two mirrored is a machine that the robot file does not describe, both are its mirror image.
+TEST(LogGateMirror, TellsLimbsAndYawThatDoNotBelongTogether) {
+  const auto robot = make_robot(delta_description("delta4"));
+  for (const double noise : {0.03, 0.1}) {
+    Recording how;
+    how.noise = noise;
+    how.fast_hz = 0.6;
+    how.unbalance = 0.002;
+    for (const auto& [yaw, limbs] : {std::pair(true, false), {false, true}, {true, true}, {false, false}}) {
+      std::vector<Log> logs = recorded(*robot, how);
+      for (Log& log : logs) {
+        if (yaw) turn_yaw(log);
+        if (limbs) number_clockwise(log);
+      }
+      const GateResult result = examine(*robot, logs);
+      EXPECT_FALSE(result.fault()) << told(result);
+      const LogFinding* finding = find(result, {"mirrored"}, FindingLevel::warning);
+      EXPECT_EQ(finding != nullptr, yaw != limbs) << noise << " " << yaw << limbs << "\n" << told(result);
+      if (finding != nullptr) {
+        EXPECT_NE(finding->mend.find("counter-clockwise"), std::string::npos);
+      }
+    }
+  }
+}
+
+// A heavy unbalance makes it plain: a fault, and both causes are said.
+TEST(LogGateMirror, NamesBothCausesOfAPlainFault) {
+  const auto robot = make_robot(delta_description("delta4"));
+  Recording how;
+  how.unbalance = 0.02;
+  for (const auto& spoil : {turn_yaw, number_clockwise}) {
+    std::vector<Log> logs = recorded(*robot, how);
+    for (Log& log : logs) spoil(log);
+    const GateResult result = examine(*robot, logs);
+    const LogFinding* finding = find(result, {"position_sign"}, FindingLevel::fault);
+    ASSERT_NE(finding, nullptr) << told(result);
+    EXPECT_NE(finding->text.find("as well explained: the limbs are numbered clockwise"), std::string::npos) << told(result);
+  }
+}
+
+// Noise, motions and friction of other laws make no mirror image; where the noise hides it, nothing is said.
+TEST(LogGateMirror, IsSilentOnSoundLogs) {
+  const auto robot = make_robot(delta_description("delta4"));
+  std::uint64_t seed = 60;
+  for (const double noise : {0.03, 0.06, 0.1, 0.25, 0.5}) {
+    for (const double fast_hz : {0.25, 0.35, 0.5, 0.6}) {
+      Recording how;
+      how.noise = noise;
+      how.fast_hz = fast_hz;
+      how.encoder_bits = seed % 2 == 0 ? 16 : 20;
+      how.unbalance = seed % 3 == 0 ? 0.005 : 0;
+      how.seed = ++seed;
+      const GateResult result = examine(*robot, recorded(*robot, how));
+      EXPECT_EQ(find(result, {"mirrored"}, FindingLevel::warning), nullptr) << noise << " " << fast_hz << "\n" << told(result);
+    }
+  }
 }
 
 TEST(LogGateDerivatives, AreComparedWithThePositions) {
