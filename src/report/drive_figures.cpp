@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "deltadyn/report/format.hpp"
-#include "deltadyn/signal/spectrum.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/signal/spectrum.hpp"
 
 #include "assessment_limits.hpp"
 #include "assessment_parts.hpp"
@@ -256,8 +256,8 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
     }
     if (panels.empty()) continue;
     report.plot(panels,
-                fmt::format("Residual over {}, {}; rows near velocity reversals left out. {}", velocity ? "velocity" : "position",
-                            name_of_group(group),
+                fmt::format("Residual over {}, {}; without the rows that are left out near velocity reversals. {}",
+                            velocity ? "velocity" : "position", name_of_group(group),
                             velocity ? "Means that leave zero show friction that Coulomb and viscous friction do not describe."
                                      : "Means that leave zero show springs, cables, unbalance, gear ripple or wrong lengths."));
   }

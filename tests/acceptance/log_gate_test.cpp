@@ -204,6 +204,34 @@ TEST(FaultyLogs, ATorqueThatNothingExplainsIsAFault) {
   EXPECT_THAT(page, HasSubstr("None of these values is to be trusted"));
 }
 
+// Limbs and yaw that do not belong together are told where the yaw's residual knows; mirrored as a whole it is the same machine.
+TEST(FaultyLogs, AMachineThatIsMirroredInPartIsTold) {
+  const auto turn_yaw = [](Log& log) {
+    log.q.col(3) *= -1;
+    log.tau.col(3) *= -1;
+  };
+  const auto number_clockwise = [](Log& log) {
+    log.q.col(1).swap(log.q.col(2));
+    log.tau.col(1).swap(log.tau.col(2));
+  };
+  for (const std::function<void(Log&)>& spoil :
+       {std::function<void(Log&)>(turn_yaw), std::function<void(Log&)>(number_clockwise)}) {
+    const Spoilt logs(spoil);
+    const ToolResult check = logs.check();
+    EXPECT_EQ(check.code, 0) << check.err;
+    EXPECT_THAT(check.err,
+                ContainsRegex("limbs and the sign of drive 4 do not belong together: residual of drive 4 [0-9.]+ N m as given"));
+    EXPECT_THAT(check.err, HasSubstr("counter-clockwise from limb 1 seen from above"));
+    EXPECT_EQ(logs.summary().count("check_mirrored_drive4"), 1U);
+  }
+  const Spoilt whole([&](Log& log) {
+    turn_yaw(log);
+    number_clockwise(log);
+  });
+  EXPECT_THAT(whole.check().out, HasSubstr("verdict: no fault was found"));
+  EXPECT_EQ(whole.summary().count("check_mirrored_drive4"), 0U);
+}
+
 // Logs that the tool knows stand in the command; what it cannot know is a word in capitals that is explained.
 TEST(FaultyLogs, TheCommandOfTheDiagnosisHasTheFilesThatAreKnown) {
   const Spoilt late([](Log& log) { testing_support::make_late(log, 0, 3e-3); });
