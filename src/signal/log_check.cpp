@@ -104,6 +104,7 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
       finding.key = "unusable_part";
       finding.file = part.file;
       finding.text = fmt::format("{}: part {} is not used: {}", error.where(), part.part, error.problem());
+      finding.mend = error.mend().empty() ? "record this part again if it is needed; the others are used" : error.mend();
       carried.insert(carried.end(), part.findings.begin(), part.findings.end());
       carried_notes.insert(carried_notes.end(), part.notes.begin(), part.notes.end());
       carried_notes.push_back(finding.text);

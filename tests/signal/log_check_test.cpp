@@ -253,6 +253,7 @@ TEST(LogCheck, AnUnusablePartIsSaidAndKeepsItsWords) {
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].line.front(), 4052);
   ASSERT_NE(finding(parts[0], "unusable_part"), nullptr);
+  EXPECT_FALSE(finding(parts[0], "unusable_part")->mend.empty()) << "a warning names the next step";
   EXPECT_NE(finding(parts[0], "missing_numbers", 0), nullptr);
   EXPECT_NE(finding(parts[0], "missing_numbers", 1), nullptr);
   EXPECT_THAT(parts[0].notes,
@@ -268,6 +269,8 @@ TEST(LogCheck, SaysManyGapsOnceAndDropsWhatIsTooShort) {
   EXPECT_EQ(parts[0].notes.size(), 2U);
   ASSERT_NE(finding(parts[0], "gaps"), nullptr);
   EXPECT_EQ(finding(parts[0], "gaps")->value, 3);
+  ASSERT_NE(finding(parts[0], "short_parts"), nullptr);
+  EXPECT_FALSE(finding(parts[0], "short_parts")->mend.empty()) << "a warning names the next step";
   ASSERT_NE(finding(parts[0], "short_parts"), nullptr);
 }
 

@@ -164,7 +164,8 @@ std::vector<Log> split(CheckRoom& room) {
   if (dropped.count > 0) {
     room.tell(FindingLevel::warning, "short_parts", dropped.first, "", -1, static_cast<double>(dropped.count), "",
               fmt::format("{} part(s) between gaps are shorter than {:.3g} s and not used, the first begins here", dropped.count,
-                          shortest));
+                          shortest),
+              "look for lost packets, or record again without gaps if these parts are needed");
   }
   parts.front().notes = log.notes;
   parts.front().findings = log.findings;
