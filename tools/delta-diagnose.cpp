@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "deltadyn/diagnosis/diagnose.hpp"
 #include "deltadyn/diagnosis/next_experiment.hpp"
 #include "deltadyn/io/effect_file.hpp"
+#include "deltadyn/io/extra_rows.hpp"
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -110,6 +112,9 @@ class Diagnose {
     }
 
     options_.processing = processing_.options();
+    options_.processing.presliding = presliding_of(table, description);
+    options_.processing.presliding_damping_s = presliding_damping_of(table, description);
+    options_.processing.ripples = ripples_of(table, description);
     options_.choose_cutoff = processing_.automatic_cutoff();
     options_.seed = run.seed;
     options_.identify = !params_out_.empty();
@@ -209,9 +214,58 @@ class Diagnose {
     fmt::print("{}; wrote {}\n", plan->note, plan_file_);
   }
 
+  /// What the rows of the parameter file say is known, and not looked for.
+  static void tell_known(const RobotDescription& robot, const ProcessingOptions& known) {
+    std::vector<std::string> parts;
+    for (Eigen::Index joint = 0; joint < known.presliding.size(); ++joint) {
+      if (!(known.presliding(joint) > 0)) continue;
+      const auto at = static_cast<int>(joint);
+      parts.push_back(fmt::format("friction of {} builds up over {:.3g} {}",
+                                  at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope",
+                                  known.presliding(joint), tools::joint_turns(robot, at) ? "rad" : "m"));
+    }
+    for (const Ripple& ripple : known.ripples) {
+      parts.push_back(fmt::format("torque of drive {} ripples by {:.3g} {}", ripple.drive + 1,
+                                  std::hypot(ripple.cosine, ripple.sine), tools::torque_unit(robot, ripple.drive)));
+    }
+    if (!parts.empty()) fmt::print("  Known, as the parameter file holds it: {}.\n", fmt::join(parts, "; "));
+  }
+
+  /// The written model on the hold-out log, as delta-validate shows it.
+  static void tell_proof(const RobotDescription& robot, const Diagnosis& result, Summary& out) {
+    for (std::size_t j = 0; j < result.holdout_figures.size(); ++j) {
+      const HoldoutFigure& one = result.holdout_figures[j];
+      const char* unit = tools::torque_unit(robot, static_cast<int>(j));
+      const std::string flag =
+          result.holdout_cutoff_hz > 0 ? fmt::format(" --cutoff-hz {:.4g}", result.holdout_cutoff_hz) : std::string();
+      fmt::print("  delta-validate{} on the hold-out log, drive {}: {:.4g} {} as given, {:.4g} as written ({} rows)\n", flag,
+                 j + 1, one.rms_given, unit, one.rms_written, one.rows_written);
+      out.add(fmt::format("holdout_rms_given_drive{}", j + 1), one.rms_given, unit);
+      out.add(fmt::format("holdout_rms_written_drive{}", j + 1), one.rms_written, unit);
+    }
+  }
+
+  /// Rows of each drive that the search rests on, log by log.
+  void tell_rows(const Diagnosis& result) const {
+    if (result.drives.empty()) return;
+    fmt::print("rows used whole, and in part beside reversals, of all\n");
+    for (std::size_t l = 0; l < result.drives.front().rows.size(); ++l) {
+      std::string text;
+      for (std::size_t j = 0; j < result.drives.size(); ++j) {
+        const RowCount& rows = result.drives[j].rows[l];
+        text += fmt::format("{}drive {}: {} + {}", j > 0 ? ", " : "", j + 1, rows.whole, rows.part);
+      }
+      const bool held = l + 1 == result.drives.front().rows.size() && !holdout_file_.empty();
+      fmt::print("  {} of {} of {}\n", text, result.drives.front().rows[l].all,
+                 held ? "the hold-out log" : result.traces[l].file);
+    }
+  }
+
   void tell(const Diagnosis& result, const RobotDescription& robot, ToolRun& run) const {
     fmt::print("{}\n", result.headline);
     for (const std::string& line : result.lines) fmt::print("  {}\n", line);
+    tell_known(robot, options_.processing);
+    tell_proof(robot, result, run.summary);
     if (std::isfinite(result.gap_shrink)) {
       fmt::print(
           "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to {:.1f} "
@@ -221,6 +275,7 @@ class Diagnose {
     for (const std::string& line : result.next) fmt::print("next: {}\n", line);
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
     if (!params_out_.empty() && !result.improved) fmt::print("note: {} holds the parameters as they were given\n", params_out_);
+    tell_rows(result);
     if (!result.drives.empty())
       fmt::print("training logs, rms [N m | N]\ndrive   as given   fitted   with effects   noise floor   structure\n");
     Summary& out = run.summary;
@@ -251,6 +306,10 @@ class Diagnose {
       const char* unit = tools::torque_unit(robot, static_cast<int>(j));
       out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms, unit);
       out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor, unit);
+      Eigen::Index rows = 0;
+      for (std::size_t l = 0; l < result.drives[j].rows.size() - (holdout_file_.empty() ? 0 : 1); ++l)
+        rows += result.drives[j].rows[l].whole;
+      out.add(fmt::format("rows_drive{}", j + 1), rows);
     }
     out.add("null_runs", result.null_runs);
     out.add("total_time_s", result.total_time_s, "s");

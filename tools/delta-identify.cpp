@@ -9,7 +9,7 @@
 #include "deltadyn/identification/effect_torque.hpp"
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/mass_matrix_survey.hpp"
-#include "deltadyn/identification/validate.hpp"
+#include "deltadyn/identification/written_model.hpp"
 #include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -92,6 +92,9 @@ class Identify {
     const auto robot = make_robot(description, parameter_options(description));
     const IdentificationOptions options = identification_options(run);
     const tools::Prior prior = tools::read_prior(*robot, prior_file_);
+    std::vector<Effect> effects;
+    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
+    if (holds_timing(effects)) gate_.keep_delays();
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
                                       !prior_file_.empty(), !options.processing.filter, run.summary);
     ReportContext context{robot_file_, log_files_, prior_file_, command_line_, tools::all_findings(gate)};
@@ -101,8 +104,6 @@ class Identify {
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
-    std::vector<Effect> effects;
-    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
     Identification result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
     if (effects.empty() && !gate_.keeps_delay()) {
       if (const auto found = tools::mend_fine_delay(*robot, result.base, result.processing, logs, run.summary)) {

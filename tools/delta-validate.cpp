@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/identification/effect_torque.hpp"
-#include "deltadyn/identification/model_band.hpp"
+#include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/residual_structure.hpp"
-#include "deltadyn/identification/validate.hpp"
+#include "deltadyn/identification/written_model.hpp"
 #include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/extra_rows.hpp"
 #include "deltadyn/io/output_file.hpp"
@@ -65,33 +64,28 @@ class Validate {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
+    WrittenModel model;
+    model.p = match.value;
+    if (!effect_file_.empty()) model.effects = read_effects(effect_file_, description);
+    model.presliding = presliding_of(table, description);
+    model.presliding_damping_s = presliding_damping_of(table, description);
+    model.ripples = ripples_of(table, description);
+    if (!model.effects.empty() && !processing_.options().filter) {
+      throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
+    }
+    if (holds_timing(model.effects)) gate_.keep_delays();
     // The model under test is no prior: a wrong one must show in the residual, not in the check of the logs.
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
                                       !processing_.options().filter, run.summary);
     ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, tools::all_findings(gate)};
     std::vector<LogFinding>& findings = context.findings;
     if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-validate");
-    std::vector<Log> logs = gate.logs;
-    ProcessingOptions options = processing_.options();
-    if (options.filter && processing_.automatic_cutoff()) {
-      options.cutoff_hz = choose_model_cutoff(*robot, find_base_parameters(*robot), logs, options).cutoff_hz;
-    }
-    options.presliding = presliding_of(table, description);
-    options.presliding_damping_s = presliding_damping_of(table, description);
-    options.ripples = ripples_of(table, description);
-    if (effect_file_.empty() && !gate_.keeps_delay()) {
-      const auto found = tools::mend_fine_delay(*robot, find_base_parameters(*robot), options, logs, run.summary, &match.value);
-      if (found) findings.push_back(*found);
-    }
-    std::vector<Effect> effects;
-    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
-    if (!effects.empty() && !options.filter) {
-      throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
-    }
-    Validation result =
-        validate(*robot, without_effects(*robot, logs, match.value, effects, options.motion_over_pass * options.cutoff_hz),
-                 match.value, options);
-    if (!effects.empty()) add_effects(*robot, logs, result);
+    WrittenValidation written =
+        validate_written(*robot, gate.logs, model, processing_.options(), processing_.automatic_cutoff(), gate_.keeps_delay());
+    if (written.fine_delay) findings.push_back(tools::tell_fine_delay(*written.fine_delay, run.summary));
+    const std::vector<Log>& logs = written.logs;
+    Validation& result = written.validation;
+    if (!model.effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, logs, result);
     if (!report_file_.empty()) write_file(report_file_, validation_report(*robot, result, match.value, context));
     Assessment assessment = assess_validation(*robot, result);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/identification/fine_delay.hpp"
@@ -30,14 +31,9 @@ inline void summarise_fine_delay(const FineDelay& found, Summary& summary) {
   if (verdict == "fine") summary.add("check_verdict", "mended");
 }
 
-/// Takes the delay out of `logs` if it is certain. Prints what was done and adds it to the summary.
-/// \returns the finding, for reports; nothing if the logs stay as they are
-inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseParameters& base,
-                                                 const ProcessingOptions& processing, std::vector<Log>& logs, Summary& summary,
-                                                 const Eigen::VectorXd* known = nullptr) {
-  const FineDelay found = find_fine_delay(robot, base, logs, processing, known);
-  if (!found.certain) return std::nullopt;
-  logs = without_delay(std::move(logs), found.delay_s);
+/// Prints that such a delay was removed, and adds it to the summary.
+/// \returns the finding, for reports
+inline LogFinding tell_fine_delay(const FineDelay& found, Summary& summary) {
   LogFinding finding;
   finding.level = FindingLevel::mended;
   finding.key = "fine_delay";
@@ -49,6 +45,16 @@ inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseP
   fmt::print("check: mended: {}\n", finding.text);
   summarise_fine_delay(found, summary);
   return finding;
+}
+
+/// Takes the delay out of `logs` if it is certain, and tells it.
+/// \returns the finding, for reports; nothing if the logs stay as they are
+inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseParameters& base,
+                                                 const ProcessingOptions& processing, std::vector<Log>& logs, Summary& summary) {
+  const FineDelay found = find_fine_delay(robot, base, logs, processing);
+  if (!found.certain) return std::nullopt;
+  logs = without_delay(std::move(logs), found.delay_s);
+  return tell_fine_delay(found, summary);
 }
 
 }  // namespace deltadyn::tools

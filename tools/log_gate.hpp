@@ -106,9 +106,12 @@ class LogGate {
 
   /// Leaves delays in place whatever the flag says: the tool weighs them itself. After add_to().
   void leave_delays() {
-    keep_delay_ = true;
+    keep_delays();
     flag_->description("always on: a delay between torque and position is one of the effects that are weighed");
   }
+
+  /// Leaves delays in place for this run: the model at hand explains them.
+  void keep_delays() { keep_delay_ = true; }
 
   /// Checks and mends. Prints what was found, and adds it to the summary.
   /// \param with_fine  print what is in order, too

@@ -20,6 +20,8 @@ namespace {
 constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
 constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
+constexpr double kSimplerShare = 0.9;   // of the gain, from which an effect does as well that has ...
+constexpr int kFewer = 2;               // ... so many parameters less
 constexpr double kClearShare = 0.2;  // of a gain, on drives that no other effect reaches, from which these alone tell names apart
 
 /// Sum of squared differences a block of a quarter of a second: how robust is a gain?
@@ -118,10 +120,13 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     const double clear = clear_lead(problem, reached, r_other.cwiseAbs2() - r_best.cwiseAbs2(),
                                     problem.r.cwiseAbs2() - r_best.cwiseAbs2(), kClearShare * best.gain);
     const bool by_form = clear < 0 || (std::min(lead / best.gain, clear) < kSetForm && alternative.freedom() <= one.freedom());
-    if (!alike && !by_blocks && !by_form) continue;
+    const bool by_parsimony = alternative.freedom() + kFewer <= one.freedom() && other.gain > kSimplerShare * best.gain;
+    if (!alike && !by_blocks && !by_form && !by_parsimony) continue;
     // Beside its own special case an effect is no alternative: the case would have to be met by chance.
     if (alternative.joint == one.joint && holds(alternative.id, one.id)) continue;
-    EffectCandidate candidate = candidate_of(context, found, other);
+    Fit sized = other;
+    set_uncertainty(context, state, sized);
+    EffectCandidate candidate = candidate_of(context, found, sized);
     const double cosine = std::abs(s_best.dot(s_other)) / std::max(s_best.norm() * s_other.norm(), 1e-300);
     candidate.why =
         fmt::format("it explains {:.1f} % of what {} explains; in these motions their torques are alike to {:.1f} %",

@@ -90,6 +90,18 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
   return "no evidence";
 }
 
+/// Of the training logs, then of the hold-out log.
+std::vector<RowCount> row_counts(const SearchContext& context, std::size_t drive) {
+  std::vector<RowCount> out;
+  const auto add = [&](const LogRows& log) {
+    const Index whole = log.usable[drive].count();
+    out.push_back({whole, (log.present[drive] && !log.usable[drive]).count(), log.rows()});
+  };
+  for (const LogRows& log : context.logs) add(log);
+  if (context.holdout != nullptr) add(*context.holdout);
+  return out;
+}
+
 }  // namespace
 
 void say_too_short(double length_s, double needed_s, Diagnosis& out) {
@@ -119,6 +131,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     trace.q = logs[l].q;
     trace.qd = logs[l].qd;
     trace.torque = logs[l].tau;
+    if (logs[l].ripple.size() > 0) trace.torque += logs[l].ripple;
     trace.before.resize(logs[l].rows(), n);
     trace.after.resize(logs[l].rows(), n);
     trace.usable.resize(logs[l].rows(), n);
@@ -144,6 +157,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
   for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
     const auto at = static_cast<Index>(j);
     DriveFit drive;
+    drive.rows = row_counts(context, j);
     drive.rms = std::sqrt(before[j] / std::max(1.0, count[j]));
     drive.rms_after = std::sqrt(after[j] / std::max(1.0, count[j]));
     drive.rms_given = std::sqrt(given[j] / std::max(1.0, count[j]));

@@ -53,7 +53,11 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
                      const std::vector<Effect>& known, Diagnosis& out);
 
 /// Steps 9 and 10: names, unknown structure, proof on the hold-out log.
-void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
+/// \returns the largest share of a drive's noise variance that a name explains
+double judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out);
+
+/// named, or confusable if one has a set.
+[[nodiscard]] DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named);
 
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
@@ -100,5 +104,10 @@ inline constexpr double kMaterial = 0.02;
 inline constexpr double kMaterialFurther = 0.15;
 /// The same for structure without a name: larger, as the basis is free enough to follow slow noise of one log for a part.
 inline constexpr double kMaterialStructure = 0.3;
+
+/// Chance of the structure that counts as such.
+inline constexpr double kStructureChance = 0.002;
+/// rms over floor of a drive below which nothing is left to explain in the training logs.
+inline constexpr double kOvertFloor = 1.1;
 
 }  // namespace deltadyn::detail

@@ -52,12 +52,14 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
   if (!shape_is_free(hypothesis.id, parameter, shape)) return {};
   if (kind.name == "exponent") return {true, false, std::max(1.2, value - 0.5), value + 0.7};
   if (kind.scale == ShapeScale::waves) {
-    double spacing = 0.25 * std::abs(value);
+    double spacing = 0.25 * std::abs(value), longest = value;
     for (const VectorXd& other : hypothesis.shapes) {
+      longest = std::min(longest, other(0));
       const double distance = std::abs(other(0) - value);
       if (distance > 1e-12) spacing = std::min(spacing, distance);
     }
-    return {true, false, value - spacing, value + spacing};
+    // Less than one wave over the range of the drive is no wave but part of one: of gravity, load, anything.
+    return {true, false, std::max(value - spacing, longest), value + spacing};
   }
   // A level far below the peaks would be a matter of gain or load.
   if (hypothesis.id == EffectId::saturation) return {true, true, 0.9 * value, 1.1 * value};
@@ -67,12 +69,12 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
 }  // namespace
 
 EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
-                           const std::vector<Effect>& known)
-    : model_(model),
-      logs_(logs),
-      basis_(basis),
-      hypotheses_(all_hypotheses(model.robot(), logs, known)),
-      rows_(hypotheses_.size()) {
+                           const std::vector<Effect>& known, const VectorXd& presliding)
+    : model_(model), logs_(logs), basis_(basis), hypotheses_(all_hypotheses(model.robot(), logs, known)), rows_() {
+  std::erase_if(hypotheses_, [&](const Hypothesis& one) {
+    return one.id == EffectId::presliding && one.joint < presliding.size() && presliding(one.joint) > 0;
+  });
+  rows_.resize(hypotheses_.size());
   std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t h = 0; h < hypotheses_.size(); ++h) {

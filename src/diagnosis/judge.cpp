@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -18,11 +19,12 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kResonance = 0.8;  // of the cut-off: a spring's law holds below the resonance only
+constexpr double kInterval = 1.96;  // standard deviations on either side hold 95 %
 constexpr double kExplained = 0.8;  // of the structure that names must explain
 constexpr double kHardlyExplained =
     0.4;  // ... from which less says that the name is wrong, even if the hold-out log does not show it
 constexpr double kExplainedByMany = 0.985;  // ... and that several must: together they can follow much that is none of them
-constexpr double kStructureChance = 0.002;  // chance of the structure that counts as such
 constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
 constexpr double kSlowOverNoise = 10;       // of a drive's residual; slow noise of all drives comes to 20, hence ...
 constexpr double kSlowOverOthers = 5;       // ... times so much more than the others, and ...
@@ -36,7 +38,6 @@ constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the 
 constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
 constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
 constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
-constexpr double kAboveFloor = 1.1;    // rms over floor of a drive below which nothing is left to explain in the training logs
 constexpr double kOtherMachine = 2.0;  // rms of the hold-out log over that of training from which the machine itself may differ
 constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
 
@@ -133,9 +134,33 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
   return OpenCourse{reason, kSlowLogs * wanted};
 }
 
-DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
-  const bool set = std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
-  return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+/// Does the 95 % interval of every amplitude hold zero?
+bool may_be_nothing(const Effect& effect) {
+  return effect.amplitude_std.size() == effect.amplitude.size() &&
+         (effect.amplitude.cwiseAbs().array() <= kInterval * effect.amplitude_std.array()).all();
+}
+
+/// Why a fit is none that a machine can have; empty if it may be one.
+std::string no_effect(const Effect& effect, double cutoff_hz) {
+  if (may_be_nothing(effect)) return "its size may be zero within its 95 % interval";
+  if (effect.id != EffectId::joint_elasticity) return "";
+  const double resonance_hz = 1 / (2 * std::numbers::pi * std::sqrt(std::max(std::abs(effect.amplitude(0)), 1e-300)));
+  if (resonance_hz > kResonance * cutoff_hz) return "";
+  return fmt::format("its resonance of {:.2g} Hz would show as such in logs that are used up to {:.3g} Hz", resonance_hz,
+                     cutoff_hz);
+}
+
+/// An accepted effect and its set, without those that no machine can have, which are noted.
+std::vector<EffectCandidate> possible_ones(const SearchContext& context, const SearchResult& found, std::size_t k,
+                                           Diagnosis& out) {
+  std::vector<EffectCandidate> all = {candidate_of(context, found, found.fits[k])};
+  all.insert(all.end(), found.sets[k].begin(), found.sets[k].end());
+  std::erase_if(all, [&](const EffectCandidate& one) {
+    const std::string reason = no_effect(one.effect, out.cutoff_hz);
+    if (!reason.empty()) out.notes.push_back(fmt::format("{} at {} fits, but {}: not named", one.name, one.joint, reason));
+    return !reason.empty();
+  });
+  return all;
 }
 
 /// Takes out what would be a guess beyond the logs' speeds, and says what a log should show. If no name is left, nothing can be said.
@@ -202,7 +227,12 @@ std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context
 
 }  // namespace
 
-void judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out) {
+DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
+  const bool set = std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+}
+
+double judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out) {
   const Index n = context.robot.drives();
   const LogRows* holdout = context.holdout;
   std::optional<HoldoutProof> proof;
@@ -264,13 +294,15 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
                                       hypothesis.name(), hypothesis.joint_name()));
       continue;
     }
+    const std::vector<EffectCandidate> possible = possible_ones(context, found, k, out);
+    if (possible.empty()) continue;
     NamedEffect one;
-    static_cast<EffectCandidate&>(one) = candidate_of(context, found, fit);
+    static_cast<EffectCandidate&>(one) = possible.front();
     // An effect that was taken in beside others can have gained more alone than all of them together.
     const Remainder torque = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude);
     largest_share = std::max(largest_share, noise_shares(context, torque, found.floor).maxCoeff());
     one.explained_share = fit.gain / std::max({gain + left, fit.gain, 1e-300});
-    one.confusable = found.sets[k];
+    one.confusable.assign(possible.begin() + 1, possible.end());
     one.drives = drives_of(context, *found.before.problem, fit);
     one.region = region_of(context, fit, *found.before.problem, one.drives);
     out.named.push_back(std::move(one));
@@ -299,6 +331,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     trace.q = holdout->q;
     trace.qd = holdout->qd;
     trace.torque = holdout->tau;
+    if (holdout->ripple.size() > 0) trace.torque += holdout->ripple;
     trace.before = proof->before;
     trace.after = proof->after;
     trace.usable.resize(holdout->rows(), n);
@@ -335,7 +368,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
             worse ? std::string("makes the model worse") : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
         double above = 0;
         for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
-        if (largest_share > kMaterialStructure && above > kAboveFloor) {
+        if (largest_share > kMaterialStructure && above > kOvertFloor) {
           out.verdict = DiagnosisVerdict::unknown_structure;
           out.region = place_of(out, static_cast<std::size_t>(touched.front()));
           out.lines.push_back(line);
@@ -416,6 +449,7 @@ void judge(const SearchContext& context, const SearchResult& found, const std::v
     });
     if (one.ruling == kFound && !added) one.ruling = "fits, but is not confirmed";
   }
+  return largest_share;
 }
 
 }  // namespace deltadyn::detail

@@ -19,9 +19,12 @@ std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, 
   const Index N = log.t_s.size();
   MatrixXd raw(N, n * b);
   MatrixXd Y(n, robot.parameters());
+  const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
   for (Index k = 0; k < N; ++k) {
     const Status status = robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y);
     if (status != Status::ok) throw Error(message(status), log.file, "check that the robot file belongs to this machine");
+    for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
+      Y.col(coulomb[joint]) *= log.coulomb_share(k, static_cast<Index>(joint));
     for (Index c = 0; c < b; ++c) {
       const auto column = base.independent[static_cast<std::size_t>(c)];
       for (Index j = 0; j < n; ++j) raw(k, j * b + c) = Y(j, column);
@@ -41,6 +44,10 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
   const Index n = robot.drives();
   out.Y = base_rows(robot, base, from);
   out.tau = low_passed_rows(from, from.tau);
+  if (from.ripple.size() > 0) {
+    out.ripple = low_passed_rows(from, from.ripple);
+    out.tau -= out.ripple;
+  }
   out.t_s.resize(from.rows);
   for (MatrixXd* m : {&out.q, &out.qd, &out.qdd}) m->resize(from.rows, n);
   out.usable.assign(static_cast<std::size_t>(n), RowMask::Constant(from.rows, true));

@@ -58,12 +58,28 @@ LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& sta
     return thin;
   };
   for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
+  if (log.coulomb_share.size() > 0) log.coulomb_share = rows(log.coulomb_share);
   log.t_s = rows(log.t_s);
   log.first = (log.first - start) / step;
   log.stride /= step;
   log.rate_hz /= static_cast<double>(step);
   log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
   return out;
+}
+
+/// A bristle does not turn with the sign of a noisy rate: the share of Coulomb's friction is given the sign that was taken out of it.
+void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& log) {
+  if (log.coulomb_share.size() == 0) return;
+  const Eigen::Array<bool, 1, Eigen::Dynamic> bristle = (log.coulomb_share.array() != 1.0).colwise().any();
+  VectorXd own(robot.friction_joints()), noisy = own;
+  for (Index k = 0; k < log.q.rows(); ++k) {
+    if (robot.friction_joint_rates(before.q.row(k).transpose(), before.qd.row(k).transpose(), own) != Status::ok ||
+        robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), noisy) != Status::ok)
+      continue;
+    for (Index joint = 0; joint < own.size(); ++joint) {
+      if (bristle(joint) && own(joint) * noisy(joint) < 0) log.coulomb_share(k, joint) *= -1;
+    }
+  }
 }
 
 }  // namespace
@@ -184,6 +200,7 @@ std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
       log.qd.row(k) += rate.row(sample);
       log.qdd.row(k) += second.row(sample);
     }
+    keep_bristles(model_.robot(), logs_[l].log, log);
     out.push_back(std::move(log));
   }
   return out;

@@ -8,6 +8,7 @@ using Eigen::Index;
 
 namespace {
 
+constexpr double kLeftOver = 1.05;      // rms over floor from which structure that is left is worth a word
 constexpr double kParametersOff = 1.2;  // rms of the given parameters over that of the fitted ones
 
 std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot) {
@@ -22,12 +23,16 @@ std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot
   return text;
 }
 
+const char* torque_unit(const SearchContext& context, std::size_t drive) {
+  return context.robot.description().kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute ? "N m" : "N";
+}
+
 /// A user's own parameters can be off although nothing is missing: the search fits them anew.
 void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
   for (std::size_t j = 0; j < out.drives.size(); ++j) {
     const DriveFit& drive = out.drives[j];
     if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
-    const char* unit = context.robot.description().kind_of_drive(static_cast<int>(j)) == DriveKind::revolute ? "N m" : "N";
+    const char* unit = torque_unit(context, j);
     out.lines.push_back(
         fmt::format("But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
                     drive.rms_given, unit, drive.rms, unit));
@@ -36,13 +41,28 @@ void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
   }
 }
 
+/// Where more is left than noise, in words; empty where nothing is.
+std::string structure_left(const SearchContext& context, const Diagnosis& out) {
+  for (std::size_t j = 0; j < out.drives.size(); ++j) {
+    const DriveFit& drive = out.drives[j];
+    if (drive.p_left >= kStructureChance || drive.rms_after < kLeftOver * drive.floor) continue;
+    return fmt::format(
+        "of drive {} {:.3g} {} are left where noise alone leaves {:.3g}, but no effect of the catalogue explains that on "
+        "every log",
+        j + 1, drive.rms_after, torque_unit(context, j), drive.floor);
+  }
+  return "";
+}
+
 }  // namespace
 
 void say(const SearchContext& context, Diagnosis& out) {
   const RobotDescription& robot = context.robot.description();
   switch (out.verdict) {
     case DiagnosisVerdict::nothing_missing:
-      out.headline = "Nothing is missing: what the model leaves is noise as far as these logs can show.";
+      out.headline = structure_left(context, out).empty()
+                         ? "Nothing is missing: what the model leaves is noise as far as these logs can show."
+                         : "Nothing is named: " + structure_left(context, out) + ".";
       out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
       say_parameters_are_off(context, out);
       return;

@@ -222,14 +222,18 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
   for (MatrixXd* m : {&out.position, &out.velocity, &out.acceleration, &out.bar}) m->resize(N, 3);
   out.J.resize(N, 3 * n);
   out.bar_rate.resize(N);
-  VectorXd without = p;
-  for (const int k : own_friction_) without(k) = 0;
+  VectorXd whole = p, without = p;
+  const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot_) : std::vector<Index>{};
   EffectState state;
   VectorXd tau(n);
   for (Index k = 0; k < N; ++k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
+    for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
+      whole(coulomb[joint]) = log.coulomb_share(k, static_cast<Index>(joint)) * p(coulomb[joint]);
+    without = whole;
+    for (const int column : own_friction_) without(column) = 0;
     if (const Status status = states_->at(q, qd, qdd, state); status != Status::ok) refuse(log, k, status);
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, p, tau); status != Status::ok) refuse(log, k, status);
+    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, whole, tau); status != Status::ok) refuse(log, k, status);
     out.torque.row(k) = tau.transpose();
     if (const Status status = robot_.inverse_dynamics(q, qd, qdd, without, tau); status != Status::ok) refuse(log, k, status);
     out.load.row(k) = tau.transpose();

@@ -275,7 +275,7 @@ std::vector<EffectKind> make_catalogue() {
        "",
        "load",
        Place::drive,
-       {{"share", "", false, 3.0}},
+       {{"share", "", false, 1.0}},
        {{"level", "{F}", Scale::largest_torque, {0.5, 0.6, 0.7, 0.8, 0.88, 0.94}}},
        false,
        false,

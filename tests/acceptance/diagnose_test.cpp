@@ -196,5 +196,120 @@ TEST(MeasuredAxis, HasViscousFrictionThatDiffersByDirectionAndNothingElse) {
   figure("viscous_backward_percent", 100 * std::abs((viscous - by_direction) / 240.4236 - 1), 1.0);
 }
 
+/// A machine with small dirt everywhere, and a Stribeck excess beside it.
+class DirtyLogs : public ::testing::Test {
+ protected:
+  /// Identifies, diagnoses, and compares what is written with what delta-validate says to it.
+  std::map<std::string, std::string> diagnosed(const std::string& folder_of_logs) {
+    const std::string logs = shared_data("mujoco_dirty/README.md") + "/mujoco_dirty/" + folder_of_logs;
+    succeed({"delta-model", "create", "delta4", "--base-radius", "0.16", "--platform-radius", "0.045", "--upper-arm", "0.30",
+             "--strut", "0.72", "--strut-spacing", "0.09", "-o", path("robot.urdf")});
+    (void)run({"delta-identify", path("robot.urdf"), logs + "/fast.csv", logs + "/slow.csv", "-o", path("p.csv")});
+    const ToolResult told =
+        succeed({"delta-diagnose", path("robot.urdf"), "--params", path("p.csv"), logs + "/fast.csv", logs + "/slow.csv",
+                 "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", path("d.csv"), "--effects-out",
+                 path("e.csv"), "--params-out", path("improved.csv"), "--summary", path("s.csv")});
+    EXPECT_NE(told.out.find("friction of drive 2 builds up"), std::string::npos) << told.out;
+    succeed({"delta-validate", path("robot.urdf"), "--params", path("improved.csv"), "--effects", path("e.csv"),
+             logs + "/holdout.csv", "--summary", path("v.csv")});
+    return read_summary(path("s.csv"));
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(DirtyLogs, MissNothingWhereNothingIsHidden) {
+  if (shared_data("mujoco_dirty/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
+  const auto summary = diagnosed("nothing_hidden");
+  EXPECT_EQ(summary.at("verdict"), "nothing-missing");
+  EXPECT_EQ(summary.at("effect"), "");
+}
+
+TEST_F(DirtyLogs, NameTheStribeckEffectAndKeepTheDirt) {
+  if (shared_data("mujoco_dirty/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
+  const auto summary = diagnosed("stribeck_1");
+  EXPECT_EQ(summary.at("verdict"), "named");
+  EXPECT_EQ(summary.at("effect"), "stribeck");
+  EXPECT_EQ(summary.at("joint"), "drive1");
+  figure("stribeck_size_percent", 100 * std::abs(number(summary, "amplitude") / 0.8 - 1), 5);
+  EXPECT_NE(read_parameters(path("improved.csv")).find("drive2.presliding"), nullptr);
+  // What is proved is what is written.
+  const auto validated = read_summary(path("v.csv"));
+  for (int drive = 1; drive <= 4; ++drive) {
+    const double rms = number(validated, fmt::format("rms_residual_drive{}", drive));
+    EXPECT_NEAR(number(summary, fmt::format("holdout_rms_written_drive{}", drive)), rms, 1e-4 * rms) << drive;
+  }
+  EXPECT_LT(number(summary, "holdout_rms_written_drive1"), 0.3 * number(summary, "holdout_rms_given_drive1"));
+}
+
+struct MeasuredSet {
+  const char* name;
+  Words robot;  ///< flags of delta-model create axis
+  Words train;
+  const char* holdout;
+  Words right;  ///< effects, first or in the set, or verdicts
+};
+
+class DiagnosedDrive : public ::testing::TestWithParam<MeasuredSet> {};
+
+TEST_P(DiagnosedDrive, IsNamedRightOrUndecided) {
+  const std::string data = shared_data("measured/README.md") + "/measured/";
+  if (shared_data("measured/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured";
+  const testing::TemporaryFolder folder;
+  const std::string robot = folder.path("robot.urdf");
+  succeed(Words{"delta-model", "create", "axis", "-o", robot} + GetParam().robot);
+  Words logs;
+  for (const std::string& log : GetParam().train) logs.push_back(data + log);
+  const std::string held = data + GetParam().holdout;
+  succeed(Words{"delta-identify", robot, "-o", folder.path("p.csv")} + logs);
+  succeed(Words{"delta-diagnose", robot, "--params", folder.path("p.csv"), "--holdout", held, "--null-runs", kNullRuns, "-o",
+                folder.path("d.csv"), "--effects-out", folder.path("e.csv"), "--params-out", folder.path("improved.csv"),
+                "--summary", folder.path("s.csv")} +
+          logs);
+  const auto summary = read_summary(folder.path("s.csv"));
+  const std::string found = summary.at("effect").empty() ? summary.at("verdict") : summary.at("effect");
+  bool right = false;
+  for (const std::string& one : GetParam().right) {
+    right |=
+        found == one || (summary.count("confusable_with") > 0 && summary.at("confusable_with").find(one) != std::string::npos);
+  }
+  EXPECT_TRUE(right) << found;
+  // What is written is never worse than what was given.
+  succeed({"delta-validate", robot, "--params", folder.path("p.csv"), held, "--summary", folder.path("given.csv")});
+  succeed({"delta-validate", robot, "--params", folder.path("improved.csv"), "--effects", folder.path("e.csv"), held, "--summary",
+           folder.path("written.csv")});
+  EXPECT_LE(number(read_summary(folder.path("written.csv")), "rms_residual_drive1"),
+            number(read_summary(folder.path("given.csv")), "rms_residual_drive1"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Diagnosing, DiagnosedDrive,
+                         ::testing::Values(MeasuredSet{"screw1",
+                                                       {"--arm", "0.01", "--gravity-direction", "0,1,0"},
+                                                       {"screw1/stairs_train.csv"},
+                                                       "screw1/stairs_holdout.csv",
+                                                       {"stribeck"}},
+                                           MeasuredSet{"ur10e_joint3",
+                                                       {"--arm", "0.6"},
+                                                       {"ur10e/joint3_train.csv"},
+                                                       "ur10e/joint3_holdout.csv",
+                                                       {"load_dependent_friction"}},
+                                           MeasuredSet{"ur10e_joint5",
+                                                       {"--arm", "0.15", "--gravity-direction", "0,1,0"},
+                                                       {"ur10e/joint5_train.csv"},
+                                                       "ur10e/joint5_holdout.csv",
+                                                       {"nothing-missing", "presliding", "shear_thinning"}},
+                                           MeasuredSet{"dfki",
+                                                       {"--arm", "0.5"},
+                                                       {"dfki/ddp.csv", "dfki/dircol.csv"},
+                                                       "dfki/pd_ident.csv",
+                                                       {"time_skew", "current_lag", "not-testable"}},
+                                           MeasuredSet{"dfki_other_rate",
+                                                       {"--arm", "0.5"},
+                                                       {"dfki/ddp.csv"},
+                                                       "dfki/dircol.csv",
+                                                       {"time_skew", "current_lag", "not-testable"}}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
 }  // namespace
 }  // namespace deltadyn::acceptance

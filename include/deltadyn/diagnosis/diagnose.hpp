@@ -21,7 +21,7 @@ enum class DiagnosisVerdict { nothing_missing, named, confusable, unknown_struct
 [[nodiscard]] const char* verdict_name(DiagnosisVerdict verdict);
 
 struct DiagnosisOptions {
-  ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false
+  ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false; bristles and ripples are the model's
   bool choose_cutoff = true;
   double false_naming_rate = 0.01;  ///< chance that an effect is named on logs that miss nothing
   int max_effects = 3;
@@ -62,6 +62,17 @@ struct ConsideredEffect {
   std::vector<std::string> like;       ///< effects whose signature these motions hardly tell apart, with their |cosine|
 };
 
+/// A drive on the hold-out log, as delta-validate shows it for the model as given and for the one that is written.
+struct HoldoutFigure {
+  double rms_given = 0, rms_written = 0;  ///< rows near velocity reversals left out [N m | N]
+  Eigen::Index rows_given = 0, rows_written = 0;
+};
+
+/// Rows of one drive in one log that the search uses.
+struct RowCount {
+  Eigen::Index whole = 0, part = 0, all = 0;  ///< used whole; in the directions that no reversal hides; of the log
+};
+
 /// How one drive fits.
 struct DriveFit {
   /// On the training logs: base model fitted to them, with the named effects, no model can do better.
@@ -70,6 +81,7 @@ struct DriveFit {
   double rms_holdout = 0, floor_holdout = 0;            ///< of the fitted base model on the hold-out log; 0 without one
   double structure = 0;                                 ///< share of the base model's residual variance that follows the motion
   double p_value = 1, p_left = 1;                       ///< of the structure: before, and beside the named effects
+  std::vector<RowCount> rows;                           ///< one a training log, then the hold-out log
   std::vector<std::pair<std::string, double>> follows;  ///< coordinates that it follows, with their share, largest first
 };
 
@@ -98,6 +110,8 @@ struct Diagnosis {
   std::optional<double> needed_s;                    ///< not_testable for shortness: length that would do
   std::vector<Effect> effects;                       ///< of the improved model: those it had before and the named ones
   std::optional<Identification> improved;            ///< parameters with the effects
+  std::vector<HoldoutFigure> holdout_figures;  ///< one a drive, of the improved model; empty without one or without hold-out log
+  double holdout_cutoff_hz = 0;                ///< of these figures; 0: the one that delta-validate chooses
   std::vector<DiagnosisTrace> traces;
   double cutoff_hz = 0, encoder_share = 0, total_time_s = 0;
   int null_runs = 0;

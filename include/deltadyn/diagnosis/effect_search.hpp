@@ -35,9 +35,10 @@ struct Fit {
 
 class EffectSearch {
  public:
-  /// \param known  effects of the model that is being diagnosed; their amplitudes are fitted along
+  /// \param known       effects of the model that is being diagnosed; their amplitudes are fitted along
+  /// \param presliding  displacements of bristles that the rows hold: these are no hypotheses
   EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
-               const std::vector<Effect>& known);
+               const std::vector<Effect>& known, const Eigen::VectorXd& presliding = {});
 
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   [[nodiscard]] const std::vector<LogRows>& logs() const { return logs_; }

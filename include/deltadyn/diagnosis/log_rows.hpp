@@ -18,7 +18,8 @@ struct LogRows {
   PreparedLog log;
   int number = 1;                  ///< among the training logs, from 1
   std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x base parameters (and further columns, see append)
-  Eigen::MatrixXd tau;             ///< rows x drives
+  Eigen::MatrixXd tau;             ///< rows x drives, without the torque of the known ripples
+  Eigen::MatrixXd ripple;          ///< rows x drives: that torque; empty: none
   std::vector<RowMask> usable;     ///< for each drive: rows with no reversal and no repaired sample in reach
   std::vector<RowMask> present;    ///< for each drive: rows of which something is known, in all directions but the unknown ones
   std::vector<std::vector<UnknownTorque>> unknown;  ///< for each drive: what reversals add to the rows that are present
@@ -29,7 +30,7 @@ struct LogRows {
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
 
-/// Rows of the base columns alone, low-passed: for each drive rows x base parameters. For any motion in place of the log's own.
+/// Rows of the base columns alone, low-passed, with the bristles' share of Coulomb's friction: for each drive rows x base parameters. For any motion in place of the log's own.
 [[nodiscard]] std::vector<Eigen::MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log);
 
 /// \param number  of the log among the training logs, from 1

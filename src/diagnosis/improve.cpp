@@ -1,0 +1,324 @@
+#include "improve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <utility>
+
+#include "deltadyn/runtime/error.hpp"
+
+#include "diagnosis_steps.hpp"
+#include "written_proof.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kAsGood = 1.02;    // rms of a simpler name over that of another one from which it is worse
+constexpr double kSameWaves = 0.1;  // of a ripple's waves: two are the same
+constexpr double kSettled = 0.1;    // change of an amplitude that least squares without noise model may make
+
+/// Names, the model with them, and its proof.
+struct Trial {
+  std::vector<NamedEffect> named;
+  std::vector<Effect> effects;  ///< of the model: those it had and the named ones
+  Identification improved;
+  WrittenProof proof;
+};
+
+/// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
+/// them come out small, or rows near reversals belong to it that follow no law, those of the search stay.
+void settle_amplitudes(const ImproveInput& input, const std::vector<Log>& logs, Trial& trial) {
+  const std::vector<Effect> settled = estimate_amplitudes(input.robot, logs, input.p_fit, trial.effects, trial.improved);
+  for (std::size_t k = 0; k < settled.size(); ++k) {
+    Effect& effect = trial.effects[k];
+    const VectorXd change = settled[k].amplitude - effect.amplitude;
+    if (effect.amplitude_std.size() != change.size()) effect.amplitude_std = settled[k].amplitude_std;
+    const bool masked = std::count(input.masked.begin(), input.masked.end(), effect.joint) > 0;
+    if (!masked && change.norm() <= kSettled * effect.amplitude.norm()) {
+      effect.amplitude = settled[k].amplitude;
+      if (effect_kind(effect.id).tied) effect.shape(0) = effect.amplitude(0);
+      effect.amplitude_std = effect.amplitude_std.cwiseMax(change.cwiseAbs());
+    }
+    for (NamedEffect& one : trial.named) {
+      if (one.effect.id == effect.id && one.effect.joint == effect.joint) one.effect = effect;
+    }
+  }
+}
+
+void fit_improved(const ImproveInput& input, double cutoff_hz, bool keep_extras, Trial& trial) {
+  trial.effects = input.known;
+  for (const NamedEffect& one : trial.named) trial.effects.push_back(one.effect);
+  // As delta-identify takes the logs: a delay that no effect explains is no part of the model.
+  const std::vector<Log> logs = as_validated(input.robot, input.logs, trial.effects);
+  trial.improved = identify_beside(input, logs, trial.effects, cutoff_hz, keep_extras);
+  settle_amplitudes(input, logs, trial);
+  trial.improved = identify_beside(input, logs, trial.effects, cutoff_hz, keep_extras);
+}
+
+WrittenModel given_model(const ImproveInput& input) {
+  const ProcessingOptions& own = input.options.processing;
+  return {input.p, input.known, own.presliding, own.presliding_damping_s, own.ripples};
+}
+
+WrittenModel improved_model(const Trial& trial) {
+  const ProcessingOptions& own = trial.improved.processing;
+  return {trial.improved.fit.p, trial.effects, own.presliding, own.presliding_damping_s, own.ripples};
+}
+
+std::vector<int> reached_drives(const std::vector<NamedEffect>& named) {
+  std::vector<int> out;
+  for (const NamedEffect& one : named) {
+    for (const int j : one.drives) {
+      if (std::count(out.begin(), out.end(), j) == 0) out.push_back(j);
+    }
+  }
+  return out;
+}
+
+/// Fits the model with the names, with bristles found anew and, if that is not borne out, with those of the search.
+Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named, double cutoff_hz) {
+  const ProcessingOptions& own = input.extras;
+  const bool has_extras = (own.presliding.array() > 0).any() || !own.ripples.empty();
+  Trial best;
+  for (const bool keep_extras : {false, true}) {
+    if (keep_extras && (!has_extras || best.proof.passed())) break;
+    Trial trial;
+    trial.named = named;
+    fit_improved(input, cutoff_hz, keep_extras, trial);
+    trial.proof = prove_written(input.robot, *input.holdout, given_model(input), improved_model(trial), reached_drives(named),
+                                cutoff_hz, input.options);
+    if (!keep_extras || trial.proof.passed()) best = std::move(trial);
+  }
+  return best;
+}
+
+/// A name with another of its set in its place, and itself in the set.
+NamedEffect swapped(NamedEffect one, std::size_t alternative) {
+  EffectCandidate own = one;
+  std::swap(static_cast<EffectCandidate&>(one), one.confusable[alternative]);
+  one.confusable[alternative] = std::move(own);
+  return one;
+}
+
+/// Parameters that a fit spends on an effect.
+int freedom(const Effect& effect) {
+  const EffectKind& kind = effect_kind(effect.id);
+  return static_cast<int>(kind.amplitudes.size() + kind.shapes.size()) - (kind.tied ? 1 : 0);
+}
+
+/// What the hold-out log says to one name and those that the training logs cannot tell from it: the one that it bears out, and of those
+/// the simplest. Alternatives of one name only, as those of several grow with their product.
+Trial try_set(const ImproveInput& input, const NamedEffect& named, double cutoff_hz) {
+  Trial best = try_names(input, {named}, cutoff_hz);
+  const bool alone = best.proof.passed();
+  std::vector<std::size_t> refused;
+  for (std::size_t k = 0; k < named.confusable.size(); ++k) {
+    const bool simpler = freedom(named.confusable[k].effect) < freedom(best.named.front().effect);
+    if (alone && !simpler) continue;
+    Trial other = try_names(input, {swapped(named, k)}, cutoff_hz);
+    if (!other.proof.passed()) {
+      refused.push_back(k);
+    } else if (!best.proof.passed() || other.proof.rms_ratio < kAsGood * best.proof.rms_ratio) {
+      best = std::move(other);
+    }
+  }
+  if (!best.proof.passed()) return best;
+  // The set is what the hold-out log leaves of it.
+  std::vector<EffectCandidate>& set = best.named.front().confusable;
+  const auto is_out = [&](const EffectCandidate& one) {
+    const bool first = one.effect.id == named.effect.id && one.effect.joint == named.effect.joint;
+    return (first && !alone) || std::any_of(refused.begin(), refused.end(), [&](std::size_t k) {
+             const Effect& out = named.confusable[k].effect;
+             return out.id == one.effect.id && out.joint == one.effect.joint;
+           });
+  };
+  std::erase_if(set, is_out);
+  for (EffectCandidate& one : set) {
+    if (one.why.empty()) one.why = "it does not predict the hold-out log better, with more parameters";
+  }
+  return best;
+}
+
+std::string names_of(const std::vector<NamedEffect>& named) {
+  std::string text;
+  for (const NamedEffect& one : named) text += (text.empty() ? "" : " and ") + one.name + " at " + one.joint;
+  return text;
+}
+
+/// What the proof said against the names.
+std::string refusal(const ImproveInput& input, const Trial& trial) {
+  const WrittenProof& proof = trial.proof;
+  const std::vector<int> touched = reached_drives(trial.named);
+  const int j = proof.worse_drive >= 0 ? proof.worse_drive : (touched.empty() ? 0 : touched.front());
+  const HoldoutFigure& figure = proof.drives[static_cast<std::size_t>(j)];
+  const char* unit = input.robot.description().kind_of_drive(j) == DriveKind::revolute ? "N m" : "N";
+  const bool one = trial.named.size() == 1;
+  return fmt::format(
+      "{} fit{} the training logs, but the model with {} leaves {:.3g} {} of the hold-out log at drive {} where the model as "
+      "given "
+      "leaves {:.3g}: not named, not written.",
+      names_of(trial.named), one ? "s" : "", one ? "it" : "them", figure.rms_written, unit, j + 1, figure.rms_given);
+}
+
+/// The hold-out log has too few rows to tell.
+void say_untestable(const Trial& trial, Diagnosis& out) {
+  const std::vector<int> touched = reached_drives(trial.named);
+  const auto j = static_cast<std::size_t>(touched.empty() ? 0 : touched.front());
+  const HoldoutFigure& figure = trial.proof.drives[j];
+  const Index rows = std::min(figure.rows_given, figure.rows_written);
+  out.verdict = DiagnosisVerdict::not_testable;
+  out.headline = fmt::format(
+      "Not testable: {} fits the training logs, but the hold-out log has {} rows of drive {} away from "
+      "reversals, too few to bear it out.",
+      names_of(trial.named), rows, j + 1);
+  out.next.push_back("Give a longer hold-out log.");
+}
+
+/// No name is left.
+void withdraw(const ImproveInput& input, double largest_share, Diagnosis& out) {
+  double above = 0;
+  for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
+  const bool overt = largest_share > kMaterialStructure && above > kOvertFloor;
+  out.verdict = overt ? DiagnosisVerdict::unknown_structure : DiagnosisVerdict::nothing_missing;
+  if (overt) out.region = out.named.front().region;
+  for (ConsideredEffect& one : out.considered) {
+    if (one.ruling == kFound) one.ruling = "fits, but the hold-out log does not bear it out";
+  }
+  out.named.clear();
+  out.improved.reset();
+  out.effects = input.known;
+  out.explained_share = 0;
+  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+  out.p_no_gain = 1;
+}
+
+/// The figures that stand in the diagnosis are those of the written model.
+void take(Trial trial, bool identify, Diagnosis& out) {
+  out.named = std::move(trial.named);
+  out.effects = std::move(trial.effects);
+  if (identify) out.improved = std::move(trial.improved);
+  out.holdout_figures = trial.proof.drives;
+  out.holdout_cutoff_hz = trial.proof.cutoff_hz;
+  if (out.holdout_figures.empty()) return;
+  for (NamedEffect& one : out.named) {
+    double before = 0, after = 0;
+    for (const int j : one.drives) {
+      const HoldoutFigure& figure = out.holdout_figures[static_cast<std::size_t>(j)];
+      before += figure.rms_given * figure.rms_given;
+      after += figure.rms_written * figure.rms_written;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, one.drives.size()));
+    one.rms_before = std::sqrt(before / count);
+    one.rms_after = std::sqrt(after / count);
+    one.rms_floor = std::min(one.rms_floor, one.rms_after);
+  }
+}
+
+/// Known ripples that were not found again and that no effect stands for.
+std::vector<Ripple> lost_ripples(const std::vector<Ripple>& found, const std::vector<Ripple>& known,
+                                 const std::vector<Effect>& effects) {
+  const auto near = [](double one, double other) { return std::abs(one - other) < kSameWaves * std::abs(other); };
+  std::vector<Ripple> lost = known;
+  std::erase_if(lost, [&](const Ripple& ripple) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const Ripple& one) { return one.drive == ripple.drive && near(one.n, ripple.n); }) ||
+           std::any_of(effects.begin(), effects.end(), [&](const Effect& one) {
+             return one.id == EffectId::torque_ripple && one.joint == ripple.drive && near(one.shape(0), ripple.n);
+           });
+  });
+  return lost;
+}
+
+Effect effect_of(const Ripple& ripple) {
+  Effect effect;
+  effect.id = EffectId::torque_ripple;
+  effect.joint = ripple.drive;
+  effect.shape = VectorXd::Constant(1, ripple.n);
+  effect.amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine);
+  return effect;
+}
+
+}  // namespace
+
+Identification identify_beside(const ImproveInput& input, const std::vector<Log>& logs, const std::vector<Effect>& effects,
+                               double cutoff_hz, bool keep_extras) {
+  IdentificationOptions identification;
+  identification.processing = input.options.processing;
+  identification.processing.cutoff_hz = cutoff_hz;
+  identification.choose_cutoff = false;
+  identification.threads = input.options.threads;
+  const double motion_hz = identification.processing.motion_over_pass * cutoff_hz;
+  const std::vector<Log> rest = without_effects(input.robot, logs, input.p_fit, effects, motion_hz);
+  if (keep_extras) {
+    identification.processing.presliding = input.extras.presliding;
+    identification.processing.presliding_damping_s = input.extras.presliding_damping_s;
+    identification.processing.ripples = input.extras.ripples;
+    identification.reversals = Reversals::mask;
+  } else {
+    identification.processing.presliding.resize(0);
+    identification.processing.presliding_damping_s.resize(0);
+    identification.processing.ripples.clear();
+  }
+  Identification out = identify(input.robot, rest, input.p, input.p_std, identification);
+  // Beside other structure a ripple is not claimed anew: known ones stay, their torque taken off before the fit.
+  const std::vector<Ripple> lost =
+      keep_extras ? std::vector<Ripple>() : lost_ripples(out.processing.ripples, input.extras.ripples, effects);
+  if (!lost.empty()) {
+    std::vector<Effect> waves;
+    for (const Ripple& ripple : lost) waves.push_back(effect_of(ripple));
+    out = identify(input.robot, without_effects(input.robot, rest, input.p_fit, waves, motion_hz), input.p, input.p_std,
+                   identification);
+    out.processing.ripples.insert(out.processing.ripples.end(), lost.begin(), lost.end());
+  }
+  if (keep_extras) {
+    // Bristles that were not looked for have their values from the search.
+    for (const double displacement : out.processing.presliding) {
+      PreslidingJoint joint;
+      joint.displacement = displacement;
+      out.presliding.push_back(joint);
+    }
+    for (Index j = 0; j < std::min<Index>(out.processing.presliding_damping_s.size(), out.processing.presliding.size()); ++j)
+      out.presliding[static_cast<std::size_t>(j)].damping_s = out.processing.presliding_damping_s(j);
+  }
+  return out;
+}
+
+void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosis& out) {
+  if (out.named.empty() || (out.verdict != DiagnosisVerdict::named && out.verdict != DiagnosisVerdict::confusable)) return;
+  try {
+    if (input.holdout == nullptr) {
+      Trial trial;
+      trial.named = out.named;
+      if (input.options.identify) {
+        fit_improved(input, out.cutoff_hz, false, trial);
+        take(std::move(trial), true, out);
+      }
+      return;
+    }
+    for (std::vector<NamedEffect> named = out.named; !named.empty(); named.pop_back()) {
+      Trial trial = named.size() == 1 ? try_set(input, named.front(), out.cutoff_hz) : try_names(input, named, out.cutoff_hz);
+      if (trial.proof.passed()) {
+        take(std::move(trial), input.options.identify, out);
+        out.verdict = verdict_of(out.named);
+        return;
+      }
+      if (!trial.proof.testable()) {
+        withdraw(input, largest_share, out);
+        say_untestable(trial, out);
+        return;
+      }
+      out.lines.push_back(refusal(input, trial));
+    }
+    withdraw(input, largest_share, out);
+  } catch (const Error& error) {
+    out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
+    withdraw(input, largest_share, out);
+  }
+}
+
+}  // namespace deltadyn::detail

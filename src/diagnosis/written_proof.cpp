@@ -1,0 +1,130 @@
+#include "written_proof.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "deltadyn/identification/log_gate.hpp"
+
+namespace deltadyn::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+namespace {
+
+constexpr double kClearlyBetter = 0.98;  // rms of the improved model over that of the given one
+constexpr double kChance = 0.025;        // of a gain that is none
+constexpr double kWorse = 1.05;          // rms of a named drive over that of the given model from which the improved one is worse
+constexpr double kWorseElsewhere = 1.2;  // the same of any other drive, whose parameters are fitted along
+constexpr double kBlock_s = 0.25;        // longer than the memory of the noise
+constexpr int kResamples = 1000;
+constexpr std::size_t kFewestBlocks = 12;  // from which they say anything about the noise
+
+struct Block {
+  double before = 0, after = 0;
+};
+
+/// Squares of both residuals in rows that both models answer for, in units of the given model's, by blocks of time.
+std::vector<Block> blocks_of(const Prediction& before, const Prediction& after, const std::vector<int>& drives) {
+  std::vector<Block> blocks;
+  if (before.rows() != after.rows() || before.rows() < 2) return blocks;
+  const auto per_block = std::max<Index>(1, static_cast<Index>(kBlock_s / (before.t_s(1) - before.t_s(0))));
+  const MatrixXd e0 = before.residual(), e1 = after.residual();
+  for (const int j : drives) {
+    const auto rows = (before.usable(j, false) && after.usable(j, false)).eval();
+    const double scale =
+        rows.select(e0.col(j).array(), 0.0).square().sum() / std::max<double>(1, static_cast<double>(rows.count()));
+    if (!(scale > 0)) continue;
+    for (Index first = 0; first < before.rows(); first += per_block) {
+      const Index count = std::min(per_block, before.rows() - first);
+      const auto use = rows.segment(first, count);
+      if (!use.any()) continue;
+      blocks.push_back({use.select(e0.col(j).segment(first, count).array(), 0.0).square().sum() / scale,
+                        use.select(e1.col(j).segment(first, count).array(), 0.0).square().sum() / scale});
+    }
+  }
+  return blocks;
+}
+
+double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::size_t> pick(0, blocks.size() - 1);
+  int losses = 0;
+  for (int k = 0; k < kResamples; ++k) {
+    double gain = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const Block& one = blocks[pick(random)];
+      gain += one.before - one.after;
+    }
+    losses += gain <= 0 ? 1 : 0;
+  }
+  return (losses + 1.0) / (kResamples + 1.0);
+}
+
+/// \param touched  drives that the names reach
+WrittenProof compare(const Validation& before, const Validation& after, const std::vector<int>& touched, std::uint64_t seed) {
+  WrittenProof out;
+  for (std::size_t j = 0; j < before.drives.size(); ++j) {
+    const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
+    out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
+    const bool named = std::find(touched.begin(), touched.end(), static_cast<int>(j)) != touched.end();
+    const double worse = named ? kWorse : kWorseElsewhere;
+    // Rows near reversals count where the given model answers for them.
+    const bool near = b.reversal_rows < a.reversal_rows || b.rms_with_reversals < kWorse * b.rms_residual;
+    const bool is_worse = a.rms_residual > worse * b.rms_residual ||
+                          (near && a.rms_with_reversals > worse * std::max(b.rms_with_reversals, b.rms_residual));
+    if (is_worse && out.worse_drive < 0) out.worse_drive = static_cast<int>(j);
+  }
+  const std::vector<Block> blocks = blocks_of(before.logs.front().prediction, after.logs.front().prediction, touched);
+  out.blocks = blocks.size();
+  if (blocks.empty()) return out;
+  double b = 0, a = 0;
+  for (const Block& block : blocks) {
+    b += block.before;
+    a += block.after;
+  }
+  out.rms_ratio = std::sqrt(a / b);
+  out.p_no_gain = chance_of_no_gain(blocks, seed);
+  return out;
+}
+
+}  // namespace
+
+bool WrittenProof::testable() const {
+  return blocks >= kFewestBlocks;
+}
+
+bool WrittenProof::passed() const {
+  return testable() && rms_ratio < kClearlyBetter && p_no_gain < kChance && worse_drive < 0;
+}
+
+std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const std::vector<Effect>& effects) {
+  GateOptions gate;
+  gate.keep_delay = holds_timing(effects);
+  return examine_logs(robot, std::move(logs), {}, {}, gate).logs;
+}
+
+WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given, const WrittenModel& improved,
+                           const std::vector<int>& touched, double search_hz, const DiagnosisOptions& options) {
+  // A delay that the improved model explains is in the log of both: else the check would have mended what one of them lacks.
+  const bool keep_delay = holds_timing(improved.effects);
+  const std::vector<Log> logs = as_validated(robot, {holdout}, improved.effects);
+  ProcessingOptions processing = options.processing;
+  const auto proof_with = [&](bool choose_cutoff) {
+    const auto validation_of = [&](const WrittenModel& model) {
+      return validate_written(robot, logs, model, processing, choose_cutoff, keep_delay, options.threads).validation;
+    };
+    return compare(validation_of(given), validation_of(improved), touched, options.seed);
+  };
+  WrittenProof out = proof_with(options.choose_cutoff);
+  if (out.testable() || !options.choose_cutoff) return out;
+  // A cut-off that leaves too little beside reversals gives way to the one of the search.
+  processing.cutoff_hz = search_hz;
+  WrittenProof wider = proof_with(false);
+  wider.cutoff_hz = search_hz;
+  return wider.testable() ? wider : out;
+}
+
+}  // namespace deltadyn::detail

@@ -1,0 +1,36 @@
+#pragma once
+
+/// \file
+/// The proof of what is written: the model as given and the improved one on the hold-out log, on the path of delta-validate.
+
+#include <string>
+#include <vector>
+
+#include "deltadyn/diagnosis/diagnose.hpp"
+#include "deltadyn/identification/written_model.hpp"
+
+namespace deltadyn::detail {
+
+struct WrittenProof {
+  std::vector<HoldoutFigure> drives;
+  double rms_ratio = 1;    ///< improved over given, over the drives that the names reach, each in units of its own residual
+  double p_no_gain = 1;    ///< chance that the improved model is no better (paired block bootstrap)
+  int worse_drive = -1;    ///< from 0: it got worse; -1: none
+  std::size_t blocks = 0;  ///< of rows that both models answer for
+  double cutoff_hz = 0;    ///< that delta-validate must be given for these figures; 0: the one that it chooses
+  /// Are there rows enough for a proof either way?
+  [[nodiscard]] bool testable() const;
+  [[nodiscard]] bool passed() const;
+};
+
+/// The hold-out log as delta-validate takes it: a delay that is certain is removed, unless the effects explain it.
+[[nodiscard]] std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const std::vector<Effect>& effects);
+
+/// \param touched    drives from 0 that the named effects reach
+/// \param search_hz  cut-off of the search, for hold-out logs in which the chosen one leaves too few rows
+/// Throws deltadyn::Error as validate_written() does.
+[[nodiscard]] WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given,
+                                         const WrittenModel& improved, const std::vector<int>& touched, double search_hz,
+                                         const DiagnosisOptions& options);
+
+}  // namespace deltadyn::detail

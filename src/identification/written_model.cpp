@@ -1,0 +1,43 @@
+#include "deltadyn/identification/written_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "deltadyn/identification/effect_torque.hpp"
+#include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/identification/model_band.hpp"
+
+namespace deltadyn {
+
+bool holds_timing(const std::vector<Effect>& effects) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Effect& one) { return one.id == EffectId::time_skew || one.id == EffectId::current_lag; });
+}
+
+WrittenValidation validate_written(const Robot& robot, std::vector<Log> logs, const WrittenModel& model,
+                                   ProcessingOptions processing, bool choose_cutoff, bool keep_delay, int threads) {
+  const BaseParameters base = find_base_parameters(robot);
+  if (processing.filter && choose_cutoff) {
+    // A delay that is left in the logs must not end the band in which the model holds.
+    const bool delayed = keep_delay || holds_timing(model.effects);
+    const std::vector<Log> mended = delayed ? examine_logs(robot, logs, {}, {}).logs : std::vector<Log>();
+    processing.cutoff_hz = choose_model_cutoff(robot, base, delayed ? mended : logs, processing, threads).cutoff_hz;
+  }
+  processing.presliding = model.presliding;
+  processing.presliding_damping_s = model.presliding_damping_s;
+  processing.ripples = model.ripples;
+  WrittenValidation out;
+  if (model.effects.empty() && !keep_delay) {
+    const FineDelay found = find_fine_delay(robot, base, logs, processing, &model.p);
+    if (found.certain) {
+      logs = without_delay(std::move(logs), found.delay_s);
+      out.fine_delay = found;
+    }
+  }
+  const double motion_hz = processing.motion_over_pass * processing.cutoff_hz;
+  out.validation = validate(robot, without_effects(robot, logs, model.p, model.effects, motion_hz), model.p, processing, threads);
+  out.logs = std::move(logs);
+  return out;
+}
+
+}  // namespace deltadyn
