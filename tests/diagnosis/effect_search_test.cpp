@@ -1,0 +1,73 @@
+#include "deltadyn/diagnosis/effect_search.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "identification/axis_log.hpp"
+#include "support/descriptions.hpp"
+
+namespace deltadyn {
+namespace {
+
+using namespace testing_support;
+
+/// One drive whose torque holds a slow wave over the position besides: `share` of a wave over its range.
+struct Searched {
+  std::unique_ptr<Robot> robot = make_robot(axis_description(DriveKind::revolute));
+  EffectModel model{*robot};
+  std::vector<LogRows> logs;
+  GenericBasis basis;
+  double range = 0;
+
+  explicit Searched(double share) {
+    AxisLog plain;
+    Log log = plain.make();
+    range = log.q.maxCoeff() - log.q.minCoeff();
+    const double n = share * 2 * std::numbers::pi / range;
+    log.tau.col(0).array() += 0.8 * (n * log.q.col(0).array() + 0.3).cos();
+    ProcessingOptions processing;
+    processing.cutoff_hz = 40;
+    processing.motion_over_pass = 1;
+    processing.torque_cutoff_ratio = 0.6;
+    processing.periods = Periods::ignore;
+    logs.push_back(make_log_rows(*robot, find_base_parameters(*robot), prepare_log(*robot, log, processing), 1));
+    Eigen::VectorXd p = Eigen::VectorXd::Zero(robot->parameters());
+    p.tail(2) << plain.viscous, plain.coulomb;
+    logs.front().signals = model.signals(logs.front().log, p);
+    basis = make_generic_basis(logs);
+  }
+  [[nodiscard]] static std::size_t find(const EffectSearch& search, EffectId id) {
+    const auto& all = search.hypotheses();
+    return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), [&](const Hypothesis& one) { return one.id == id; }) -
+                                    all.begin());
+  }
+};
+
+TEST(EffectSearch, DoesNotLookForBristlesThatTheRowsHold) {
+  const Searched one(0.5);
+  const EffectSearch without(one.model, one.logs, one.basis, {});
+  const EffectSearch with(one.model, one.logs, one.basis, {}, Eigen::VectorXd::Constant(1, 2e-3));
+  EXPECT_LT(Searched::find(without, EffectId::presliding), without.hypotheses().size());
+  EXPECT_EQ(Searched::find(with, EffectId::presliding), with.hypotheses().size());
+  EXPECT_EQ(with.hypotheses().size() + 1, without.hypotheses().size());
+}
+
+// Part of a wave is gravity, load or anything.
+TEST(EffectSearch, RefinesARippleToNoLessThanOneWaveOverTheRange) {
+  const Searched one(0.7);
+  const EffectSearch search(one.model, one.logs, one.basis, {});
+  const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
+  const Fit& fit = search.refine(state, Searched::find(search, EffectId::torque_ripple));
+  ASSERT_GT(fit.gain, 100);
+  EXPECT_GE(fit.effect.shape(0) * one.range, 0.99 * 2 * std::numbers::pi);
+}
+
+TEST(Hypothesis, OfASaturationTakesOffNoMoreThanWhatIsAboveTheLevel) {
+  const Searched one(0.5);
+  const EffectSearch search(one.model, one.logs, one.basis, {});
+  EXPECT_LE(search.hypotheses()[Searched::find(search, EffectId::saturation)].largest(0), 1.0);
+}
+
+}  // namespace
+}  // namespace deltadyn
