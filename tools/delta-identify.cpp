@@ -104,7 +104,14 @@ class Identify {
     tools::ProgressBar bar("identifying");
     IdentificationOptions with_progress = options;
     with_progress.progress = [&bar](double share) { bar.update(share); };
-    Identification result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
+    Identification result;
+    try {
+      result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
+    } catch (const Error&) {
+      // What a faulty log does to the fit is not the news.
+      if (!gate.fault()) throw;
+      return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-identify");
+    }
     if (effects.empty() && !gate_.keeps_delay()) {
       if (const auto found = tools::mend_fine_delay(*robot, result.base, result.processing, logs, run.summary)) {
         findings.push_back(*found);

@@ -32,8 +32,8 @@ bool coarse(const Log& log, const VectorXd& step) {
 
 }  // namespace
 
-VectorXd encoder_std(const std::vector<Log>& logs, double motion_hz,
-                     const std::function<VectorXd(const std::vector<Log>&)>& estimate) {
+Eigen::MatrixXd encoder_covariance(const std::vector<Log>& logs, double motion_hz,
+                                   const std::function<VectorXd(const std::vector<Log>&)>& estimate) {
   std::vector<Log> middles;
   std::vector<VectorXd> steps;
   bool any = false;
@@ -55,9 +55,9 @@ VectorXd encoder_std(const std::vector<Log>& logs, double motion_hz,
     mean = k == 0 ? found.back() : VectorXd(mean + found.back());
   }
   mean /= kPhases;
-  VectorXd square = VectorXd::Zero(mean.size());
-  for (const VectorXd& one : found) square += (one - mean).cwiseAbs2();
-  return (square / (kPhases - 1)).cwiseSqrt();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+  for (const VectorXd& one : found) covariance += (one - mean) * (one - mean).transpose();
+  return covariance / (kPhases - 1);
 }
 
 }  // namespace deltadyn

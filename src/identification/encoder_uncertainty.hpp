@@ -13,10 +13,10 @@
 
 namespace deltadyn {
 
-/// Standard deviation of each base parameter over the phases of the encoders; empty where all steps are too fine to matter.
+/// Covariance of the base parameters over the phases of the encoders; empty where all steps are too fine to matter.
 /// \param motion_hz  -3 dB point of the filter whose output stands for the motion
 /// \param estimate   base parameters from logs like the given ones
-[[nodiscard]] Eigen::VectorXd encoder_std(const std::vector<Log>& logs, double motion_hz,
-                                          const std::function<Eigen::VectorXd(const std::vector<Log>&)>& estimate);
+[[nodiscard]] Eigen::MatrixXd encoder_covariance(const std::vector<Log>& logs, double motion_hz,
+                                                 const std::function<Eigen::VectorXd(const std::vector<Log>&)>& estimate);
 
 }  // namespace deltadyn

@@ -229,7 +229,7 @@ class Identifier {
       if (bias_) bias = noise_bias(robot_, out_.base, logs, out_.processing, rows_.keep, motion_.instrument);
       return estimate_base_parameters(out_.base, folds, correlation, bias ? &*bias : nullptr).value;
     };
-    const Eigen::VectorXd more = encoder_std(logs_, motion_.instrument, estimate);
+    const Eigen::MatrixXd more = encoder_covariance(logs_, motion_.instrument, estimate);
     if (more.size() > 0) add_uncertainty(out_.base, more, out_.base_estimate);
   }
 

@@ -1,5 +1,6 @@
 #include "deltadyn/identification/least_squares.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -121,13 +122,17 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
   return out;
 }
 
-void add_uncertainty(const BaseParameters& base, const Eigen::VectorXd& std, BaseEstimate& estimate) {
-  const Eigen::VectorXd wider = (1 + std.array().square() / estimate.covariance.diagonal().array()).sqrt();
-  const Eigen::MatrixXd A_B = columns(estimate.A, base.independent) * wider.cwiseInverse().asDiagonal();
-  estimate.covariance = wider.asDiagonal() * estimate.covariance * wider.asDiagonal();
-  estimate.log_det -= 2 * wider.array().log().sum();
-  estimate.A = A_B * base.B;
-  estimate.b = A_B * estimate.value;
+void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covariance, BaseEstimate& estimate) {
+  // With A_B^T A_B the information, its inverse plus C has the information A_B^T (1 + A_B C A_B^T)^-1 A_B.
+  const Eigen::MatrixXd A_B = columns(estimate.A, base.independent);
+  const Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(A_B.rows(), A_B.rows()) + A_B * covariance * A_B.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);
+  const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(1.0).cwiseSqrt();
+  const Eigen::MatrixXd rest = root.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() * A_B;
+  estimate.covariance += covariance;
+  estimate.log_det -= 2 * root.array().log().sum();
+  estimate.A = rest * base.B;
+  estimate.b = rest * estimate.value;
 }
 
 double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,

@@ -12,12 +12,14 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
+#include "gate/clock_drift.hpp"
 #include "gate/given_derivatives.hpp"
 #include "gate/judge.hpp"
 #include "gate/mirror.hpp"
 #include "gate/outside_torque.hpp"
 #include "gate/plausibility.hpp"
 #include "gate/torque_noise.hpp"
+#include "gate/torque_offset.hpp"
 #include "gate/torque_timing.hpp"
 
 namespace deltadyn {
@@ -84,7 +86,12 @@ class Gate {
     }
     judge_timing(sample);
     const Sample mended = take_sample(out_.logs);
-    judge_scale(pick_points(mended, kPoints));
+    const Points points = pick_points(mended, kPoints);
+    if (std::optional<LogFinding> offset = torque_offset(robot_, base_, points)) {
+      out_.findings.push_back(*std::move(offset));
+      return std::move(out_);
+    }
+    judge_scale(points);
     if (!out_.fault() && !coarse_) {
       if (std::optional<LogFinding> mirrored = mirror_finding(robot_, base_, mended))
         out_.findings.push_back(*std::move(mirrored));
@@ -251,9 +258,43 @@ class Gate {
     return timing;
   }
 
-  void judge_timing(const Sample& sample) {
+  /// Two clocks that run apart, if that is what the torque says: said, and taken out unless delays are to be kept.
+  [[nodiscard]] bool judge_drift(const Sample& sample) {
+    const std::optional<ClockDrifts> drifts = find_clock_drift(robot_, base_, out_.logs, sample.band_hz);
+    if (!drifts) return false;
+    const std::vector<int> files = file_numbers(out_.logs);
+    for (std::size_t file = 0; file < drifts->files.size(); ++file) {
+      const ClockDrift& drift = drifts->files[file];
+      if (drift.rate == 0) continue;
+      LogFinding f;
+      f.level = options_.keep_delay ? FindingLevel::warning : FindingLevel::mended;
+      f.key = "drift";
+      f.file = name_of_file(static_cast<int>(file));
+      f.value = drift.rate;
+      f.std = drift.rate_std;
+      f.text = fmt::format(
+          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms over the "
+          "log: {} "
+          "(residual {:.2g} % with one delay, {:.2g} % so)",
+          f.file, 1e3 * drift.first_s, 1e3 * drift.last_s, options_.keep_delay ? "left in place" : "removed",
+          100 * drifts->rms_before, 100 * drifts->rms_after);
+      f.mend = "record torque and position with one clock";
+      out_.findings.push_back(std::move(f));
+      for (std::size_t l = 0; l < out_.logs.size() && !options_.keep_delay; ++l) {
+        if (files[l] == static_cast<int>(file)) take_drift_out(drift, out_.logs[l]);
+      }
+    }
+    return !options_.keep_delay;
+  }
+
+  void judge_timing(Sample sample) {
     Timing timing = steady_timing(sample);
     double noise = relative_torque_noise(out_.logs, sample);
+    // A file in which little moves may only tell its drift once the others are free of theirs.
+    for (int pass = 0; pass < 2 && judge_drift(sample); ++pass) {
+      sample = take_sample(out_.logs);
+      timing = steady_timing(sample);
+    }
     // Where the model does not hold in the whole band, what it lacks passes for a delay: the band is that of the model then.
     if (const std::optional<Sample> narrow = timing.rms_after > clean(noise) ? within_model_band(sample) : std::nullopt) {
       timing = steady_timing(*narrow);

@@ -81,7 +81,10 @@ Check check_consistency(const Identification& identification) {
   }
   Check check{"Price of physical consistency", "", grade(ratio, kCheapConsistency, kDearConsistency), ""};
   check.figure = ratio - 1 < 5e-4 ? "none" : fmt::format("residual +{} ({})", format_percent(ratio - 1, 2), drive_name(drive));
-  if (check.verdict == Verdict::good) {
+  if (check.verdict != Verdict::good && identification.fit.agrees_with_least_squares()) {
+    check.verdict = Verdict::good;
+    check.meaning = "Free base parameters fit better by no more than the noise of torque and encoders makes of it.";
+  } else if (check.verdict == Verdict::good) {
     check.meaning = "Parameters that a real machine can have explain the data as well as free base parameters do.";
   } else {
     check.meaning =

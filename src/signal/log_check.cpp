@@ -15,8 +15,8 @@ using checks::CheckRoom;
 
 /// In this order: a check may rely on those before it.
 constexpr void (*kChecksOfFile[])(CheckRoom&) = {
-    checks::check_length, checks::order_stamps,    checks::check_length,     checks::unwrap,
-    checks::find_repeats, checks::drop_blind_rows, checks::measure_channels,
+    checks::check_length, checks::order_stamps,          checks::check_length,    checks::unwrap,
+    checks::find_repeats, checks::find_frozen_positions, checks::drop_blind_rows, checks::measure_channels,
 };
 
 constexpr void (*kChecksOfPart[])(CheckRoom&) = {

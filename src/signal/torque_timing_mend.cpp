@@ -83,4 +83,23 @@ Eigen::VectorXd mend_timing(const Eigen::Ref<const Eigen::VectorXd>& y, double s
   return out;
 }
 
+Eigen::VectorXd mend_delays(const Eigen::Ref<const Eigen::VectorXd>& y, double step_s,
+                            const Eigen::Ref<const Eigen::VectorXd>& delay_s) {
+  const Index n = y.size();
+  Eigen::VectorXd out(n);
+  for (Index k = 0; k < n; ++k) {
+    const double at = static_cast<double>(k) + delay_s(k) / step_s;  // in samples
+    const auto middle = static_cast<Index>(std::floor(at));
+    double sum = 0, weights = 0;
+    for (Index i = middle - kHalfWidth; i <= middle + kHalfWidth + 1; ++i) {
+      double value = 0, slope = 0;
+      windowed_sinc(0.5, static_cast<double>(kHalfWidth), at - static_cast<double>(i), value, slope);
+      sum += value * y(std::clamp<Index>(i, 0, n - 1));
+      weights += value;
+    }
+    out(k) = sum / weights;
+  }
+  return out;
+}
+
 }  // namespace deltadyn

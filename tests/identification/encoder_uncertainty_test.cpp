@@ -22,7 +22,7 @@ Eigen::VectorXd mean_square_rate(const std::vector<Log>& logs) {
 TEST(EncoderUncertainty, IsTheSpreadOverThePhasesOfTheEncoder) {
   AxisLog axis;
   axis.encoder_bits = 9;
-  const Eigen::VectorXd found = encoder_std({axis.make()}, 10, mean_square_rate);
+  const Eigen::MatrixXd found = encoder_covariance({axis.make()}, 10, mean_square_rate);
   ASSERT_EQ(found.size(), 1);
   // The same over phases of the true motion.
   AxisLog fine;
@@ -38,14 +38,14 @@ TEST(EncoderUncertainty, IsTheSpreadOverThePhasesOfTheEncoder) {
     square += value * value;
   }
   const double std = std::sqrt(square / kPhases - sum * sum / kPhases / kPhases);
-  EXPECT_GT(found(0), std / 2);
-  EXPECT_LT(found(0), std * 2);
+  EXPECT_GT(std::sqrt(found(0, 0)), std / 2);
+  EXPECT_LT(std::sqrt(found(0, 0)), std * 2);
 }
 
 TEST(EncoderUncertainty, FineStepsAddNothing) {
   AxisLog axis;
   axis.encoder_bits = 22;
-  EXPECT_EQ(encoder_std({axis.make()}, 10, mean_square_rate).size(), 0);
+  EXPECT_EQ(encoder_covariance({axis.make()}, 10, mean_square_rate).size(), 0);
 }
 
 // Ten logs of one drive with 12 bit encoders: errors as large as stated, at the chosen cut-off, below and above it.

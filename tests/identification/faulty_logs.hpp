@@ -96,6 +96,7 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
       both("positions and torques against the axis", for_limbs(n, -1, 1), for_limbs(n, -1, 1),
            {"position_sign", "position_zero"}),
   };
+  out.push_back({"torque 2 with another zero", [](Log& log) { log.tau.col(1).array() += 5; }, {"torque_offset"}, 0});
   if (turns) {
     out.push_back(q("degrees", same, for_limbs(n, degrees, degrees), zeros, {"position_scale"}));
     out.push_back(q("degrees of drive 1", same, for_one(n, 0, degrees, 1), zeros, {"position_scale"}));
@@ -107,6 +108,7 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
   } else {
     out.push_back(q("millimetres", same, for_limbs(n, 1000, 1000), zeros, {"position_scale"}));
     out.push_back(q("positions upwards", same, for_limbs(n, -1, 1), zeros, {"position_sign"}));
+    out.push_back(q("zero of carriage 2 off by 60 mm", same, ones, for_one(n, 1, 0.06, 0), {"position_zero"}));
   }
   if (n == 4) {
     out.push_back(t("torque sign of the yaw", same, for_one(n, 3, -1, 1), {"torque_sign"}));

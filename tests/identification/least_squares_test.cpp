@@ -50,9 +50,10 @@ TEST(LeastSquares, FurtherUncertaintyStandsInCovarianceAndFactorAlike) {
   synthetic.torque_noise = 0.2;
   const BaseEstimate before = estimate_base_parameters(base, folds(*robot, synthetic));
   BaseEstimate after = before;
-  const Eigen::VectorXd more = 0.75 * before.std();
-  add_uncertainty(base, more, after);
-  EXPECT_LT((after.std() - 1.25 * before.std()).cwiseQuotient(before.std()).cwiseAbs().maxCoeff(), 1e-9);
+  // Along one direction nine times the variance is added, which makes ten of it.
+  const Eigen::VectorXd direction = before.covariance.col(3) / std::sqrt(before.covariance(3, 3));
+  add_uncertainty(base, 9 * direction * direction.transpose(), after);
+  EXPECT_NEAR(after.covariance(3, 3), 10 * before.covariance(3, 3), 1e-6 * before.covariance(3, 3));
   EXPECT_EQ(after.value, before.value);
   // A p = b is solved by the estimate, with the covariance's inverse as information.
   const Eigen::VectorXd p = any_parameters(base, after.value, robot->parameters());
@@ -61,7 +62,7 @@ TEST(LeastSquares, FurtherUncertaintyStandsInCovarianceAndFactorAlike) {
   for (int k = 0; k < base.count(); ++k) A_B.col(k) = after.A.col(base.independent[static_cast<std::size_t>(k)]);
   const Eigen::MatrixXd identity = A_B * after.covariance * A_B.transpose();
   EXPECT_NEAR(identity.trace(), base.count(), 1e-6 * base.count());
-  EXPECT_NEAR(after.log_det, before.log_det - 2 * base.count() * std::log(1.25), 1e-6);
+  EXPECT_NEAR(after.log_det, before.log_det - std::log(10.0), 1e-6);
 }
 
 TEST(LeastSquares, NamesWhatTheMotionDoesNotShow) {

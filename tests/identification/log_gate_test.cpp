@@ -195,6 +195,28 @@ TEST(LogGateDelay, OfOneDriveOrOneLogOnly) {
   EXPECT_NEAR(finding->value, 3e-3, 2e-4);
 }
 
+TEST_P(LogGate, FindsClocksThatRunApart) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  Recording how;
+  how.noise = 0.03;
+  const std::vector<Log> sound = recorded(*robot, how);
+  std::vector<Log> logs = sound;
+  constexpr double kRate = 8e-4;
+  for (Log& log : logs) {
+    const Eigen::VectorXd late = -kRate * (log.t_s.array() - log.t_s(0));
+    for (Eigen::Index j = 0; j < log.drives(); ++j) log.tau.col(j) = mend_delays(log.tau.col(j), log.sample_time_s(), late);
+  }
+  const GateResult result = examine(*robot, logs);
+  const LogFinding* finding = find(result, {"drift"}, FindingLevel::mended);
+  ASSERT_NE(finding, nullptr) << told(result);
+  EXPECT_NEAR(finding->value, kRate, 0.1 * kRate) << told(result);
+  // What is left of the change.
+  const Eigen::Index middle = result.logs[0].samples() / 2;
+  const double before = (sound[0].tau - logs[0].tau).middleRows(middle, 2000).norm();
+  const double after = (sound[0].tau - result.logs[0].tau).middleRows(middle, 2000).norm();
+  EXPECT_LT(after, 0.3 * before) << told(result);
+}
+
 TEST(LogGateDelay, StaysInTheLogIfAsked) {
   const auto robot = make_robot(delta_description("delta3"));
   std::vector<Log> logs = recorded(*robot);

@@ -12,6 +12,7 @@
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 #include "deltadyn/signal/log.hpp"
+
 #include "support/descriptions.hpp"
 
 namespace deltadyn::testing_support {
@@ -46,8 +47,8 @@ inline Eigen::VectorXd delta_truth(const Robot& robot) {
 struct SyntheticOptions {
   double duration_s = 4.0, rate_hz = 1000.0;
   double base_frequency_hz = 0.25;
-  double torque_noise = 0.0;     ///< of the limbs' drives; a tenth of it on a fourth one [N m]
-  double encoder_step = 0.0;     ///< quantisation of q [rad]
+  double torque_noise = 0.0;  ///< of the limbs' drives; a tenth of it on a fourth one [N m]
+  double encoder_step = 0.0;  ///< quantisation of q [rad]
   bool with_derivatives = true;
   std::uint64_t seed = 1;
 };

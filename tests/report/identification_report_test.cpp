@@ -120,10 +120,16 @@ TEST(IdentificationAssessment, AFitAsGoodAsTheBaseParametersNeedsNoProof) {
 
 TEST(IdentificationAssessment, ConsistencyThatCostsMuchIsTold) {
   SyntheticRun run = copy_of(good_run());
+  ConsistentFitSummary& fit = run.identification.fit;
+  fit.data_cost_free = fit.data_cost - 1e4;
   run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.05;
   EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::caution);
   run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.5;
   EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::bad);
+  // The same rise where chi^2 says that the noise does not tell the two apart.
+  fit.data_cost_free = fit.data_cost - 1;
+  EXPECT_EQ(verdict_on(assess(run), "Price of physical consistency"), Verdict::good);
+  fit.data_cost_free = fit.data_cost - 1e4;
   // The same rise in the rounding of a log without noise.
   run.identification.drives[0].rms = 1e-14;
   run.identification.drives[0].rms_base = run.identification.drives[0].rms / 1.5;

@@ -134,6 +134,18 @@ TEST_P(RepairedLogTest, IsEvenAndCloseToTheTruthAndSaysSo) {
   for (const char* part : GetParam().message) EXPECT_THAT(log.notes.front(), HasSubstr(part));
 }
 
+// A servo that is switched on while the recorder runs, or a recorder that stands still: all positions hold, then go on elsewhere.
+TEST(FrozenPositions, OfAllDrivesAreMissingAndSplitTheLog) {
+  Log log = good_log();
+  for (Eigen::Index k = 0; k < 1000; ++k) log.q.row(k) = log.q.row(0).eval();
+  for (Eigen::Index k = 5000; k < 5400; ++k) log.q.row(k) = log.q.row(5000).eval();
+  const std::vector<Log> parts = check_and_split(log, delta3());
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_NEAR(parts[0].t_s(0), good_log().t_s(1000), 1e-9);
+  EXPECT_NEAR(parts[1].t_s(0), good_log().t_s(5400), 1e-9);
+  EXPECT_THAT(parts[0].notes, ::testing::Contains(HasSubstr("positions of all drives stand still")));
+}
+
 void duplicate_row(Log& log, Eigen::Index row) {
   const Eigen::Index n = log.samples();
   std::vector<Eigen::Index> rows;

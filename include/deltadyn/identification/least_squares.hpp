@@ -44,10 +44,9 @@ struct BaseEstimate {
 [[nodiscard]] BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vector<DriveFold>& folds,
                                                     const std::vector<double>& correlation = {}, const NoiseBias* bias = nullptr);
 
-/// Adds uncertainty from another source to an estimate: its covariance grows by as much, its correlations stay, and A and b say so,
-/// too.
-/// \param std  one a base parameter
-void add_uncertainty(const BaseParameters& base, const Eigen::VectorXd& std, BaseEstimate& estimate);
+/// Adds the covariance of another source of error to an estimate; A and b say so, too.
+/// \param covariance  base x base, positive semidefinite
+void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covariance, BaseEstimate& estimate);
 
 /// Ratio of the variance of a mean to that of white noise with the same variance: 1 + 2 sum of the autocorrelations, with a
 /// Bartlett window over `lags` lags (Newey and West 1987).

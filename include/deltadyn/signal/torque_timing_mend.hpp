@@ -20,4 +20,9 @@ namespace deltadyn {
 [[nodiscard]] Eigen::VectorXd mend_timing(const Eigen::Ref<const Eigen::VectorXd>& y, double step_s, double delay_s,
                                           double lag_s);
 
+/// The same for a delay that changes from sample to sample: x(t) = y(t + delay(t)).
+/// \param delay_s  one a sample [s]
+[[nodiscard]] Eigen::VectorXd mend_delays(const Eigen::Ref<const Eigen::VectorXd>& y, double step_s,
+                                          const Eigen::Ref<const Eigen::VectorXd>& delay_s);
+
 }  // namespace deltadyn

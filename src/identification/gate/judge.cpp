@@ -28,6 +28,7 @@ constexpr double kOutOfReach = 0.01;           // share of poses that a recordin
 constexpr Index kCoarsePoints = 120;           // for searches over a factor or a zero
 constexpr int kBestStarts = 2;                 // of a search, refined
 constexpr double kWorthRefining = 2.0;         // times the smallest residual of all searches
+constexpr double kNoOffset = 0.6;              // steps of a search for a zero
 constexpr double kScaleWorth = 0.25;           // a factor of one torque nearer to 1 is a matter for the fit and the diagnosis
 constexpr int kFewestRowsPerParameter = 2;
 
@@ -138,7 +139,8 @@ class Judge {
       if (one.residual > kWorthRefining * least) continue;
       const PositionFamily& family = *one.family;
       const double value = plausible(family, start, refine(family, start, one.value));
-      const bool nothing = family.geometric ? std::abs(value - 1) < 0.1 : (std::abs(value) < 0.1 && family.sign.front() > 0);
+      const bool nothing =
+          family.geometric ? std::abs(value - 1) < 0.1 : (std::abs(value) < kNoOffset * family.step && family.sign.front() > 0);
       if (!nothing) add_torque_readings(member(family, robot_.description(), value, 0.01), start, before);
     }
   }

@@ -139,6 +139,7 @@ std::vector<double> plausible_values(const PositionFamily& family, const RobotDe
   constexpr double kNearUnit =
       0.08;  // short motions tell a factor no better, and a unit is likelier than a ratio that is as near
   std::vector<double> out;
+  if (!family.geometric && robot.kind_of_drive(family.drives.front()) != DriveKind::revolute) return out;
   if (!family.geometric) {
     const double quarter = std::round(value / (kPi / 2)) * (kPi / 2);
     if (std::abs(value - quarter) < kNear * 2) out.push_back(quarter);
@@ -173,7 +174,15 @@ std::vector<PositionFamily> position_families(const RobotDescription& robot) {
   }
   out.push_back({"position_scale", limbs, factors, true, 0.05, {}, 1});
   for (const int limb : limbs) out.push_back({"position_scale", {limb}, coarse, true, 0.08, {}, 1.5});
-  if (robot.drive_kind != DriveKind::revolute) return out;
+  if (robot.drive_kind != DriveKind::revolute) {
+    // The zeros of all carriages together are a matter of where the plate's is.
+    constexpr double kStep_m = 0.02, kFarthest = 0.5;  // of the strut
+    std::vector<double> lengths;
+    for (double x = -kFarthest * robot.limbs.front().strut; x <= kFarthest * robot.limbs.front().strut; x += kStep_m)
+      lengths.push_back(x);
+    for (const int limb : limbs) out.push_back({"position_zero", {limb}, lengths, false, kStep_m, {1}, 1.6});
+    return out;
+  }
   std::vector<double> angles;
   for (int degrees = -180; degrees < 180; degrees += 10) angles.push_back(degrees * kPi / 180);
   out.push_back({"position_zero", limbs, angles, false, 10 * kPi / 180, {1}, 1.2});
@@ -194,13 +203,19 @@ PositionHypothesis member(const PositionFamily& family, const RobotDescription& 
   h.key = family.key;
   h.changes = family.changes;
   h.drive = family.drives.size() == 1 ? family.drives.front() : -1;
+  const std::string who = drives_in_words(family.drives, robot.drives());
+  if (robot.kind_of_drive(family.drives.front()) != DriveKind::revolute) {
+    h.odd = true;
+    h.words = fmt::format("the zero of the carriage of {} is off: {:+.1f} mm must be added", who, 1e3 * value);
+    h.mend = fmt::format("carriages count along their rails from the base: use {:.4g} m + q", value);
+    return h;
+  }
   double degrees = value * 180 / kPi;
   const double quarter = std::round(degrees / 90) * 90;
   const bool right_angle = std::abs(degrees - quarter) < std::max(1.0, tolerance * 180 / kPi);
   if (right_angle) degrees = quarter;
   h.odd = !right_angle;
   if (!right_angle) h.changes += 0.5;
-  const std::string who = drives_in_words(family.drives, robot.drives());
   h.words =
       sign > 0
           ? fmt::format("the zero of the angle of {} is off: {:+.1f} deg must be added", who, degrees)

@@ -142,6 +142,15 @@ class TimingProblem {
     s.std = deviations(r, J, Z);
   }
 
+  /// Noise that a solution leaves, memory allowed for, in units of Solution::chi2: what a worse timing leaves is no noise.
+  [[nodiscard]] double noise_unit(const Solution& s) const {
+    Eigen::VectorXd r;
+    Eigen::MatrixXd J, Z;
+    linearise(s.free, s.theta, r, J, Z);
+    const double variance = r.squaredNorm() / static_cast<double>(std::max<Index>(1, total_ - basis_.cols()));
+    return variance * std::max(1.0, memory_of(r)) / memory_;
+  }
+
   /// What a timing leaves of the torque's second derivative, with its standard deviation [s^2]: 0 if the timing is of the right kind.
   /// A delay c and a lag c are alike to first order; in the second one they differ by c^2 / 2.
   [[nodiscard]] std::pair<double, double> curvature(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const {
@@ -318,6 +327,19 @@ class TimingProblem {
     return -kLongestDelay_s + static_cast<double>(best) * kScanStep_s;
   }
 
+  /// Memory of a residual, mean over the drives.
+  [[nodiscard]] double memory_of(const Eigen::VectorXd& r) const {
+    double memory = 0;
+    Index row = 0;
+    for (int j = 0; j < drives_; ++j) {
+      const Index count = places_count(j);
+      const Eigen::Array<bool, Eigen::Dynamic, 1> all = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(count, true);
+      memory += noise_correlation(r.segment(row, count), all, 20) / drives_;
+      row += count;
+    }
+    return memory;
+  }
+
   /// Weights by the residual at a common delay, and the memory of that residual.
   void reweigh(double delay) {
     Eigen::MatrixXd slopes;
@@ -326,7 +348,7 @@ class TimingProblem {
     const Eigen::VectorXd tau = r;
     project_out(r);
     Index row = 0;
-    double memory = 0;
+    memory_ = std::max(1.0, memory_of(r.col(0)));
     Eigen::VectorXd weight = weight_;
     for (int j = 0; j < drives_; ++j) {
       const Index count = places_count(j);
@@ -334,12 +356,9 @@ class TimingProblem {
       // Noise-free logs: the filters' own error stays.
       const double floor = 1e-6 * tau.segment(row, count).norm();
       weight(j) *= std::sqrt(static_cast<double>(count)) / std::max({one.norm(), floor, 1e-300});
-      const Eigen::Array<bool, Eigen::Dynamic, 1> all = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(count, true);
-      memory += noise_correlation(one, all, 20) / drives_;
       row += count;
     }
     weight_ = weight;
-    memory_ = std::max(1.0, memory);
     make_basis();
   }
 
@@ -424,7 +443,8 @@ Solution split_if_different(const TimingProblem& problem, const Solution& common
   for (const auto& group : finer) {
     Solution split = fit(problem, delay, group, common.theta(0));
     const double gain = common.chi2 - split.chi2;
-    if (!split.converged || split.chi2 > best.chi2 || gain < std::max(kWorth, kShareOfSplit * common.chi2)) continue;
+    if (!split.converged || split.chi2 > best.chi2 || gain < kShareOfSplit * common.chi2) continue;
+    if (gain < kWorth * std::min(1.0, problem.noise_unit(split))) continue;
     problem.add_deviations(split);
     if (differ(split.theta, split.std, least)) best = split;
   }
@@ -499,6 +519,25 @@ Timing estimate_timing(const Sample& sample, const Rows& rows, const std::vector
   }
   out.significant = out.delay_s.cwiseAbs().maxCoeff() > 0 || out.lag_s.cwiseAbs().maxCoeff() > 0;
   out.rms_after = problem.relative_rms(out.delay_s, out.lag_s);
+  return out;
+}
+
+LogDelays delays_of_logs(const Sample& sample, const Rows& rows, int logs) {
+  LogDelays out;
+  TimingProblem problem(sample, rows, logs);
+  if (!problem.solvable()) return out;
+  const double start = problem.prepare();
+  const Solution common = fit(
+      problem, true, [](int, int) { return 0; }, start);
+  Solution own = fit(
+      problem, true, [](int l, int) { return l; }, common.theta(0));
+  if (!own.converged) return out;
+  Eigen::MatrixXd delay, lag;
+  problem.expand(common, delay, lag);
+  out.rms_before = problem.relative_rms(delay, lag);
+  problem.expand(own, delay, lag);
+  out.rms_after = problem.relative_rms(delay, lag);
+  out.delay_s = own.theta;
   return out;
 }
 

@@ -27,4 +27,11 @@ struct Timing {
 /// \param least_s  smaller delays are left alone, one value a log [s]
 [[nodiscard]] Timing estimate_timing(const Sample& sample, const Rows& rows, const std::vector<double>& least_s);
 
+/// One delay a log, whether they differ or not.
+struct LogDelays {
+  Eigen::VectorXd delay_s;               ///< one a log; empty if too few rows tell them
+  double rms_before = 0, rms_after = 0;  ///< relative residual with one delay for all logs, and with these
+};
+[[nodiscard]] LogDelays delays_of_logs(const Sample& sample, const Rows& rows, int logs);
+
 }  // namespace deltadyn::gate

@@ -13,12 +13,13 @@ namespace deltadyn::checks {
 void check_counts(CheckRoom& room);            ///< one value a drive and sample
 void refuse_missing_numbers(CheckRoom& room);  ///< a table of poses has nothing to fill from
 void check_length(CheckRoom& room);
-void order_stamps(CheckRoom& room);       ///< rows twice, wrong and coarse stamps, several recordings in one file
-void unwrap(CheckRoom& room);             ///< counters that ran over
-void find_repeats(CheckRoom& room);       ///< held rows and stale channels become missing numbers
-void drop_blind_rows(CheckRoom& room);    ///< rows without positions become a gap in time
-void measure_channels(CheckRoom& room);   ///< quantisation step, noise, travel
-std::vector<Log> split(CheckRoom& room);  ///< at long gaps and where another recording begins
+void order_stamps(CheckRoom& room);           ///< rows twice, wrong and coarse stamps, several recordings in one file
+void unwrap(CheckRoom& room);                 ///< counters that ran over
+void find_repeats(CheckRoom& room);           ///< held rows and stale channels become missing numbers
+void find_frozen_positions(CheckRoom& room);  ///< all drives at once, in motion: servo or recorder off
+void drop_blind_rows(CheckRoom& room);        ///< rows without positions become a gap in time
+void measure_channels(CheckRoom& room);       ///< quantisation step, noise, travel
+std::vector<Log> split(CheckRoom& room);      ///< at long gaps and where another recording begins
 
 // --- on each stretch without long gaps -------------------------------------------------------------------------------------
 void put_on_grid(CheckRoom& room);         ///< even steps of time; lost rows become missing numbers

@@ -57,6 +57,33 @@ std::vector<Index> borders_of(CheckRoom& room, double longest, Tally& gaps) {
 
 }  // namespace
 
+namespace {
+
+/// One finding for all drives, which mostly are blind together.
+void tell_blind_rows(const CheckRoom& room, const std::vector<Tally>& tallies) {
+  Tally most;
+  std::string names;
+  int drive = -1;
+  for (const Channel& channel : room.channels()) {
+    if (channel.block != &room.log.q) continue;
+    const Tally& tally = tallies[static_cast<std::size_t>(channel.drive)];
+    if (tally.count == 0) continue;
+    if (tally.count == room.log.samples()) {
+      throw Error("the column holds no number", room.where(0, channel.name),
+                  "record this drive's position, or correct the column");
+    }
+    names += (names.empty() ? "" : ", ") + channel.name;
+    drive = most.count == 0 ? static_cast<int>(channel.drive) : -1;
+    if (tally.count > most.count) most = tally;
+  }
+  if (most.count == 0) return;
+  room.tell(
+      FindingLevel::mended, "blind_rows", most.first, names, drive, static_cast<double>(most.count), "rows",
+      fmt::format("no number for longer than can be filled, or at an end, in {} samples: these rows are left away", most.count));
+}
+
+}  // namespace
+
 void drop_blind_rows(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
@@ -90,22 +117,7 @@ void drop_blind_rows(CheckRoom& room) {
     rows.push_back(i);
   }
   if (static_cast<Index>(rows.size()) == n) return;
-  for (Index d = 0; d < log.drives(); ++d) {
-    const Tally& tally = tallies[static_cast<std::size_t>(d)];
-    const std::string column = room.channels()[0].name;
-    if (tally.count == 0) continue;
-    std::string name;
-    for (const Channel& channel : room.channels()) {
-      if (channel.block == &log.q && channel.drive == d) name = channel.name;
-    }
-    if (tally.count == n) {
-      throw Error("the column holds no number", room.where(0, name), "record this drive's position, or correct the column");
-    }
-    room.tell(FindingLevel::mended, "blind_rows", tally.first, name, static_cast<int>(d), static_cast<double>(tally.count),
-              "rows",
-              fmt::format("no number for longer than can be filled, or at an end, in {} samples: these rows are left away",
-                          tally.count));
-  }
+  tell_blind_rows(room, tallies);
   room.keep(rows);
   room.recordings = std::move(recordings);
   check_length(room);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include "deltadyn/signal/log_columns.hpp"
 
@@ -39,7 +40,54 @@ Usual usual_of(const Eigen::Ref<const Eigen::VectorXd>& q) {
   return {quantile(steps, 0.995), quantile(bends, 0.995)};
 }
 
+/// Does the position of a drive that is constant in [begin, end) freeze in motion, or jump when it reads again? A drive that stops by
+/// itself slows down.
+bool breaks_off(const Eigen::Ref<const Eigen::VectorXd>& q, const Usual& usual, Index begin, Index end) {
+  const double before = begin >= 4 ? std::abs(q(begin) - q(begin - 3)) / 3.0 : 0.0;
+  const double after = end + 3 < q.size() ? std::abs(q(end + 3) - q(end)) / 3.0 : 0.0;
+  const double jump = end < q.size() ? std::abs(q(end) - q(end - 1)) : 0.0;
+  const bool frozen_in_motion = before > 8.0 * usual.bend || after > 8.0 * usual.bend;
+  return frozen_in_motion || (jump > 2.0 * usual.step && jump > 8.0 * usual.bend);
+}
+
+/// First sample after `begin` in which any position differs from that in `begin`.
+Index end_of_hold(const Eigen::MatrixXd& q, Index begin) {
+  Index end = begin + 1;
+  while (end < q.rows() && q.row(end) == q.row(begin)) ++end;
+  return end;
+}
+
 }  // namespace
+
+void find_frozen_positions(CheckRoom& room) {
+  Log& log = room.log;
+  const Index n = log.samples(), drives = log.drives();
+  if (log.tau.size() == 0 || n < 10) return;
+  const double step_s = (log.t_s(n - 1) - log.t_s(0)) / static_cast<double>(n - 1);
+  const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / step_s)));
+  std::vector<Usual> usual;
+  Tally tally;
+  for (Index begin = 0, end = 0; begin < n; begin = end) {
+    end = end_of_hold(log.q, begin);
+    if (end - begin < shortest || end - begin == n) continue;
+    for (Index d = 0; d < drives && static_cast<Index>(usual.size()) < drives; ++d) usual.push_back(usual_of(log.q.col(d)));
+    bool broken = false;
+    for (Index d = 0; d < drives; ++d)
+      broken = broken || breaks_off(log.q.col(d), usual[static_cast<std::size_t>(d)], begin, end);
+    if (!broken) continue;
+    // The first one was measured.
+    const Index from = begin == 0 ? 0 : begin + 1;
+    log.q.middleRows(from, end - from).setConstant(std::numeric_limits<double>::quiet_NaN());
+    tally.add(from);
+    tally.count += end - from - 1;
+  }
+  if (tally.count == 0) return;
+  room.tell(
+      FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
+      fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was off; "
+                  "taken as missing",
+                  static_cast<double>(tally.count) * step_s));
+}
 
 void check_excitation(CheckRoom& room) {
   std::vector<std::string> still;
@@ -76,13 +124,7 @@ void check_stuck(CheckRoom& room) {
       Index end = begin + 1;
       while (end < n && q(end) == q(begin)) ++end;
       if (end - begin >= shortest) {
-        // A drive that stops by itself slows down; an encoder that fails freezes in motion, or jumps when it reads again.
-        const double before = begin >= 4 ? std::abs(q(begin) - q(begin - 3)) / 3.0 : 0.0;
-        const double after = end + 3 < n ? std::abs(q(end + 3) - q(end)) / 3.0 : 0.0;
-        const double jump = end < n ? std::abs(q(end) - q(end - 1)) : 0.0;
-        const bool frozen_in_motion = before > 8.0 * usual.bend || after > 8.0 * usual.bend;
-        const bool jumps = jump > 2.0 * usual.step && jump > 8.0 * usual.bend;
-        if (frozen_in_motion || jumps || others_move(room, d, begin, end)) {
+        if (breaks_off(q, usual, begin, end) || others_move(room, d, begin, end)) {
           throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
                                   q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
                       room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),

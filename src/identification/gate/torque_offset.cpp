@@ -1,0 +1,136 @@
+#include "torque_offset.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "readings.hpp"
+
+namespace deltadyn::gate {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kSound = 0.02;    // of the torque: what a log without faults may leave
+constexpr double kWins = 0.5;      // of the residual
+constexpr double kLeast = 0.03;    // of the drive's rms torque: less is no matter
+constexpr double kSigmas = 8;      // of the offset
+constexpr Index kFewestRows = 20;  // of a drive
+
+/// All drives' rows, each over its rms torque; the drives' offsets are the last columns.
+struct Stack {
+  MatrixXd A;
+  VectorXd b, rms;
+  Index parameters = 0;
+
+  bool fill(const Rows& rows, const Points& points) {
+    const auto drives = static_cast<Index>(rows.drives.size());
+    Index total = 0;
+    for (const DriveRows& drive : rows.drives) {
+      if (drive.count() < kFewestRows) return false;
+      total += drive.count();
+    }
+    parameters = rows.drives.front().Y.cols();
+    A.setZero(total, parameters + drives);
+    b.resize(total);
+    rms.resize(drives);
+    Index row = 0;
+    for (Index j = 0; j < drives; ++j) {
+      const DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
+      VectorXd tau(drive.count());
+      for (Index k = 0; k < tau.size(); ++k) tau(k) = points.tau(drive.at[static_cast<std::size_t>(k)].point, j);
+      rms(j) = std::max(tau.norm() / std::sqrt(static_cast<double>(tau.size())), 1e-12);
+      A.block(row, 0, tau.size(), parameters) = drive.Y / rms(j);
+      A.block(row, parameters + j, tau.size(), 1).setConstant(1 / rms(j));
+      b.segment(row, tau.size()) = tau / rms(j);
+      row += tau.size();
+    }
+    return total > 2 * A.cols();
+  }
+};
+
+struct Offsets {
+  std::vector<int> drives;
+  VectorXd value, std;
+  double residual = 1;  ///< relative
+};
+
+Offsets fit(const Stack& stack, const std::vector<int>& drives) {
+  const Index P = stack.parameters, count = static_cast<Index>(drives.size());
+  MatrixXd A(stack.A.rows(), P + count);
+  A.leftCols(P) = stack.A.leftCols(P);
+  for (Index k = 0; k < count; ++k) A.col(P + k) = stack.A.col(P + drives[static_cast<std::size_t>(k)]);
+  const VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
+  A *= norm.cwiseInverse().asDiagonal();
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+  const VectorXd x = norm.cwiseInverse().asDiagonal() * qr.solve(stack.b);
+  Offsets out;
+  out.drives = drives;
+  out.residual = (stack.b - A * norm.asDiagonal() * x).norm() / std::sqrt(static_cast<double>(stack.b.size()));
+  out.value = x.tail(count);
+  // Variance of the last columns, by what the other ones leave of them.
+  out.std.resize(count);
+  for (Index k = 0; k < count; ++k) {
+    MatrixXd others(A.rows(), A.cols() - 1);
+    others << A.leftCols(P + k), A.rightCols(count - k - 1);
+    const Eigen::ColPivHouseholderQR<MatrixXd> rest(others);
+    const VectorXd own = A.col(P + k) - others * rest.solve(A.col(P + k));
+    out.std(k) = out.residual / std::max(own.norm() * norm(P + k), 1e-300);
+  }
+  return out;
+}
+
+bool stands_out(const Offsets& o, const Stack& stack) {
+  for (Index k = 0; k < o.value.size(); ++k) {
+    const double least = kLeast * stack.rms(o.drives[static_cast<std::size_t>(k)]);
+    if (std::abs(o.value(k)) < std::max(least, kSigmas * o.std(k))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
+  const std::vector<std::string>& names = robot.parameter_names();
+  if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(".offset"); })) return {};
+  Stack stack;
+  if (!stack.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
+  const double as_given = fit(stack, {}).residual;
+  Offsets best;
+  for (const std::size_t most : {1U, 2U}) {
+    for (int i = 0; i < robot.drives(); ++i) {
+      for (int j = most == 1 ? i : i + 1; j < robot.drives(); ++j) {
+        const Offsets one = fit(stack, most == 1 ? std::vector<int>{i} : std::vector<int>{i, j});
+        if (one.residual < best.residual && stands_out(one, stack)) best = one;
+      }
+    }
+    if (best.residual < kSound && best.residual < kWins * as_given) break;  // the simpler one
+  }
+  if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
+  LogFinding f;
+  f.level = FindingLevel::fault;
+  f.key = "torque_offset";
+  f.drive = best.drives.size() == 1 ? best.drives.front() : -1;
+  f.value = best.value(0);
+  f.std = best.std(0);
+  std::string sizes;
+  for (Index k = 0; k < best.value.size(); ++k) {
+    const int drive = best.drives[static_cast<std::size_t>(k)];
+    const char* unit = robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
+    f.unit = unit;
+    sizes += fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : " and ", best.value(k), best.std(k), unit);
+  }
+  f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
+                       drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual);
+  f.mend =
+      "check the zero of the torque sensor or amplifier and take it off (delta-log import: offset in the map); a spring or cable "
+      "at "
+      "this drive looks alike";
+  return f;
+}
+
+}  // namespace deltadyn::gate
