@@ -57,7 +57,8 @@ class Diagnose {
     app.add_option("--null-runs", options_.null_runs, "simulated clean logs")->capture_default_str();
     app.add_flag("--list-effects", list_, "print the catalogue of effects and end");
     gate_.add_to(app);
-    gate_.leave_delays();  // a delay is one of the effects that the diagnosis weighs
+    gate_.leave_delays();
+    gate_.leave_offsets();
     processing_.add_to(app);
     run.on(app, [this, &run] { return execute(run); });
   }

@@ -95,6 +95,7 @@ class Identify {
     std::vector<Effect> effects;
     if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
     if (holds_timing(effects)) gate_.keep_delays();
+    if (!effects.empty()) gate_.leave_offsets();
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
                                       !prior_file_.empty(), !options.processing.filter, run.summary);
     ReportContext context{robot_file_, log_files_, prior_file_, command_line_, tools::all_findings(gate)};
@@ -107,9 +108,9 @@ class Identify {
     Identification result;
     try {
       result = identify_from(*robot, logs, prior.value, prior.std, with_progress, effects);
-    } catch (const Error&) {
-      // What a faulty log does to the fit is not the news.
-      if (!gate.fault()) throw;
+    } catch (const Error& e) {
+      // That a faulty log does not let the fit converge is not the news.
+      if (!gate.fault() || e.code() != ExitCode::no_convergence) throw;
       return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-identify");
     }
     if (effects.empty() && !gate_.keeps_delay()) {

@@ -74,6 +74,7 @@ class Validate {
       throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
     }
     if (holds_timing(model.effects)) gate_.keep_delays();
+    if (!model.effects.empty()) gate_.leave_offsets();
     // The model under test is no prior: a wrong one must show in the residual, not in the check of the logs.
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), {}, {}, false,
                                       !processing_.options().filter, run.summary);

@@ -113,6 +113,9 @@ class LogGate {
   /// Leaves delays in place for this run: the model at hand explains them.
   void keep_delays() { keep_delay_ = true; }
 
+  /// Offsets of the torque are for the effects at hand to explain.
+  void leave_offsets() { leave_offsets_ = true; }
+
   /// Checks and mends. Prints what was found, and adds it to the summary.
   /// \param with_fine  print what is in order, too
   GateResult run(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
@@ -121,6 +124,7 @@ class LogGate {
     options.keep_delay = keep_delay_;
     options.given_derivatives = given_derivatives;
     options.prior_given = prior_given;
+    options.offsets_known = leave_offsets_;
     GateResult result = examine_logs(robot, std::move(logs), prior, prior_std, options);
     print_findings(findings_to_tell(result), with_fine);
     summarise_findings(all_findings(result), summary);
@@ -144,6 +148,7 @@ class LogGate {
 
  private:
   CLI::Option* flag_ = nullptr;
+  bool leave_offsets_ = false;
   bool keep_delay_ = false;
 };
 

@@ -87,9 +87,11 @@ class Gate {
     judge_timing(sample);
     const Sample mended = take_sample(out_.logs);
     const Points points = pick_points(mended, kPoints);
-    if (std::optional<LogFinding> offset = torque_offset(robot_, base_, points)) {
-      out_.findings.push_back(*std::move(offset));
-      return std::move(out_);
+    if (!options_.offsets_known) {
+      if (std::optional<LogFinding> offset = torque_offset(robot_, base_, points)) {
+        out_.findings.push_back(*std::move(offset));
+        return std::move(out_);
+      }
     }
     judge_scale(points);
     if (!out_.fault() && !coarse_) {
@@ -273,25 +275,28 @@ class Gate {
       f.value = drift.rate;
       f.std = drift.rate_std;
       f.text = fmt::format(
-          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms over the "
+          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms (+- {:.2g}) "
+          "over the "
           "log: {} "
           "(residual {:.2g} % with one delay, {:.2g} % so)",
-          f.file, 1e3 * drift.first_s, 1e3 * drift.last_s, options_.keep_delay ? "left in place" : "removed",
-          100 * drifts->rms_before, 100 * drifts->rms_after);
+          f.file, 1e3 * drift.first_s, 1e3 * drift.last_s,
+          1e3 * std::abs(drift.rate_std / drift.rate * (drift.last_s - drift.first_s)) / 2,
+          options_.keep_delay ? "left in place" : "removed", 100 * drifts->rms_before, 100 * drifts->rms_after);
       f.mend = "record torque and position with one clock";
       out_.findings.push_back(std::move(f));
       for (std::size_t l = 0; l < out_.logs.size() && !options_.keep_delay; ++l) {
         if (files[l] == static_cast<int>(file)) take_drift_out(drift, out_.logs[l]);
       }
     }
-    return !options_.keep_delay;
+    return true;
   }
 
   void judge_timing(Sample sample) {
     Timing timing = steady_timing(sample);
     double noise = relative_torque_noise(out_.logs, sample);
+    if (options_.keep_delay && judge_drift(sample)) return;
     // A file in which little moves may only tell its drift once the others are free of theirs.
-    for (int pass = 0; pass < 2 && judge_drift(sample); ++pass) {
+    for (int pass = 0; pass < 2 && !options_.keep_delay && judge_drift(sample); ++pass) {
       sample = take_sample(out_.logs);
       timing = steady_timing(sample);
     }

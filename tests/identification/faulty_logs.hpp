@@ -96,7 +96,6 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
       both("positions and torques against the axis", for_limbs(n, -1, 1), for_limbs(n, -1, 1),
            {"position_sign", "position_zero"}),
   };
-  out.push_back({"torque 2 with another zero", [](Log& log) { log.tau.col(1).array() += 5; }, {"torque_offset"}, 0});
   if (turns) {
     out.push_back(q("degrees", same, for_limbs(n, degrees, degrees), zeros, {"position_scale"}));
     out.push_back(q("degrees of drive 1", same, for_one(n, 0, degrees, 1), zeros, {"position_scale"}));

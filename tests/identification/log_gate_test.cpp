@@ -217,6 +217,18 @@ TEST_P(LogGate, FindsClocksThatRunApart) {
   EXPECT_LT(after, 0.3 * before) << told(result);
 }
 
+TEST_P(LogGate, NamesATorqueWhoseZeroIsOff) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  std::vector<Log> logs = recorded(*robot);
+  for (Log& log : logs) log.tau.col(1).array() += 5;
+  const GateResult result = examine(*robot, logs);
+  const LogFinding* finding = find(result, {"torque_offset"}, FindingLevel::warning);
+  ASSERT_NE(finding, nullptr) << told(result);
+  EXPECT_EQ(finding->drive, 1);
+  EXPECT_NEAR(finding->value, 5, 0.1);
+  EXPECT_FALSE(result.stop());
+}
+
 TEST(LogGateDelay, StaysInTheLogIfAsked) {
   const auto robot = make_robot(delta_description("delta3"));
   std::vector<Log> logs = recorded(*robot);

@@ -409,6 +409,18 @@ TEST(LogCheck, UnwrapsACounterThatRanOver) {
   EXPECT_LT(offset.maxCoeff() - offset.minCoeff(), 1e-6);
 }
 
+TEST(LogCheck, FindsTheRangeOfACounterThatIsNoTurn) {
+  const Log truth = good_log();
+  Log log = good_log();
+  constexpr double kRange = 0.6;
+  for (Eigen::Index i = 0; i < 10000; ++i) log.q(i, 0) = std::remainder(truth.q(i, 0), kRange);
+  const Log mended = parts_of(log).front();
+  ASSERT_NE(finding(mended, "wrap", 0), nullptr);
+  EXPECT_NEAR(finding(mended, "wrap", 0)->value, kRange, 1e-4);
+  const Eigen::VectorXd offset = mended.q.col(0) - truth.q.col(0);
+  EXPECT_LT(offset.maxCoeff() - offset.minCoeff(), 1e-3);
+}
+
 TEST(LogCheck, TakesStampsOfAnOperatingSystemAsEven) {
   const Log truth = good_log();
   Log log = good_log();

@@ -17,6 +17,7 @@ namespace deltadyn {
 struct GateOptions {
   bool keep_delay = false;         ///< say a delay, but leave it in the log
   bool given_derivatives = false;  ///< the tool will take q, qd and qdd of the logs as they are (--no-filter)
+  bool offsets_known = false;      ///< effects of the model, or of the search at hand, explain offsets of the torque
   bool prior_given = false;        ///< the prior is the user's, not one of simple shapes
 };
 

@@ -6,6 +6,7 @@
 
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
+#include "../log_middle.hpp"
 #include "sample.hpp"
 #include "torque_timing.hpp"
 
@@ -23,19 +24,7 @@ constexpr double kOffShare = 0.15;       // of the change over the file: so far 
 constexpr double kLeastChange_s = 2e-4;  // less is for the one delay of the file
 constexpr double kTakesAway = 0.75;      // of the residual may be left; parts of sound logs leave 0.9 and more
 
-/// Rows [from, from + count) of a log under a name of their own, so that they may have a delay of their own.
-Log part_of(const Log& log, Index from, Index count, std::size_t number) {
-  Log part;
-  part.file = fmt::format("{}#{}", log.file, number);
-  part.t_s = log.t_s.segment(from, count);
-  part.q = log.q.middleRows(from, count);
-  part.tau = log.tau.middleRows(from, count);
-  if (!log.filled.empty()) part.filled.assign(log.filled.begin() + from, log.filled.begin() + from + count);
-  if (log.torque_out.size() > 0) part.torque_out = log.torque_out.middleRows(from, count);
-  return part;
-}
-
-/// Parts of all logs; `owner` is the file that each belongs to.
+/// Parts of all logs, each under a name of its own, so that it may have a delay of its own; `owner` is the file that it belongs to.
 std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<int>& owner) {
   const std::vector<int> files = file_numbers(logs);
   std::vector<Log> parts;
@@ -45,7 +34,8 @@ std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<int>& owner)
     const Index count = std::clamp<Index>(static_cast<Index>(length_s / kShortestPart_s), 1, kParts);
     for (Index k = 0; k < count; ++k) {
       const Index from = k * log.samples() / count, to = (k + 1) * log.samples() / count;
-      parts.push_back(part_of(log, from, to - from, parts.size()));
+      parts.push_back(part_of(log, from, to - from));
+      parts.back().file += fmt::format("#{}", parts.size());
       owner.push_back(files[l]);
     }
   }

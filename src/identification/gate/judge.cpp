@@ -19,7 +19,7 @@ constexpr double kSoundRatio = 1.2;  // all drives together over each drive by i
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
 constexpr double kWinsNoisy =
     0.8;  // ... or, where noise covers the rest, leaves nothing between all drives together and each alone
-constexpr double kWinsOdd = 0.65;              // the same for a zero at any angle, which explains more by chance
+constexpr double kWinsOdd = 0.4;               // the same for a zero at any angle, which explains more by chance
 constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for the winner
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
 constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent

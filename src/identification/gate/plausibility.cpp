@@ -16,10 +16,11 @@ using Eigen::Index;
 // factor of 3.3, with parts weighed to 2 % a factor of 1.27; a prior that is 30 % off raises nothing.
 constexpr double kFault = 0.2, kFaultTrust = 2.0;
 constexpr double kWarning = 0.12, kWarningTrust = 1.3;
-constexpr double kCertain = 5.0;     // standard deviations of the data for a sign
-constexpr double kKnown = 0.3;       // relative deviation of the data above which a ratio says nothing
-constexpr double kHeavyRotor = 4.5;  // inertia over gravity, beside the prior's: reflected rotors triple a link's inertia
-constexpr double kWeighed = 0.15;    // relative deviation of a prior whose parts were weighed
+constexpr double kCertain = 5.0;       // standard deviations of the data for a sign
+constexpr double kKnown = 0.3;         // relative deviation of the data above which a ratio says nothing
+constexpr double kHeavyRotor = 4.5;    // inertia over gravity, beside the prior's: reflected rotors triple a link's inertia
+constexpr double kBeyondRotors = 100;  // times the prior's inertia
+constexpr double kWeighed = 0.15;      // relative deviation of a prior whose parts were weighed
 constexpr double kSpread =
     0.5;  // gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
 constexpr double kFaultEffort =
@@ -161,8 +162,8 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   const double yaw_prior = std::sqrt(std::max(0.0, yaw.std * yaw.std - yaw.data_std * yaw.data_std)) / yaw.value;
   const double yaw_far = beyond(yaw.value, yaw_prior, kFault, kFaultTrust);
   const bool small = yaw.value < 1;
-  // Rotor inertia makes it large as a rule: only beside weighed parts is that worth a word.
-  if (yaw_far > 0 && (small || yaw_prior < kWeighed)) {
+  // Rotor inertia makes it large as a rule: only beside weighed parts, or beyond what rotors do, is that worth a word.
+  if (yaw_far > 0 && (small || yaw_prior < kWeighed || yaw.value > kBeyondRotors)) {
     LogFinding f = scale_finding(robot, yaw, yaw_prior, small, fmt::format("on drive {}", limbs + 1), static_cast<int>(limbs));
     f.text =
         fmt::format("the inertia about drive {} is {:.3g} +- {:.2g} times that of the prior: {}", limbs + 1, yaw.value, yaw.std,

@@ -8,6 +8,8 @@
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
+#include "../log_middle.hpp"
+
 namespace deltadyn::gate {
 
 namespace {
@@ -21,18 +23,6 @@ constexpr double kPerPeriod = 13;   // grid points a period of the band
 // look like a lag.
 constexpr double kMotionRatio = 2.0;
 constexpr Index kFewestSamples = 60;  // of a stretch
-
-/// Rows [from, from + count) of a log, without derivatives.
-Log piece_of(const Log& log, Index from, Index count) {
-  Log piece;
-  piece.file = log.file;
-  piece.t_s = log.t_s.segment(from, count);
-  piece.q = log.q.middleRows(from, count);
-  piece.tau = log.tau.middleRows(from, count);
-  if (log.torque_out.size() > 0) piece.torque_out = log.torque_out.middleRows(from, count);
-  if (!log.filled.empty()) piece.filled.assign(log.filled.begin() + from, log.filled.begin() + from + count);
-  return piece;
-}
 
 /// Smallest step of a recorded position: the encoder's, where it counts.
 double resolution(const Eigen::Ref<const Eigen::VectorXd>& position) {
@@ -153,7 +143,7 @@ Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
     const auto samples = count == 1 ? log.samples() : static_cast<Index>((share_s / count + 2 * margin_s) * rate_hz);
     for (int k = 0; k < count; ++k) {
       const Index from = count == 1 ? 0 : k * (log.samples() - samples) / (count - 1);
-      pieces.push_back(piece_of(log, from, samples));
+      pieces.push_back(part_of(log, from, samples));
       owner.push_back(files[l]);
     }
   }

@@ -112,7 +112,7 @@ std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters
   }
   if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
   LogFinding f;
-  f.level = FindingLevel::fault;
+  f.level = FindingLevel::warning;
   f.key = "torque_offset";
   f.drive = best.drives.size() == 1 ? best.drives.front() : -1;
   f.value = best.value(0);
@@ -127,9 +127,8 @@ std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters
   f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
                        drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual);
   f.mend =
-      "check the zero of the torque sensor or amplifier and take it off (delta-log import: offset in the map); a spring or cable "
-      "at "
-      "this drive looks alike";
+      "if the zero of the sensor or amplifier is off, take it out (delta-log import: offset in the map) or fit it (--offset); "
+      "friction that differs by direction looks alike: delta-diagnose names it";
   return f;
 }
 

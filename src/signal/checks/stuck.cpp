@@ -34,8 +34,14 @@ struct Usual {
 Usual usual_of(const Eigen::Ref<const Eigen::VectorXd>& q) {
   std::vector<double> steps, bends;
   for (const auto& [begin, end] : sample_stretches(q.size(), 256)) {
-    for (Index i = begin + 1; i < end; ++i) steps.push_back(std::abs(q(i) - q(i - 1)));
-    for (Index i = begin + 1; i + 1 < end; ++i) bends.push_back(std::abs(q(i + 1) - 2.0 * q(i) + q(i - 1)));
+    for (Index i = begin + 1; i < end; ++i) {
+      const double step = std::abs(q(i) - q(i - 1));
+      if (std::isfinite(step)) steps.push_back(step);  // numbers may be missing
+    }
+    for (Index i = begin + 1; i + 1 < end; ++i) {
+      const double bend = std::abs(q(i + 1) - 2.0 * q(i) + q(i - 1));
+      if (std::isfinite(bend)) bends.push_back(bend);
+    }
   }
   return {quantile(steps, 0.995), quantile(bends, 0.995)};
 }
@@ -62,7 +68,7 @@ Index end_of_hold(const Eigen::MatrixXd& q, Index begin) {
 void find_frozen_positions(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples(), drives = log.drives();
-  if (log.tau.size() == 0 || n < 10) return;
+  if (log.tau.size() == 0 || n < 10 || drives < 2) return;  // of a single drive it may be the encoder
   const double step_s = (log.t_s(n - 1) - log.t_s(0)) / static_cast<double>(n - 1);
   const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / step_s)));
   std::vector<Usual> usual;

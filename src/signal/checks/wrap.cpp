@@ -41,11 +41,24 @@ struct Jumps {
   double modulus = 0;
 };
 
+/// Size of the jump into row i without what the value itself moves in that step, as it moves in the steps beside it.
+double size_of_jump(const Eigen::Ref<const Eigen::VectorXd>& x, Index i, double least) {
+  double moved = 0, steps = 0;
+  for (const Index k : {i - 1, i + 1}) {
+    if (k < 1 || k >= x.size()) continue;
+    const double step = x(k) - x(k - 1);
+    if (!(std::abs(step) < least)) continue;  // another jump, or a missing number
+    moved += step;
+    ++steps;
+  }
+  return std::abs(x(i) - x(i - 1) - (steps > 0 ? moved / steps : 0.0));
+}
+
 /// The jumps of at least `least`, if they look like a counter that runs over.
 std::optional<Jumps> find_jumps(const Eigen::Ref<const Eigen::VectorXd>& x, const ChannelQuality& quality, double least,
                                 bool turns) {
   Jumps jumps;
-  std::vector<double> sizes, others;
+  std::vector<double> sizes;
   bool up = false, down = false;
   double usual = 0;
   for (Index i = 1; i < x.size(); ++i) {
@@ -55,7 +68,7 @@ std::optional<Jumps> find_jumps(const Eigen::Ref<const Eigen::VectorXd>& x, cons
       continue;
     }
     jumps.rows.push_back(i);
-    sizes.push_back(std::abs(change));
+    sizes.push_back(size_of_jump(x, i, least));
     (change > 0 ? up : down) = true;
   }
   if (jumps.rows.empty() || usual > 0.4 * least) return std::nullopt;
