@@ -5,9 +5,8 @@
 #include <random>
 
 #include "deltadyn/signal/differentiate_log.hpp"
+#include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/requantise.hpp"
-
-#include "log_middle.hpp"
 
 namespace deltadyn {
 namespace {

@@ -9,8 +9,7 @@
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/runtime/error.hpp"
-
-#include "log_middle.hpp"
+#include "deltadyn/signal/log_part.hpp"
 
 namespace deltadyn {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "log_middle.hpp"
+#include "deltadyn/signal/log_part.hpp"
 
 namespace deltadyn {
 namespace {

@@ -10,8 +10,8 @@
 #include "deltadyn/effects/torque_ripple.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/signal/log_part.hpp"
 
-#include "log_middle.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {

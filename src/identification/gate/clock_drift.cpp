@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
-#include "../log_middle.hpp"
 #include "sample.hpp"
 #include "torque_timing.hpp"
 

@@ -6,9 +6,8 @@
 #include <string>
 
 #include "deltadyn/signal/differentiate_log.hpp"
+#include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
-
-#include "../log_middle.hpp"
 
 namespace deltadyn::gate {
 
