@@ -142,7 +142,11 @@ class DiagnosisRun {
       take_fixed_effects_off();
       judge_bristles(known_);
       make_rows();
-      if (cutoff.widest_hz > cutoff.chosen_hz && detail::fewest_rows(rows_.logs).share < kLeastKnown) {
+      const auto scarce = [&]() {
+        const auto rows = detail::fewest_rows(rows_.logs);
+        return rows.share < kLeastKnown || rows.count < rows_needed();
+      };
+      if (cutoff.widest_hz > cutoff.chosen_hz && scarce()) {
         out_.cutoff_hz = cutoff.widest_hz;
         judge_bristles(known_);
         make_rows();
@@ -154,9 +158,8 @@ class DiagnosisRun {
     }
     // Rows enough to fit the base model and still see something beside it?
     const double fewest = detail::fewest_rows(rows_.logs).count;
-    const double needed = std::max(120.0, kFewestRowsPerBase * base_.count());
-    if (fewest < needed) {
-      detail::say_too_short(length, 1.2 * length * needed / std::max(fewest, 1.0), out_);
+    if (fewest < rows_needed()) {
+      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest, 1.0), out_);
       return false;
     }
     p_fit_ = refit_parameters(base_, rows_.logs, p_);
@@ -197,6 +200,8 @@ class DiagnosisRun {
   void report(double share) const {
     if (options_.progress) options_.progress(share);
   }
+
+  [[nodiscard]] double rows_needed() const { return std::max(120.0, kFewestRowsPerBase * base_.count()); }
 
   detail::ImproveInput input() const {
     return {robot_, all_logs_, holdout_, p_, p_std_, p_fit_, all_known_, wanted_, masked_, options_};
