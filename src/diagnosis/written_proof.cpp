@@ -106,8 +106,15 @@ std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const s
   return examine_logs(robot, std::move(logs), {}, {}, gate).logs;
 }
 
-WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given, const WrittenModel& improved,
+/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number names.
+static WrittenModel of_another_log(WrittenModel model) {
+  std::erase_if(model.effects, [](const Effect& effect) { return effect.id == EffectId::payload; });
+  return model;
+}
+
+WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given_model, const WrittenModel& written,
                            const std::vector<int>& touched, double search_hz, const DiagnosisOptions& options) {
+  const WrittenModel given = of_another_log(given_model), improved = of_another_log(written);
   // A delay that the improved model explains is in the log of both: else the check would have mended what one of them lacks.
   const bool keep_delay = holds_timing(improved.effects);
   const std::vector<Log> logs = as_validated(robot, {holdout}, improved.effects);
