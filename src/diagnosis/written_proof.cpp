@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/signal/motion_band.hpp"
 
 namespace deltadyn::detail {
 
@@ -127,11 +128,14 @@ WrittenProof prove_written(const Robot& robot, const Log& holdout, const Written
   };
   WrittenProof out = proof_with(options.choose_cutoff);
   if (out.testable() || !options.choose_cutoff) return out;
-  // A cut-off that leaves too little beside reversals gives way to the one of the search.
-  processing.cutoff_hz = search_hz;
-  WrittenProof wider = proof_with(false);
-  wider.cutoff_hz = search_hz;
-  return wider.testable() ? wider : out;
+  // A cut-off that leaves too little beside reversals gives way to the one of the search, then to that of the motion.
+  for (const double cutoff_hz : {search_hz, choose_cutoff(logs).cutoff_hz}) {
+    processing.cutoff_hz = cutoff_hz;
+    WrittenProof wider = proof_with(false);
+    wider.cutoff_hz = cutoff_hz;
+    if (wider.testable()) return wider;
+  }
+  return out;
 }
 
 }  // namespace deltadyn::detail
