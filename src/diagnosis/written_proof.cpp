@@ -91,6 +91,12 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
   return out;
 }
 
+/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number names.
+WrittenModel of_another_log(WrittenModel model) {
+  std::erase_if(model.effects, [](const Effect& effect) { return effect.id == EffectId::payload; });
+  return model;
+}
+
 }  // namespace
 
 bool WrittenProof::testable() const {
@@ -105,12 +111,6 @@ std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const s
   GateOptions gate;
   gate.keep_delay = holds_timing(effects);
   return examine_logs(robot, std::move(logs), {}, {}, gate).logs;
-}
-
-/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number names.
-static WrittenModel of_another_log(WrittenModel model) {
-  std::erase_if(model.effects, [](const Effect& effect) { return effect.id == EffectId::payload; });
-  return model;
 }
 
 WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given_model, const WrittenModel& written,

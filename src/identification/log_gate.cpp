@@ -276,9 +276,7 @@ class Gate {
       f.std = drift.rate_std;
       f.text = fmt::format(
           "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms (+- {:.2g}) "
-          "over the "
-          "log: {} "
-          "(residual {:.2g} % with one delay, {:.2g} % so)",
+          "over the log: {} (residual {:.2g} % with one delay, {:.2g} % so)",
           f.file, 1e3 * drift.first_s, 1e3 * drift.last_s,
           1e3 * std::abs(drift.rate_std / drift.rate * (drift.last_s - drift.first_s)) / 2,
           options_.keep_delay ? "left in place" : "removed", 100 * drifts->rms_before, 100 * drifts->rms_after);
@@ -294,9 +292,9 @@ class Gate {
   void judge_timing(Sample sample) {
     Timing timing = steady_timing(sample);
     double noise = relative_torque_noise(out_.logs, sample);
-    if (options_.keep_delay && judge_drift(sample)) return;
     // A file in which little moves may only tell its drift once the others are free of theirs.
-    for (int pass = 0; pass < 2 && !options_.keep_delay && judge_drift(sample); ++pass) {
+    for (int pass = 0; pass < 2 && judge_drift(sample); ++pass) {
+      if (options_.keep_delay) return;
       sample = take_sample(out_.logs);
       timing = steady_timing(sample);
     }

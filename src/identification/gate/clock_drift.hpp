@@ -20,8 +20,8 @@ struct ClockDrift {
 
 struct ClockDrifts {
   std::vector<ClockDrift> files;  ///< one a file, in the order of file_numbers()
-  double rms_before = 0,
-         rms_after = 0;  ///< relative residual with one delay for all, and with a delay for each part of the files
+  /// Relative residual with one delay for all, and with a delay for each part of the files.
+  double rms_before = 0, rms_after = 0;
 };
 
 /// Looks for it by the delays of parts of the files. Nothing unless these lie on a line that rises or falls clearly, and take a quarter of
