@@ -13,6 +13,7 @@
 #include "deltadyn/signal/reversal_mask.hpp"
 
 #include "diagnosis_steps.hpp"
+#include "explains_more.hpp"
 #include "improve.hpp"
 #include "prepare_rows.hpp"
 #include "written_proof.hpp"
@@ -54,6 +55,7 @@ constexpr int kMostPasses = 3;              // of the search with parameters tha
 constexpr double kSameSize = 0.003;         // ... until no amplitude changes by more than this share
 constexpr double kFewestRowsPerBase = 4.0;  // rows of a drive in units of base parameters a drive
 constexpr double kLeastKnown = 0.5;         // of a drive's rows beside reversals: with less, the low pass is too narrow
+constexpr double kOtherBand = 1.4;          // from which a wider band is worth a search of its own
 constexpr double kSameBristle = 0.1;        // of a displacement: a change that moves no row
 
 /// Positions and torques of every sample, to be compared as they are.
@@ -125,19 +127,24 @@ class DiagnosisRun {
         model_(robot),
         p_fit_(p) {}
 
+  /// \param cutoff_hz  of the search; 0: chosen from the logs
   /// \returns false if the logs are too short, which then is said
-  bool prepare() {
+  bool prepare(double cutoff_hz) {
     double length = 0;
     for (const Log& log : all_logs_) length += static_cast<double>(log.samples()) * log.sample_time_s();
+    double widest_hz = 0;
     if (wanted_.periods == Periods::given) out_.notes.push_back("periods are not averaged here: every log is used as it is");
     try {
       detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz};
-      if (options_.choose_cutoff) {
+      if (cutoff_hz > 0) {
+        cutoff = {cutoff_hz, cutoff_hz};
+      } else if (options_.choose_cutoff) {
         // A delay, which the search weighs, must not end the band in which the model holds.
         const std::vector<Log> mended = detail::as_validated(robot_, all_logs_, {});
         cutoff = detail::search_cutoff(robot_, base_, mended, wanted_, options_.threads);
       }
       out_.cutoff_hz = cutoff.chosen_hz;
+      widest_hz = cutoff.widest_hz;
       report(0.05);
       take_fixed_effects_off();
       judge_bristles(known_);
@@ -163,8 +170,12 @@ class DiagnosisRun {
       return false;
     }
     p_fit_ = refit_parameters(base_, rows_.logs, p_);
+    if (widest_hz > kOtherBand * out_.cutoff_hz) wider_hz_ = widest_hz;
     return true;
   }
+
+  /// Cut-off of a band clearly wider than the one of the search that noise leaves to the logs; 0: there is none.
+  [[nodiscard]] double wider_hz() const { return wider_hz_; }
 
   void search() {
     set_up();
@@ -273,6 +284,7 @@ class DiagnosisRun {
   BaseParameters base_;
   EffectModel model_;
   VectorXd p_fit_;
+  double wider_hz_ = 0;
   std::vector<int> masked_;    ///< drives whose bristles do not hold
   std::vector<Effect> known_;  ///< those that are fitted along
   std::vector<Log> logs_;
@@ -292,14 +304,25 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* 
   options.validate();
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   if (holdout != nullptr) refuse_training_log(logs, *holdout);
-  Diagnosis out;
-  out.null_runs = options.null_runs;
-  out.effects = known;
-  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-  DiagnosisRun run(robot, logs, holdout, p, p_std, known, options, out);
-  if (run.prepare()) {
-    run.search();
-    run.name();
+  double wider_hz = 0;
+  const auto search = [&](double cutoff_hz) {
+    Diagnosis out;
+    out.null_runs = options.null_runs;
+    out.effects = known;
+    out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+    DiagnosisRun run(robot, logs, holdout, p, p_std, known, options, out);
+    if (run.prepare(cutoff_hz)) {
+      wider_hz = run.wider_hz();
+      run.search();
+      run.name();
+    }
+    return out;
+  };
+  Diagnosis out = search(0);
+  // What is missing can end the band in which the model holds, and be told in a wider one only.
+  if (wider_hz > 0) {
+    Diagnosis wide = search(wider_hz);
+    if (detail::explains_more(wide, out)) out = std::move(wide);
   }
   out.total_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.progress) options.progress(1);

@@ -58,8 +58,10 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
       const double distance = std::abs(other(0) - value);
       if (distance > 1e-12) spacing = std::min(spacing, distance);
     }
-    // Less than one wave over the range of the drive is no wave but part of one: of gravity, load, anything.
-    return {true, false, std::max(value - spacing, longest), value + spacing};
+    // Less than one wave of torque over the range of the drive is no wave but part of one: of gravity, load, anything. Friction that
+    // varies once a turn of the joint shows as such a part.
+    const bool whole = hypothesis.id == EffectId::torque_ripple;
+    return {true, false, whole ? std::max(value - spacing, longest) : value - spacing, value + spacing};
   }
   // A level far below the peaks would be a matter of gain or load.
   if (hypothesis.id == EffectId::saturation) return {true, true, 0.9 * value, 1.1 * value};

@@ -20,12 +20,17 @@ struct Searched {
   GenericBasis basis;
   double range = 0;
 
-  explicit Searched(double share) {
+  /// \param friction  the wave is one of Coulomb's friction
+  explicit Searched(double share, bool friction = false) {
     AxisLog plain;
     Log log = plain.make();
     range = log.q.maxCoeff() - log.q.minCoeff();
     const double n = share * 2 * std::numbers::pi / range;
-    log.tau.col(0).array() += 0.8 * (n * log.q.col(0).array() + 0.3).cos();
+    Eigen::ArrayXd wave = 0.8 * (n * log.q.col(0).array() + 0.3).cos();
+    if (friction)
+      wave *=
+          testing::MultiSine{plain.base_hz, plain.amplitude}.at(log.t_s, 1, 0.7 * static_cast<double>(plain.seed)).array().sign();
+    log.tau.col(0).array() += wave;
     ProcessingOptions processing;
     processing.cutoff_hz = 40;
     processing.motion_over_pass = 1;
@@ -61,6 +66,16 @@ TEST(EffectSearch, RefinesARippleToNoLessThanOneWaveOverTheRange) {
   const Fit& fit = search.refine(state, Searched::find(search, EffectId::torque_ripple));
   ASSERT_GT(fit.gain, 100);
   EXPECT_GE(fit.effect.shape(0) * one.range, 0.99 * 2 * std::numbers::pi);
+}
+
+// It varies once a turn, of which a drive sees a part.
+TEST(EffectSearch, FindsFrictionThatVariesByLessThanOneWaveOverTheRange) {
+  const Searched one(0.8, true);
+  const EffectSearch search(one.model, one.logs, one.basis, {});
+  const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
+  const Fit& fit = search.refine(state, Searched::find(search, EffectId::position_dependent_friction));
+  ASSERT_GT(fit.gain, 100);
+  EXPECT_NEAR(fit.effect.shape(0) * one.range / (2 * std::numbers::pi), 0.8, 0.05);
 }
 
 TEST(Hypothesis, OfASaturationTakesOffNoMoreThanWhatIsAboveTheLevel) {
