@@ -85,15 +85,9 @@ class Gate {
       if (out_.stop()) return std::move(out_);
     }
     judge_timing(sample);
-    const Sample mended = take_sample(out_.logs);
-    const Points points = pick_points(mended, kPoints);
-    if (!options_.offsets_known) {
-      if (std::optional<LogFinding> offset = torque_offset(robot_, base_, points)) {
-        out_.findings.push_back(*std::move(offset));
-        return std::move(out_);
-      }
-    }
-    judge_scale(points);
+    Sample mended = take_sample(out_.logs);
+    if (!options_.offsets_known) judge_offset(mended);
+    judge_scale(pick_points(mended, kPoints));
     if (!out_.fault() && !coarse_) {
       if (std::optional<LogFinding> mirrored = mirror_finding(robot_, base_, mended))
         out_.findings.push_back(*std::move(mirrored));
@@ -287,6 +281,14 @@ class Gate {
       }
     }
     return true;
+  }
+
+  /// An offset of the torque is said, and taken out of the sample, so that it passes for nothing else.
+  void judge_offset(Sample& sample) {
+    std::optional<TorqueOffset> offset = torque_offset(robot_, base_, pick_points(sample, kPoints));
+    if (!offset) return;
+    for (Stretch& stretch : sample.stretches) stretch.tau.rowwise() -= offset->value.transpose();
+    out_.findings.push_back(std::move(offset->finding));
   }
 
   void judge_timing(Sample sample) {

@@ -9,6 +9,8 @@
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/signal/log_part.hpp"
+#include "deltadyn/signal/requantise.hpp"
+#include "deltadyn/signal/reversal_mask.hpp"
 
 #include "partial_fit.hpp"
 
@@ -22,6 +24,7 @@ using Eigen::VectorXd;
 constexpr Index kSamples = 20'000;  // of each log; reversals enough, and a log of hours costs no more
 constexpr int kPasses = 4;          // displacements and base parameters settle in three
 constexpr double kSmallest = 2e-5;  // of the joint's range: no filter shows less
+constexpr double kOverNoise = 1;    // of the position's noise: what jitters within it rounds a reversal like a bristle
 constexpr double kLargest =
     0.02;                  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
@@ -49,7 +52,13 @@ class Search {
     processing_.presliding.setZero(robot.friction_joints());
     processing_.presliding_damping_s.setZero(robot.friction_joints());
     processing_.periods = Periods::ignore;  // the bristles' memory runs along the log as it was
-    for (const Log& log : logs) logs_.push_back(middle_of(log, kSamples));
+    jitter_.setZero(robot.friction_joints());
+    for (const Log& log : logs) {
+      logs_.push_back(middle_of(log, kSamples));
+      const VectorXd steps = position_steps(logs_.back());
+      for (Index j = 0; j < robot.drives(); ++j)
+        jitter_(j) = std::max({jitter_(j), position_noise(logs_.back().q.col(j)), steps(j) / std::sqrt(12.0)});
+    }
     range_.setZero(robot.friction_joints());
     noise_.setOnes(robot.drives());
   }
@@ -189,7 +198,9 @@ class Search {
     }
     const PartialFit fit(std::move(rows), own);
     const auto cost = [&](double displacement) { return result(fit, joint, displacement, false).cost; };
-    const double smallest = kSmallest * range_(joint), ratio = std::pow(kLargest / kSmallest, 1.0 / (kGrid - 1));
+    const double smallest = std::max(kSmallest * range_(joint), kOverNoise * jitter_(joint));
+    if (smallest >= kLargest * range_(joint)) return out;
+    const double ratio = std::pow(kLargest * range_(joint) / smallest, 1.0 / (kGrid - 1));
     std::vector<double> tried, costs;
     for (int k = 0; k < kGrid; ++k) {
       tried.push_back(smallest * std::pow(ratio, k));
@@ -237,7 +248,7 @@ class Search {
   std::vector<Index> coulomb_;
   std::vector<Log> logs_;
   std::vector<SearchLog> searched_;
-  VectorXd range_, noise_;
+  VectorXd range_, noise_, jitter_;
 };
 
 }  // namespace

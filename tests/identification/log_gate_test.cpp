@@ -227,6 +227,23 @@ TEST_P(LogGate, NamesATorqueWhoseZeroIsOff) {
   EXPECT_EQ(finding->drive, 1);
   EXPECT_NEAR(finding->value, 5, 0.1);
   EXPECT_FALSE(result.stop());
+  EXPECT_EQ(find(result, {"scale"}, FindingLevel::warning), nullptr) << told(result);
+}
+
+TEST(LogGateScale, IsJudgedBesideATorqueWhoseZeroIsOff) {
+  const auto robot = make_robot(delta_description("delta3"));
+  const Eigen::VectorXd prior = delta_truth(*robot);
+  const Eigen::VectorXd std = (0.02 * prior.cwiseAbs()).cwiseMax(1e-4);
+  std::vector<Log> logs = recorded(*robot);
+  for (Log& log : logs) {
+    log.tau *= 1.5;
+    log.tau.col(1).array() += 5;
+  }
+  const GateResult result = examine_logs(*robot, logs, prior, std);
+  EXPECT_NE(find(result, {"torque_offset"}, FindingLevel::warning), nullptr) << told(result);
+  const LogFinding* scale = find(result, {"scale"}, FindingLevel::fault);
+  ASSERT_NE(scale, nullptr) << told(result);
+  EXPECT_NEAR(scale->value, 1.5, 0.05);
 }
 
 TEST(LogGateDelay, StaysInTheLogIfAsked) {

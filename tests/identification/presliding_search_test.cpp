@@ -1,11 +1,13 @@
 #include "deltadyn/identification/presliding_search.hpp"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/validate.hpp"
 
 #include "identification/axis_log.hpp"
+#include "identification/synthetic_log.hpp"
 #include "support/descriptions.hpp"
 
 namespace deltadyn {
@@ -107,6 +109,25 @@ TEST(FindPresliding, FindsNoneWhereCoulombsLawHolds) {
     processing.cutoff_hz = 20;
     const auto found = find_presliding(*robot, find_base_parameters(*robot), {log.make()}, processing);
     EXPECT_LT(found[0].displacement, 3e-4);  // what a filter of 20 Hz cannot tell from a step
+  }
+}
+
+// A position that jitters by the steps of its encoder rounds the reversals of Coulomb's friction.
+TEST(FindPresliding, FindsNoneBelowTheStepsOfACoarseEncoder) {
+  const auto robot = make_robot(delta_description("delta4"));
+  SyntheticOptions coarse;
+  coarse.duration_s = 10;
+  coarse.torque_noise = 0.1;
+  coarse.base_frequency_hz = 0.3;
+  coarse.encoder_step = 2 * std::numbers::pi / 4096;
+  coarse.with_derivatives = false;
+  for (const std::uint64_t seed : {5000, 5003}) {
+    coarse.seed = seed;
+    ProcessingOptions processing;
+    processing.cutoff_hz = 26;
+    for (const PreslidingJoint& joint :
+         find_presliding(*robot, find_base_parameters(*robot), {synthetic_log(*robot, delta_truth(*robot), coarse)}, processing))
+      EXPECT_EQ(joint.displacement, 0) << seed;
   }
 }
 

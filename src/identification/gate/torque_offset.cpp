@@ -94,7 +94,7 @@ bool stands_out(const Offsets& o, const Stack& stack) {
 
 }  // namespace
 
-std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
+std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
   const std::vector<std::string>& names = robot.parameter_names();
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(".offset"); })) return {};
   Stack stack;
@@ -111,7 +111,8 @@ std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters
     if (best.residual < kSound && best.residual < kWins * as_given) break;  // the simpler one
   }
   if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
-  LogFinding f;
+  TorqueOffset out{{}, VectorXd::Zero(robot.drives())};
+  LogFinding& f = out.finding;
   f.level = FindingLevel::warning;
   f.key = "torque_offset";
   f.drive = best.drives.size() == 1 ? best.drives.front() : -1;
@@ -122,6 +123,7 @@ std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters
     const int drive = best.drives[static_cast<std::size_t>(k)];
     const char* unit = robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
     f.unit = unit;
+    out.value(drive) = best.value(k);
     sizes += fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : " and ", best.value(k), best.std(k), unit);
   }
   f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
@@ -129,7 +131,7 @@ std::optional<LogFinding> torque_offset(const Robot& robot, const BaseParameters
   f.mend =
       "if the zero of the sensor or amplifier is off, take it out (delta-log import: offset in the map) or fit it (--offset); "
       "friction that differs by direction looks alike: delta-diagnose names it";
-  return f;
+  return out;
 }
 
 }  // namespace deltadyn::gate
