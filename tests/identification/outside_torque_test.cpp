@@ -77,6 +77,21 @@ TEST(OutsideTorque, ALogThatIsPushedMostOfTheTimeStaysAsItIs) {
   EXPECT_TRUE(pushes(*robot, {log}).empty());
 }
 
+// The torque of a servo that is off is left out already.
+TEST(OutsideTorque, IsNotATorqueThatIsMissing) {
+  const auto robot = make_robot(axis_description(DriveKind::revolute));
+  for (const std::uint64_t seed : {8, 9, 10}) {
+    Log log = drive_log(seed).make();
+    // Off where the machine would need most: more is missing there than the drive gives in the rest of the log.
+    Eigen::Index most = 0, half = 75;
+    log.tau.col(0).segment(half, log.samples() - 2 * half).cwiseAbs().maxCoeff(&most);
+    log.tau.middleRows(most, 2 * half + 1).setZero();
+    log.torque_out.setConstant(log.samples(), 1, false);
+    log.torque_out.middleRows(most, 2 * half + 1) = true;
+    EXPECT_TRUE(pushes(*robot, {log}).empty()) << seed;
+  }
+}
+
 TEST(OutsideTorque, OnAParallelRobotOnlyWhereItIs) {
   const auto robot = make_robot(delta_description("delta3"));
   SyntheticOptions synthetic;

@@ -366,6 +366,8 @@ TEST(LogCheck, BringsAStaleLogToItsOwnRate) {
   for (int d = 0; d < 3; ++d) {
     ASSERT_NE(finding(mended, "stale", d), nullptr);
     EXPECT_NEAR(finding(mended, "stale", d)->value, 4.0, 0.05);
+    const double travel = finding(parts_of(truth).front(), "travel", d)->value;
+    EXPECT_NEAR(finding(mended, "travel", d)->value, travel, 0.01 * travel);
   }
   EXPECT_NEAR(mended.sample_time_s(), 0.004, 1e-9);
   for (Eigen::Index k = 0; k < mended.samples(); ++k) {

@@ -177,7 +177,7 @@ class DriveRowsSeen {
  public:
   DriveRowsSeen(const Seen& seen, int drive, double scale)
       : residual_(seen.rows.residual().col(drive).cwiseAbs()),
-        recorded_(recorded(seen)),
+        recorded_(recorded(seen, drive)),
         moves_(recorded_ && moving(seen, drive)),
         scale_(scale) {
     const VectorXd tau = recorded_.select(seen.rows.tau.col(drive).array(), 0.0).matrix();
@@ -210,14 +210,17 @@ class DriveRowsSeen {
 
  private:
   /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold.
-  static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen) {
+  /// A torque that is none (servo off) is none in all rows that the low pass carries it to.
+  static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen, int drive) {
     const PreparedLog& log = seen.prepared;
     Eigen::Array<bool, Eigen::Dynamic, 1> out = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(seen.rows.rows(), true);
-    if (log.filled.empty()) return out;
     const Index reach = log.low_pass->half_width();
     for (Index k = 0; k < out.size(); ++k) {
-      const auto begin = log.filled.begin() + (sample_of_row(log, k) - reach), end = begin + 2 * reach + 1;
-      out(k) = std::find(begin, end, Log::kLeftOut) == end;
+      const Index first = sample_of_row(log, k) - reach, count = 2 * reach + 1;
+      if (log.torque_out.size() > 0) out(k) = !log.torque_out.col(drive).segment(first, count).any();
+      if (log.filled.empty()) continue;
+      const auto begin = log.filled.begin() + first, end = begin + count;
+      out(k) = out(k) && std::find(begin, end, Log::kLeftOut) == end;
     }
     return out;
   }
@@ -228,8 +231,7 @@ class DriveRowsSeen {
     const Index reach = log.low_pass->half_width() / 2;
     for (Index k = 0; k < out.size(); ++k) {
       const Index first = sample_of_row(log, k) - reach, count = 2 * reach + 1;
-      out(k) = !log.rest.col(drive).segment(first, count).any() &&
-               !(log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
+      out(k) = !log.rest.col(drive).segment(first, count).any();
     }
     return out;
   }

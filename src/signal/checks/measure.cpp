@@ -1,6 +1,7 @@
 /// \file
 /// What is measured of every log and stands in summaries: resolution, noise, travel.
 
+#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/signal/log_columns.hpp"
@@ -26,6 +27,17 @@ std::string step_in_words(const std::string& column, double step, const std::str
                   : column + " has no step that is visible beside its noise";
 }
 
+/// A channel that is fresh only now and again has numbers only there by now, and is measured at its own rate.
+ChannelQuality quality_of(const Eigen::Ref<const Eigen::VectorXd>& values, int rows_a_value) {
+  if (rows_a_value <= 1) return measure_channel(values);
+  Eigen::VectorXd fresh(values.size());
+  Index count = 0;
+  for (const double value : values) {
+    if (std::isfinite(value)) fresh(count++) = value;
+  }
+  return measure_channel(fresh.head(count));
+}
+
 }  // namespace
 
 void measure_channels(CheckRoom& room) {
@@ -34,7 +46,7 @@ void measure_channels(CheckRoom& room) {
     const DriveColumns names = drive_columns(room.robot, static_cast<int>(d));
     const std::string length = room.turns(d) ? "rad" : "m";
     const std::string effort = room.turns(d) ? "N*m" : "N";
-    const ChannelQuality q = measure_channel(log.q.col(d));
+    const ChannelQuality q = quality_of(log.q.col(d), room.stale_positions[static_cast<std::size_t>(d)]);
     add(room, "step", d, q.step, length, step_in_words(names.q, q.step, length));
     add(room, "noise", d, q.noise, length, fmt::format("{} has noise of {:.3g} {}", names.q, q.noise, length));
     add(room, "travel", d, q.travel, length, fmt::format("{} travels {:.4g} {}", names.q, q.travel, length));
