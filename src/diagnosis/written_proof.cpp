@@ -20,6 +20,7 @@ constexpr double kChance = 0.025;        // of a gain that is none
 constexpr double kWorse = 1.05;          // rms of a named drive over that of the given model from which the improved one is worse
 constexpr double kWorseElsewhere = 1.2;  // the same of any other drive, whose parameters are fitted along
 constexpr double kBlock_s = 0.25;        // longer than the memory of the noise
+constexpr Index kFewestRows = 5;         // of a drive, below which its rms says nothing
 constexpr int kResamples = 1000;
 constexpr std::size_t kFewestBlocks = 12;  // from which they say anything about the noise
 
@@ -70,6 +71,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
   for (std::size_t j = 0; j < before.drives.size(); ++j) {
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
     out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
+    if (std::min(b.rows, a.rows) < kFewestRows) continue;
     const bool named = std::find(touched.begin(), touched.end(), static_cast<int>(j)) != touched.end();
     const double worse = named ? kWorse : kWorseElsewhere;
     // Rows near reversals count where the given model answers for them.
