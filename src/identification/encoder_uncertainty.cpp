@@ -16,20 +16,31 @@ using Eigen::VectorXd;
 
 constexpr int kPhases = 8;          // tell a standard deviation to a quarter
 constexpr Index kSamples = 20'000;  // of each log: longer ones average no less
-constexpr double kFineSteps = 20;   // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4)
+constexpr double kFineSteps =
+    20;  // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4); with fewer it may follow
+         // the motion
 constexpr std::uint64_t kSeed = 1;
 
-/// Does a drive pass so few steps in a sample, rms over its log, that their error may follow the motion?
-bool coarse(const Log& log, const VectorXd& step) {
+constexpr double kFewSteps = 3;  // the same: their error lies about the turning points of the motion
+
+/// Does a drive pass fewer steps in a sample, rms over its log?
+bool coarse(const Log& log, const VectorXd& step, double steps) {
   for (Index j = 0; j < log.drives(); ++j) {
     const VectorXd moved = log.q.col(j).tail(log.samples() - 1) - log.q.col(j).head(log.samples() - 1);
     const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
-    if (step(j) > 0 && usual > 0 && usual < kFineSteps * step(j)) return true;
+    if (step(j) > 0 && usual > 0 && usual < steps * step(j)) return true;
   }
   return false;
 }
 
 }  // namespace
+
+bool has_coarse_encoders(const std::vector<Log>& logs) {
+  return std::any_of(logs.begin(), logs.end(), [](const Log& log) {
+    const Log middle = middle_of(log, kSamples);
+    return coarse(middle, position_steps(middle), kFewSteps);
+  });
+}
 
 Eigen::MatrixXd encoder_covariance(const std::vector<Log>& logs, double motion_hz,
                                    const std::function<VectorXd(const std::vector<Log>&)>& estimate) {
@@ -39,7 +50,7 @@ Eigen::MatrixXd encoder_covariance(const std::vector<Log>& logs, double motion_h
   for (const Log& log : logs) {
     middles.push_back(middle_of(log, kSamples));
     steps.push_back(position_steps(middles.back()));
-    any = any || coarse(middles.back(), steps.back());
+    any = any || coarse(middles.back(), steps.back(), kFineSteps);
   }
   if (!any) return {};
   std::vector<Eigen::MatrixXd> smooth;

@@ -13,6 +13,9 @@
 
 namespace deltadyn {
 
+/// Do so few steps of an encoder pass in a sample that their error lies about the turning points of the motion?
+[[nodiscard]] bool has_coarse_encoders(const std::vector<Log>& logs);
+
 /// Covariance of the base parameters over the phases of the encoders; empty where all steps are too fine to matter.
 /// \param motion_hz  -3 dB point of the filter whose output stands for the motion
 /// \param estimate   base parameters from logs like the given ones

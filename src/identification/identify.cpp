@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "deltadyn/identification/noise_bias.hpp"
 #include "deltadyn/identification/ripple_search.hpp"
@@ -76,6 +78,13 @@ struct MotionHz {
   double least = 0;       ///< whatever the cut-off of the rows: what the filter bends of the motion is beyond it
   double most = 0;        ///< the same: beyond there is nothing but noise
   double instrument = 0;  ///< nearly all of the motion, and little noise
+
+  /// No wider than little more than the instruments' band.
+  [[nodiscard]] MotionHz narrow() const {
+    constexpr double kLittleMore = 1.3;
+    const double at_most = std::min(most, kLittleMore * instrument);
+    return {std::min(least, at_most), at_most, instrument};
+  }
 };
 
 MotionHz motion_bands(const std::vector<Log>& logs, const Identification& found) {
@@ -151,8 +160,42 @@ class Identifier {
       out_.model_band = std::move(chosen.model);
     }
     motion_ = motion_bands(logs_, out_);
-    out_.processing.keep_motion(motion_.least);
-    out_.processing.motion_over_pass = std::min(out_.processing.motion_over_pass, motion_.most / out_.processing.cutoff_hz);
+    ProcessingOptions usual = filtered(motion_);
+    // The steps of coarse encoders lie about the reversals, where they bend friction, and no instrument sees them there: a narrower
+    // filter of the positions takes them out, where the motion has nothing beyond it.
+    if (has_coarse_encoders(logs_)) {
+      ProcessingOptions smooth = filtered(motion_.narrow());
+      if (unexplained(smooth) < unexplained(usual)) {
+        motion_ = motion_.narrow();
+        usual = std::move(smooth);
+      }
+    }
+    out_.processing = std::move(usual);
+  }
+
+  [[nodiscard]] ProcessingOptions filtered(const MotionHz& motion) const {
+    ProcessingOptions out = out_.processing;
+    out.keep_motion(motion.least);
+    out.motion_over_pass = std::min(out.motion_over_pass, motion.most / out.cutoff_hz);
+    return out;
+  }
+
+  /// Mean logarithm of the drives' residuals with the base parameters that fit best; infinite if the logs are too short.
+  [[nodiscard]] double unexplained(const ProcessingOptions& processing) const {
+    try {
+      const DataFold fold = fold_all(robot_, prepare_all(robot_, logs_, processing), options_.threads);
+      std::vector<DriveFold> folds = fold.regular;
+      for (std::size_t j = 0; j < folds.size(); ++j) {
+        if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
+      }
+      const BaseEstimate estimate = estimate_base_parameters(out_.base, folds);
+      const Eigen::VectorXd p = any_parameters(out_.base, estimate.value, robot_.parameters());
+      double sum = 0;
+      for (const DriveFold& drive : folds) sum += std::log(std::max(drive.rms(p), 1e-300));
+      return sum / static_cast<double>(folds.size());
+    } catch (const Error&) {
+      return std::numeric_limits<double>::infinity();
+    }
   }
 
   void make_rows() {

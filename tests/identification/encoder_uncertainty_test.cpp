@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <iostream>
+#include <numbers>
 
 #include "deltadyn/identification/identify.hpp"
 
 #include "identification/axis_log.hpp"
+#include "identification/synthetic_log.hpp"
 #include "support/descriptions.hpp"
 
 namespace deltadyn {
@@ -88,6 +91,42 @@ TEST(EncoderUncertainty, IntervalsHoldWithCoarseEncoders) {
     EXPECT_GT(rms, 0.4);
     EXPECT_LT(rms, 1.4);
   }
+}
+
+TEST(EncoderUncertainty, FewStepsASampleAreCoarse) {
+  AxisLog axis;
+  axis.encoder_bits = 12;
+  EXPECT_TRUE(has_coarse_encoders({axis.make()}));
+  axis.encoder_bits = 17;
+  EXPECT_FALSE(has_coarse_encoders({axis.make()}));
+}
+
+// On a robot the steps of 12 bits bend the friction about the reversals: both are told from the motion without them.
+TEST(EncoderUncertainty, FrictionOfARobotIsRightWithCoarseEncoders) {
+  const auto robot = make_robot(delta_description("delta4"));
+  const Eigen::VectorXd truth = delta_truth(*robot);
+  double square = 0, count = 0;
+  for (const std::uint64_t seed : {5000, 5001, 5003}) {
+    SyntheticOptions how;
+    how.duration_s = 10;
+    how.torque_noise = 0.1;
+    how.base_frequency_hz = 0.3;
+    how.encoder_step = 2 * std::numbers::pi / 4096;
+    how.with_derivatives = false;
+    how.seed = seed;
+    const Identification found = identify(*robot, {synthetic_log(*robot, truth, how)}, truth, {}, IdentificationOptions{});
+    const Eigen::VectorXd right = found.base.B * truth, std = found.base_estimate.std();
+    for (Eigen::Index k = 0; k < right.size(); ++k) {
+      const std::string& name = found.base.expressions[static_cast<std::size_t>(k)];
+      if (name.find("coulomb") == std::string::npos && name.find("viscous") == std::string::npos) continue;
+      square += std::pow((found.base_estimate.value(k) - right(k)) / std(k), 2);
+      ++count;
+    }
+  }
+  const double rms = std::sqrt(square / count);
+  std::cout << "  errors of " << rms << " stated standard deviations\n";
+  EXPECT_GT(rms, 0.4);
+  EXPECT_LT(rms, 1.4);
 }
 
 }  // namespace

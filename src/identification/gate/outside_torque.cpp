@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <utility>
 
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/least_squares.hpp"
@@ -209,31 +210,38 @@ class DriveRowsSeen {
   [[nodiscard]] Index moving_in(const Push& push) const { return moves_.segment(push.first, push.last - push.first + 1).count(); }
 
  private:
-  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold.
-  /// A torque that is none (servo off) is none in all rows that the low pass carries it to.
+  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold. Where the machine
+  /// moves and the torque is left out (servo off), it is missing anyway.
   static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen, int drive) {
     const PreparedLog& log = seen.prepared;
     Eigen::Array<bool, Eigen::Dynamic, 1> out = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(seen.rows.rows(), true);
     const Index reach = log.low_pass->half_width();
     for (Index k = 0; k < out.size(); ++k) {
-      const Index first = sample_of_row(log, k) - reach, count = 2 * reach + 1;
-      if (log.torque_out.size() > 0) out(k) = !log.torque_out.col(drive).segment(first, count).any();
+      const auto [first, count] = inner_half(log, k);
+      if (log.torque_out.size() > 0) {
+        out(k) = !log.torque_out.col(drive).segment(first, count).any() || log.rest.col(drive).segment(first, count).any();
+      }
       if (log.filled.empty()) continue;
-      const auto begin = log.filled.begin() + first, end = begin + count;
+      const auto begin = log.filled.begin() + (sample_of_row(log, k) - reach), end = begin + 2 * reach + 1;
       out(k) = out(k) && std::find(begin, end, Log::kLeftOut) == end;
     }
     return out;
   }
-  /// Rows whose inner half, where most of the low pass' weight is, holds no rest.
+  /// Rows whose inner half holds no rest.
   static Eigen::Array<bool, Eigen::Dynamic, 1> moving(const Seen& seen, int drive) {
     const PreparedLog& log = seen.prepared;
     Eigen::Array<bool, Eigen::Dynamic, 1> out(seen.rows.rows());
-    const Index reach = log.low_pass->half_width() / 2;
     for (Index k = 0; k < out.size(); ++k) {
-      const Index first = sample_of_row(log, k) - reach, count = 2 * reach + 1;
-      out(k) = !log.rest.col(drive).segment(first, count).any();
+      const auto [first, count] = inner_half(log, k);
+      out(k) = !log.rest.col(drive).segment(first, count).any() &&
+               !(log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
     }
     return out;
+  }
+  /// First sample and number of those that most of the low pass' weight is on.
+  static std::pair<Index, Index> inner_half(const PreparedLog& log, Index row) {
+    const Index reach = log.low_pass->half_width() / 2;
+    return {sample_of_row(log, row) - reach, 2 * reach + 1};
   }
 
   /// At rest static friction makes residuals that are no push.
