@@ -230,6 +230,24 @@ TEST_P(LogGate, NamesATorqueWhoseZeroIsOff) {
   EXPECT_EQ(find(result, {"scale"}, FindingLevel::warning), nullptr) << told(result);
 }
 
+// Each of its own size: no smaller set and no other size stands for them.
+TEST_P(LogGate, NamesTheOffsetsOfAllDrives) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  for (const Eigen::Vector3d& offsets : {Eigen::Vector3d(1.5, -2, 1), Eigen::Vector3d(3, 3, 3)}) {
+    const double unit = robot->description().kind_of_drive(0) == DriveKind::revolute ? 1 : 5;
+    std::vector<Log> logs = recorded(*robot);
+    for (Log& log : logs) log.tau.leftCols(3).rowwise() += unit * offsets.transpose();
+    const GateResult result = examine(*robot, logs);
+    const LogFinding* finding = find(result, {"torque_offset"}, FindingLevel::warning);
+    ASSERT_NE(finding, nullptr) << told(result);
+    EXPECT_EQ(finding->drive, -1);
+    const char* who = robot->drives() == 3 ? "all drives" : "drives 1, 2 and 3";
+    EXPECT_NE(finding->text.find(who), std::string::npos) << told(result);
+    EXPECT_NEAR(finding->value, unit * offsets(0), 0.2 * unit) << told(result);
+    EXPECT_FALSE(result.stop());
+  }
+}
+
 TEST(LogGateScale, IsJudgedBesideATorqueWhoseZeroIsOff) {
   const auto robot = make_robot(delta_description("delta3"));
   const Eigen::VectorXd prior = delta_truth(*robot);

@@ -16,9 +16,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSound = 0.02;    // of the torque: what a log without faults may leave
-constexpr double kWins = 0.5;      // of the residual
+constexpr double kWins = 0.85;     // of the residual: offsets of all drives are nearly a load
+constexpr double kMore = 0.95;     // of the residual of fewer drives
 constexpr double kLeast = 0.03;    // of the drive's rms torque: less is no matter
-constexpr double kSigmas = 8;      // of the offset
+constexpr double kSigmas = 15;     // of the offset
 constexpr Index kFewestRows = 20;  // of a drive
 
 /// All drives' rows, each over its rms torque; the drives' offsets are the last columns.
@@ -92,6 +93,25 @@ bool stands_out(const Offsets& o, const Stack& stack) {
   return true;
 }
 
+/// Offsets of the fewest drives that explain the torque; more of them only where they leave clearly less.
+Offsets best_offsets(const Stack& stack, int drives) {
+  Offsets best;
+  for (int count = 1; count <= drives; ++count) {
+    Offsets next;
+    for (int set = 1; set < (1 << drives); ++set) {
+      std::vector<int> members;
+      for (int j = 0; j < drives; ++j) {
+        if ((set >> j & 1) != 0) members.push_back(j);
+      }
+      if (static_cast<int>(members.size()) != count) continue;
+      Offsets one = fit(stack, members);
+      if (one.residual < next.residual && stands_out(one, stack)) next = std::move(one);
+    }
+    if (next.residual < (best.residual < kSound ? kMore : 1.0) * best.residual) best = std::move(next);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
@@ -100,16 +120,7 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
   Stack stack;
   if (!stack.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
   const double as_given = fit(stack, {}).residual;
-  Offsets best;
-  for (const std::size_t most : {1U, 2U}) {
-    for (int i = 0; i < robot.drives(); ++i) {
-      for (int j = most == 1 ? i : i + 1; j < robot.drives(); ++j) {
-        const Offsets one = fit(stack, most == 1 ? std::vector<int>{i} : std::vector<int>{i, j});
-        if (one.residual < best.residual && stands_out(one, stack)) best = one;
-      }
-    }
-    if (best.residual < kSound && best.residual < kWins * as_given) break;  // the simpler one
-  }
+  const Offsets best = best_offsets(stack, robot.drives());
   if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
   TorqueOffset out{{}, VectorXd::Zero(robot.drives())};
   LogFinding& f = out.finding;
@@ -124,13 +135,16 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
     const char* unit = robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
     f.unit = unit;
     out.value(drive) = best.value(k);
-    sizes += fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : " and ", best.value(k), best.std(k), unit);
+    const bool last = k + 1 == best.value.size();
+    sizes += fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : (last ? " and " : ", "), best.value(k), best.std(k), unit);
   }
   f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
                        drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual);
   f.mend =
-      "if the zero of the sensor or amplifier is off, take it out (delta-log import: offset in the map) or fit it (--offset); "
-      "friction that differs by direction looks alike: delta-diagnose names it";
+      "if the zero of the sensor or amplifier is off, fit it (delta-identify --offset) or take it out (delta-log import: offset "
+      "in "
+      "the map); friction that differs by direction looks alike, and so does a hose if all drives are off: delta-diagnose names "
+      "them";
   return out;
 }
 

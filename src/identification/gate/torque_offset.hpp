@@ -12,9 +12,9 @@
 
 namespace deltadyn::gate {
 
-/// The torque of one or two drives with an offset that explains most of a residual, down to that of a sound log. Nothing for a robot
-/// whose parameters hold offsets. Loads and springs act on all drives; they are no offset of one.
-/// A warning: friction that differs by direction is one, too.
+/// Drives whose torque has an offset, of each its own, where that explains most of a residual, down to that of a sound log. Nothing
+/// for a robot whose parameters hold offsets. A warning: friction that differs by direction is one, too, and a load on the plate
+/// is nearly one of all drives.
 struct TorqueOffset {
   LogFinding finding;
   Eigen::VectorXd value;  ///< of each drive [N m | N]; 0: none
