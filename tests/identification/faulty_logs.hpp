@@ -92,6 +92,7 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
       t("torque in per mille of 60", same, for_limbs(n, 1000.0 / 60, 250), {"scale"}),
       t("torque of the motor", same, for_limbs(n, 0.05, 1), {"scale"}),
       both("motor side, 20", for_limbs(n, 20, 1), for_limbs(n, 0.05, 1), {"position_scale"}),
+      both("gear ratio taken out twice", for_limbs(n, 0.05, 1), for_limbs(n, 20, 1), {"position_scale"}),
       both("motor side of drive 2, 8", for_one(n, 1, 8, 1), for_one(n, 1, 0.125, 1), {"position_scale"}),
       both("positions and torques against the axis", for_limbs(n, -1, 1), for_limbs(n, -1, 1),
            {"position_sign", "position_zero"}),
@@ -113,6 +114,15 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
     out.push_back(t("torque sign of the yaw", same, for_one(n, 3, -1, 1), {"torque_sign"}));
     out.push_back(q("yaw in degrees", same, for_one(n, 3, degrees, 1), zeros, {"torque_scale", "position_range"}));
     out.push_back(t("torques 3 and 4 swapped", {0, 1, 3, 2}, ones, any_order));
+    for (const std::vector<int>& source : {std::vector<int>{3, 1, 2, 0}, {3, 0, 1, 2}, {0, 1, 3, 2}}) {
+      out.push_back({"yaw in the columns of a limb",
+                     [=](Log& log) {
+                       remap(log.q, source, ones);
+                       remap(log.tau, source, ones);
+                     },
+                     {"drive_order"},
+                     0});
+    }
   }
   return out;
 }

@@ -161,6 +161,10 @@ class Judge {
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
     const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
     reading_alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(blocks.size()));
+    if (h.drives_moved) {
+      add_signs_and_factors(h, reading, before, blocks, h.reading.source);
+      return;
+    }
     std::vector<int> order(blocks.size());
     std::iota(order.begin(), order.end(), 0);
     do {
@@ -218,7 +222,7 @@ class Judge {
       if (e.mend.empty()) e.mend = mend;
     };
     if (!h.words.empty()) say(h.key, h.words, h.mend);
-    tell_order(order, e, say);
+    if (!h.drives_moved) tell_order(order, e, say);
     tell_signs(factor, scaled_drive, e, say);
     if (scaled_drive >= 0) tell_factor(factor, scaled_drive, scale, e, say);
     if (!e.words.empty()) all_.push_back(std::move(e));

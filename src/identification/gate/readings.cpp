@@ -41,7 +41,7 @@ void add_signs(const RobotDescription& robot, std::vector<PositionHypothesis>& o
   }
 }
 
-/// Position columns of other drives.
+/// Columns of other drives: of the positions, and of positions and torques where that is more than limbs numbered in another way.
 void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& out) {
   const int n = robot.drives();
   std::vector<int> order(static_cast<std::size_t>(n));
@@ -58,6 +58,18 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
     h.words = fmt::format("the positions are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
     h.mend = "put the position columns in the order of the limbs, counter-clockwise from above (limb 1 on +x)";
     h.changes = moved;
+    out.push_back(h);
+    if (order.size() == robot.limbs.size() || order.back() == n - 1) continue;
+    h.key = "drive_order";
+    h.drives_moved = true;
+    h.words = fmt::format(
+        "the drives are in another order: the drive that turns the tool is in the columns of drive {}, the limbs, counted from "
+        "any of them, in "
+        "those of drives {}",
+        order.back() + 1, columns.substr(0, columns.rfind(',')));
+    h.mend =
+        "put the columns in the order of the limbs, counter-clockwise from above (limb 1 on +x), then the drive that turns the "
+        "tool (delta-log import: source in the map)";
     out.push_back(std::move(h));
   }
 }
@@ -101,8 +113,18 @@ PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& 
     return h;
   }
   const double ratio = 1 / value;
-  const double whole = std::round(ratio);
-  const bool gear = ratio > 1.5 && std::abs(ratio / whole - 1) < std::max(tolerance, 0.01);
+  const double whole = std::round(ratio), inverse = std::round(value);
+  const auto is_whole = [&](double x) { return x > 1.5 && std::abs(x / std::round(x) - 1) < std::max(tolerance, 0.01); };
+  const bool gear = is_whole(ratio);
+  if (is_whole(value)) {
+    h.words = fmt::format("the position of {} is 1/{:g} of the joint's: a gear ratio taken out of what is the joint's already?",
+                          who, inverse);
+    h.mend = fmt::format(
+        "multiply the positions by {:g}, and divide the torque by it if it was multiplied (delta-log import: leave "
+        "gear_ratio out of the map's blocks)",
+        inverse);
+    return h;
+  }
   h.odd = !gear;
   if (!gear) h.changes += 0.7;  // no unit and no whole ratio: less likely than any of these
   h.words = fmt::format("the position of {} is {:.4g} times the joint's: motor side of a gear{}?", who, gear ? whole : ratio,
@@ -150,6 +172,8 @@ std::vector<double> plausible_values(const PositionFamily& family, const RobotDe
   }
   const double ratio = 1 / value, whole = std::round(ratio);
   if (ratio > 1.5 && std::abs(ratio / whole - 1) < kNear) out.push_back(1 / whole);
+  const double inverse = std::round(value);
+  if (value > 1.5 && std::abs(value / inverse - 1) < kNear) out.push_back(inverse);
   return out;
 }
 

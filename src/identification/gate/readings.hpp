@@ -18,9 +18,10 @@ struct PositionHypothesis {
   std::string key;    ///< of the finding, e.g. "position_sign"
   std::string words;  ///< "the position of drive 2 has the wrong sign"
   std::string mend;
-  int drive = -1;      ///< from 0; -1: several
-  bool odd = false;    ///< a factor that is neither a unit nor a whole ratio, a zero at no right angle
-  double changes = 0;  ///< how much is assumed: of two that explain alike, the one with less comes first
+  int drive = -1;             ///< from 0; -1: several
+  bool drives_moved = false;  ///< the torques are in the order of the positions
+  bool odd = false;           ///< a factor that is neither a unit nor a whole ratio, a zero at no right angle
+  double changes = 0;         ///< how much is assumed: of two that explain alike, the one with less comes first
 };
 
 /// A factor or an offset that must be searched for: family(x) is the reading for one value.
