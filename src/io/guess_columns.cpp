@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "deltadyn/signal/log_columns.hpp"
 
+#include "drive_order.hpp"
 #include "header_words.hpp"
 #include "recorded_time.hpp"
 
@@ -33,6 +33,7 @@ struct Set {
   Origin origin = Origin::unstated;
   bool has_unit = false;
   bool direct = true;  ///< needs no constant of the motor or encoder to become SI
+  std::string doubt;   ///< what the order of the drives rests on, if not on plain names
 };
 
 /// Units that a maker or a message states by custom, not in the header: ROS (REP 103) is SI, UR's RTDE is rad, A, N m.
@@ -83,33 +84,6 @@ std::vector<Candidate> candidates_of(const Recording& recording, Quantity quanti
   return found;
 }
 
-/// Drive of each member, from 1, by the one number in which the names differ (counted from 0 or 1), or by the place in the message.
-std::vector<long> places_of(const std::vector<Candidate>& members) {
-  const std::size_t slots = members.front().words.numbers.size();
-  const bool alike =
-      std::all_of(members.begin(), members.end(), [&](const Candidate& m) { return m.words.numbers.size() == slots; });
-  if (!alike) return {};
-  std::vector<long> places;
-  int differing = 0;
-  for (std::size_t slot = 0; slot < slots; ++slot) {
-    std::set<long> values;
-    std::vector<long> here;
-    for (const Candidate& member : members) {
-      values.insert(member.words.numbers[slot]);
-      here.push_back(member.words.numbers[slot]);
-    }
-    if (values.size() == 1) continue;
-    ++differing;
-    if (values.size() == members.size()) places = here;
-  }
-  if (differing != 1 || places.empty()) return {};
-  const long first = *std::min_element(places.begin(), places.end());
-  if (first == 0) {
-    for (long& place : places) ++place;
-  }
-  return places;
-}
-
 /// Named as in a log of these tools, q1_rad, tau1_Nm: the number is the drive, and those beyond the robot's are not used.
 bool is_log_name(const Candidate& candidate) {
   const std::string& stem = candidate.words.stem;
@@ -120,23 +94,56 @@ bool is_log_name(const Candidate& candidate) {
   return known && candidate.channel->name.compare(0, stem.size() + 1, stem + "_") == 0;
 }
 
+/// Joints of one message: of many, those that are called as the drives of robot files (the passive joints are published, too).
+std::vector<Candidate> drives_among(const std::vector<Candidate>& members, int drives) {
+  std::vector<Candidate> found;
+  for (int drive = 1; drive <= drives; ++drive) {
+    for (const Candidate& member : members) {
+      if (is_named_as_drive(member.channel->joint, drive)) found.push_back(member);
+    }
+  }
+  return found.size() == static_cast<std::size_t>(drives) ? found : members;
+}
+
+/// Drive of each member; what of it is a conclusion, or the bare order of the message, is said in `set.doubt`.
+std::vector<long> places_of(const std::vector<Candidate>& members, const RobotDescription& robot, Set& set) {
+  std::vector<std::string> names;
+  bool message = true;
+  for (const Candidate& member : members) {
+    message = message && member.channel->place > 0;
+    names.push_back(member.channel->joint.empty() ? member.words.stem : member.channel->joint);
+  }
+  const DriveOrder order = order_by_names(names, robot.telescope.has_value());
+  if (!message) return order.doubt.empty() ? order.places : std::vector<long>{};
+  std::vector<long> places = order.places;
+  std::string why = order.doubt;
+  if (places.empty()) {
+    for (const Candidate& member : members) places.push_back(member.channel->place);
+    why = "their names tell no order, so that of the message is taken";
+  }
+  if (why.empty()) return places;
+  std::vector<std::string> taken;
+  for (std::size_t k = 0; k < names.size(); ++k) taken.push_back(fmt::format("'{}' as drive {}", names[k], places[k]));
+  set.doubt = fmt::format("the joints {}: {}; check it, and where it is wrong set drive = in a column map (--map-out writes one)",
+                          fmt::join(taken, ", "), why);
+  return places;
+}
+
 /// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six joints and four
 /// drives nobody but the user knows which are meant.
-std::optional<Set> set_of(const std::vector<Candidate>& members, const RobotDescription& robot, Quantity quantity,
+std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription& robot, Quantity quantity,
                           const MapDefaults& defaults) {
   const auto drives = static_cast<std::size_t>(robot.drives());
+  Set set;
   std::vector<long> places;
+  if (members.size() > drives) members = drives_among(members, robot.drives());
   if (std::all_of(members.begin(), members.end(), is_log_name)) {
     for (const Candidate& member : members) places.push_back(member.words.numbers.back());
   } else if (members.size() != drives) {
     return std::nullopt;
   } else {
-    places = drives == 1 ? std::vector<long>{1} : places_of(members);
+    places = drives == 1 ? std::vector<long>{1} : places_of(members, robot, set);
   }
-  if (places.empty() && std::all_of(members.begin(), members.end(), [](const Candidate& m) { return m.channel->place > 0; })) {
-    for (const Candidate& member : members) places.push_back(member.channel->place);
-  }
-  Set set;
   set.of_drive.resize(drives, {nullptr, {}});
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] >= 1 && places[k] <= robot.drives()) set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
@@ -153,18 +160,32 @@ std::optional<Set> set_of(const std::vector<Candidate>& members, const RobotDesc
   return set;
 }
 
-/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units), all.
+/// What the members of a group have in common, from the narrowest to the widest.
+enum class Alike { words_and_unit, words, unit, quantity };
+
+std::string key_of(const Candidate& candidate, Alike alike) {
+  // The joints of one message belong together, whatever their names.
+  const bool message = candidate.channel->place > 0;
+  const std::string origin = std::to_string(static_cast<int>(candidate.words.origin));
+  const std::string words = message ? "" : candidate.words.pattern;
+  switch (alike) {
+    case Alike::words_and_unit: return words + "|" + candidate.words.unit;
+    case Alike::words: return words;
+    case Alike::unit: return origin + "|" + candidate.words.unit;
+    case Alike::quantity: return origin;
+  }
+  return "";
+}
+
+/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units), all. Where
+/// no names are alike (x axis, y axis, z axis; limb 1, limb 2, limb 3, yaw), their differences may still tell the drives.
 std::vector<Set> sets_of(const std::vector<Candidate>& candidates, const RobotDescription& robot, Quantity quantity,
                          const MapDefaults& defaults) {
   std::vector<Set> sets;
-  for (const bool with_unit : {true, false}) {
+  for (const Alike alike : {Alike::words_and_unit, Alike::words, Alike::unit, Alike::quantity}) {
+    if (robot.drives() == 1 && alike > Alike::words) break;  // there only the names can tell which is meant
     std::map<std::string, std::vector<Candidate>> groups;
-    for (const Candidate& candidate : candidates) {
-      // The joints of one message belong together, whatever their names.
-      std::string key = candidate.channel->place > 0 ? "" : candidate.words.pattern;
-      if (with_unit) key += "|" + candidate.words.unit;
-      groups[key].push_back(candidate);
-    }
+    for (const Candidate& candidate : candidates) groups[key_of(candidate, alike)].push_back(candidate);
     for (const auto& [key, members] : groups) {
       if (auto set = set_of(members, robot, quantity, defaults)) sets.push_back(*std::move(set));
     }
@@ -264,7 +285,7 @@ void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, c
 }  // namespace
 
 std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
-                                         const MapDefaults& defaults, ColumnMap& map) {
+                                         const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
   const std::vector<Candidate> candidates = candidates_of(recording, quantity, map);
   std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
   sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const Set& set) { return contradicts(set, map, robot.drives()); }),
@@ -289,6 +310,10 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
   }
   if (!best.has_unit) return {without_unit(best, robot, quantity, defaults)};
   add_set(best, robot, quantity, defaults, map);
+  if (!best.doubt.empty()) {
+    const std::string note = recording.file + ": " + best.doubt;
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  }
   return {};
 }
 

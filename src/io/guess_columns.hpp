@@ -19,7 +19,9 @@ struct OpenQuestion {
 
 /// Adds the channels of one quantity to `map`, for every drive or for none. Never chooses between equals: where two sets of
 /// columns fit alike, a unit is not stated, or only commanded positions are there, nothing is added and the question returned.
+/// \param notes  where the order of the drives rests on more than plain names, it is said here
 [[nodiscard]] std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot,
-                                                       Quantity quantity, const MapDefaults& defaults, ColumnMap& map);
+                                                       Quantity quantity, const MapDefaults& defaults, ColumnMap& map,
+                                                       std::vector<std::string>& notes);
 
 }  // namespace deltadyn

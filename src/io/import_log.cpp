@@ -379,7 +379,7 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     if (map_.has(quantity)) continue;
     const bool needed =
         quantity == Quantity::position || (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
-    for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_)) {
+    for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
       if (needed) ask(question.what, question.mend);
     }
     note_joints_beyond(quantity);

@@ -26,6 +26,7 @@ struct RecordedChannel {
   std::string unit;                  ///< as the file or the custom of its form says; empty: unknown
   std::string quantity;              ///< if the form itself says so: "position", "velocity", "torque"
   int place = 0;                     ///< place of the joint in the recording from 1, if the form itself says so; else 0
+  std::string joint;                 ///< its name, if the form itself says so
   std::size_t timeline = 0;          ///< index in Recording::timelines
   Eigen::VectorXd values;            ///< one a row of the timeline, NaN where the field is empty or no number
   std::int64_t origin = 0;           ///< to be added to every value: integers too long for a double are kept after their first

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "deltadyn/io/log_units.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -160,6 +162,23 @@ void make_unique(std::vector<std::string>& names, Recording& recording) {
   }
 }
 
+/// rostopic echo -p: field.position2 is of the joint whose name stands in the column field.name2; the number is a place only.
+void name_joints(Recording& recording) {
+  for (RecordedChannel& channel : recording.channels) {
+    const std::size_t digits = channel.name.find_last_not_of("0123456789") + 1;
+    if (digits == channel.name.size()) continue;
+    for (const std::string_view part : {"position", "velocity", "effort"}) {
+      if (digits <= part.size() || channel.name.compare(digits - part.size(), part.size(), part) != 0) continue;
+      const std::string name_column = channel.name.substr(0, digits - part.size()) + "name" + channel.name.substr(digits);
+      const auto named = std::find_if(recording.channels.begin(), recording.channels.end(),
+                                      [&](const RecordedChannel& other) { return other.name == name_column; });
+      if (named == recording.channels.end() || named->text.empty()) continue;
+      channel.joint = named->text;
+      channel.place = std::atoi(channel.name.c_str() + digits) + 1;
+    }
+  }
+}
+
 }  // namespace
 
 Recording read_delimited(const TextFile& file) {
@@ -190,6 +209,7 @@ Recording read_delimited(const TextFile& file) {
     channel.values = Eigen::Map<Eigen::VectorXd>(column.values.data(), static_cast<Eigen::Index>(column.values.size()));
     recording.channels.push_back(std::move(channel));
   }
+  name_joints(recording);
   return recording;
 }
 

@@ -242,6 +242,7 @@ void add_channels(const std::string& topic, Series& series, Recording& recording
                          fmt::format("{}[{}]", kParts[part], name)};
       channel.quantity = kQuantities[part];
       channel.place = static_cast<int>(joint) + 1;
+      channel.joint = name;
       channel.values = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
       recording.channels.push_back(std::move(channel));
     }
