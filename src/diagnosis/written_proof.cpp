@@ -79,6 +79,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
     const bool is_worse = a.rms_residual > worse * b.rms_residual ||
                           (near && a.rms_with_reversals > worse * std::max(b.rms_with_reversals, b.rms_residual));
     if (is_worse && out.worse_drive < 0) out.worse_drive = static_cast<int>(j);
+    if (b.rms_residual > 0) out.largest_loss = std::max(out.largest_loss, a.rms_residual / b.rms_residual);
   }
   const std::vector<Block> blocks = blocks_of(before.logs.front().prediction, after.logs.front().prediction, touched);
   out.blocks = blocks.size();
@@ -136,8 +137,9 @@ WrittenProof prove_written(const Robot& robot, const Log& holdout, const Written
     WrittenProof wider = proof_with(false);
     wider.cutoff_hz = cutoff_hz;
     if (!wider.testable()) continue;
-    // The few rows at delta-validate's own cut-off cannot bear the names out, but they can contradict them.
-    return wider.passed() && out.worse_drive >= 0 ? out : wider;
+    // The few rows at delta-validate's own cut-off cannot bear the names out, but they can contradict a gain that is small beside
+    // what is lost there.
+    return wider.passed() && wider.rms_ratio * out.largest_loss >= 1 ? out : wider;
   }
   return out;
 }

@@ -13,11 +13,12 @@ namespace deltadyn::detail {
 
 struct WrittenProof {
   std::vector<HoldoutFigure> drives;
-  double rms_ratio = 1;    ///< improved over given, over the drives that the names reach, each in units of its own residual
-  double p_no_gain = 1;    ///< chance that the improved model is no better (paired block bootstrap)
-  int worse_drive = -1;    ///< from 0: it got worse; -1: none
-  std::size_t blocks = 0;  ///< of rows that both models answer for
-  double cutoff_hz = 0;    ///< that delta-validate must be given for these figures; 0: the one that it chooses
+  double rms_ratio = 1;     ///< improved over given, over the drives that the names reach, each in units of its own residual
+  double p_no_gain = 1;     ///< chance that the improved model is no better (paired block bootstrap)
+  int worse_drive = -1;     ///< from 0: it got worse; -1: none
+  double largest_loss = 1;  ///< improved over given of the drive that got worst; 1: none did
+  std::size_t blocks = 0;   ///< of rows that both models answer for
+  double cutoff_hz = 0;     ///< that delta-validate must be given for these figures; 0: the one that it chooses
   /// Are there rows enough for a proof either way?
   [[nodiscard]] bool testable() const;
   [[nodiscard]] bool passed() const;
