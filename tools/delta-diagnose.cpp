@@ -249,7 +249,7 @@ class Diagnose {
   /// Rows of each drive that the search rests on, log by log.
   void tell_rows(const Diagnosis& result) const {
     if (result.drives.empty()) return;
-    fmt::print("rows used whole, and in part beside reversals, of all\n");
+    fmt::print("searched up to {:.3g} Hz; rows used whole, and in part beside reversals, of all\n", result.cutoff_hz);
     for (std::size_t l = 0; l < result.drives.front().rows.size(); ++l) {
       std::string text;
       for (std::size_t j = 0; j < result.drives.size(); ++j) {

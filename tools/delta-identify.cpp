@@ -123,10 +123,7 @@ class Identify {
     if (!effects_out_.empty()) write_effects(effects_out_, effects, description);
     const MassMatrixSurvey survey = survey_mass_matrix(*robot, result.fit.p, kSurveyStates, run.seed);
 
-    const Validation training = validate(
-        *robot,
-        without_effects(*robot, logs, result.fit.p, effects, result.processing.motion_over_pass * result.processing.cutoff_hz),
-        result.fit.p, result.processing);
+    const Validation training = validate_with_effects(*robot, logs, effects, result.fit.p, result.processing);
     Assessment assessment = assess_identification(*robot, result, survey, gather_evidence(*robot, result, training));
     weigh_findings(findings, assessment);
     ParameterTable table = tools::parameter_table(*robot, result);

@@ -110,10 +110,17 @@ inline const char* verdict_word(Verdict verdict) {
   return verdict == Verdict::good ? "trusted" : (verdict == Verdict::caution ? "with-care" : "not-trusted");
 }
 
-/// The verdict in plain words, on the terminal as on top of the report; warnings on standard error.
+/// The verdict in plain words, on the terminal as on top of the report, with what the check behind it means; warnings on standard
+/// error.
 inline void print_assessment(const Assessment& assessment) {
-  std::FILE* to = assessment.verdict == Verdict::good ? stdout : stderr;
-  fmt::print(to, "{}{}\n", assessment.verdict == Verdict::good ? "" : "warning: ", assessment.headline);
+  const bool good = assessment.verdict == Verdict::good;
+  std::FILE* to = good ? stdout : stderr;
+  fmt::print(to, "{}{}\n", good ? "" : "warning: ", assessment.headline);
+  for (const Check& check : assessment.checks) {
+    if (good || check.verdict != assessment.verdict || assessment.headline.find(check.figure) == std::string::npos) continue;
+    if (!check.meaning.empty()) fmt::print(to, "  {}\n", check.meaning);
+    break;
+  }
 }
 
 /// The command of delta-diagnose for these files. What a tool cannot know stays a word in capitals.

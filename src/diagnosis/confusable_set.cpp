@@ -22,6 +22,7 @@ constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
 constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
 constexpr double kSimplerShare = 0.9;   // of the gain, from which an effect does as well that has ...
 constexpr int kFewer = 2;               // ... so many parameters less
+constexpr double kAlike = 0.5;          // correlation of two torques from which it is what makes them hard to tell apart
 constexpr double kClearShare = 0.2;  // of a gain, on drives that no other effect reaches, from which these alone tell names apart
 
 /// Sum of squared differences a block of a quarter of a second: how robust is a gain?
@@ -128,9 +129,10 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     set_uncertainty(context, state, sized);
     EffectCandidate candidate = candidate_of(context, found, sized);
     const double cosine = std::abs(s_best.dot(s_other)) / std::max(s_best.norm() * s_other.norm(), 1e-300);
-    candidate.why =
-        fmt::format("it explains {:.1f} % of what {} explains; in these motions their torques are alike to {:.1f} %",
-                    100 * other.gain / std::max(best.gain, 1e-300), candidate_of(context, found, best).name, 100 * cosine);
+    candidate.why = fmt::format("it explains {:.1f} % of what {} explains; ", 100 * other.gain / std::max(best.gain, 1e-300),
+                                candidate_of(context, found, best).name);
+    candidate.why += cosine > kAlike ? fmt::format("in these motions their torques are alike to {:.1f} %", 100 * cosine)
+                                     : "their torques differ, and each fits nearly as well";
     set.push_back(std::move(candidate));
   }
   return set;

@@ -162,7 +162,29 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
     effects = estimate_amplitudes(robot, logs, result.fit.p, effects, result);
     result = identify(robot, without_effects(robot, logs, result.fit.p, effects, cutoff_hz), prior, prior_std, settled);
   }
+  // What a residual is a share of is the torque of the drives, with that of the effects.
+  const Validation whole = validate_with_effects(robot, logs, effects, result.fit.p, result.processing, options.threads);
+  for (std::size_t j = 0; j < result.drives.size(); ++j) result.drives[j].rms_torque = whole.drives[j].rms_torque;
   return result;
+}
+
+Validation validate_with_effects(const Robot& robot, const std::vector<Log>& logs, const std::vector<Effect>& effects,
+                                 const VectorXd& p, const ProcessingOptions& processing, int threads) {
+  const std::vector<Log> rest = without_effects(robot, logs, p, effects, processing.motion_over_pass * processing.cutoff_hz);
+  Validation out = validate(robot, rest, p, processing, threads);
+  if (effects.empty()) return out;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const PreparedLog whole = prepare_log(robot, logs[l], processing);
+    const MatrixXd torque = low_passed_rows(whole, whole.tau - prepare_log(robot, rest[l], processing).tau);
+    out.logs[l].prediction.tau += torque;
+    out.logs[l].prediction.model += torque;
+  }
+  const std::vector<ValidatedDrive> figures = drive_figures(out.logs, out.drives.size());
+  for (std::size_t j = 0; j < figures.size(); ++j) {
+    out.drives[j].rms_torque = figures[j].rms_torque;
+    out.drives[j].relative_residual = figures[j].relative_residual;
+  }
+  return out;
 }
 
 }  // namespace deltadyn

@@ -83,6 +83,7 @@ std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs,
     }
     figures.torque_noise = root_mean(noise_square, figures.rows);
     figures.rms_residual = root_mean(square, figures.rows);
+    figures.rms_torque = root_mean(tau_square, figures.rows);
     figures.relative_residual = tau_square > 0 ? std::sqrt(square / tau_square) : 0.0;
     figures.rms_with_reversals = root_mean(square + reversal_square, figures.rows + figures.reversal_rows);
   }

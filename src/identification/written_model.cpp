@@ -34,8 +34,7 @@ WrittenValidation validate_written(const Robot& robot, std::vector<Log> logs, co
       out.fine_delay = found;
     }
   }
-  const double motion_hz = processing.motion_over_pass * processing.cutoff_hz;
-  out.validation = validate(robot, without_effects(robot, logs, model.p, model.effects, motion_hz), model.p, processing, threads);
+  out.validation = validate_with_effects(robot, logs, model.effects, model.p, processing, threads);
   out.logs = std::move(logs);
   return out;
 }

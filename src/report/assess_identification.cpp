@@ -179,7 +179,7 @@ Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>
                              counts.data, counts.fitted, counts.both, counts.sums, counts.prior);
   if (counts.neither > 0) check.figure += fmt::format(", {} from neither", counts.neither);
   if (motion_lacks) {
-    check.meaning = "Some parameters that a motion can show were not shown by these logs; they are named below.";
+    check.meaning = "Some parameters that a motion can show were not shown by these logs; the report names them.";
   } else if (counts.prior + counts.sums + counts.neither > 0) {
     check.meaning =
         "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values are not "

@@ -26,9 +26,8 @@ Assessment assess_validation(const Robot& robot, const Validation& validation) {
   std::vector<DriveFigures> drives;
   bool rows_everywhere = true;
   for (const ValidatedDrive& drive : validation.drives) {
-    const double rms_torque = drive.relative_residual > 0 ? drive.rms_residual / drive.relative_residual : 0.0;
     const auto all = static_cast<double>(drive.rows + drive.reversal_rows);
-    drives.push_back({drive.rms_residual, rms_torque, reversal_ratio(drive),
+    drives.push_back({drive.rms_residual, drive.rms_torque, reversal_ratio(drive),
                       all > 0 ? static_cast<double>(drive.reversal_rows) / all : 0.0, drive.torque_noise, drive.bristles});
     rows_everywhere = rows_everywhere && drive.rows > 0;
   }

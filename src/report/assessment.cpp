@@ -160,7 +160,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::good: check.meaning = "Small: as feed-forward the model leaves little to the feedback loop."; break;
     case Verdict::caution:
       check.meaning =
-          "Usable as feed-forward, but not for forces estimated from the drive currents. Look below at what the residual "
+          "Usable as feed-forward, but not for forces estimated from the drive currents. The report shows what the residual "
           "follows.";
       break;
     case Verdict::bad:

@@ -74,5 +74,24 @@ TEST(HoldsTiming, OfEffectsThatShiftTheTorqueInTime) {
   EXPECT_TRUE(holds_timing({effect(EffectId::current_lag, {1e-3, 1}, 1e-3)}));
 }
 
+// "Of the torque" means what the drives gave, whatever part of it is that of effects.
+TEST(ValidateWritten, CountsTheTorqueOfEffects) {
+  const Fitted fitted;
+  const Log fresh = Fitted::log(7);
+  const auto without = validate_written(*fitted.robot, {fresh}, fitted.model, {}, true, true).validation.drives[0];
+  WrittenModel model = fitted.model;
+  model.effects = {effect(EffectId::asymmetric_coulomb, {}, 6)};
+  Log shifted = fresh;
+  shifted.tau.array() += 6;
+  const auto with = validate_written(*fitted.robot, {shifted}, model, {}, true, true).validation;
+  EXPECT_NEAR(with.drives[0].rms_residual, without.rms_residual, 0.02 * without.rms_residual);
+  const auto given = validate_written(*fitted.robot, {shifted}, fitted.model, {}, true, true).validation.drives[0];
+  EXPECT_NEAR(with.drives[0].rms_torque, given.rms_torque, 0.01 * given.rms_torque);
+  EXPECT_GT(std::abs(given.rms_torque - without.rms_torque), 0.03 * given.rms_torque);
+  EXPECT_NEAR(with.drives[0].relative_residual, with.drives[0].rms_residual / with.drives[0].rms_torque, 1e-12);
+  const Prediction& rows = with.logs.front().prediction;
+  EXPECT_NEAR(rows.rms_torque(0, false), with.drives[0].rms_torque, 1e-9);
+}
+
 }  // namespace
 }  // namespace deltadyn

@@ -8,6 +8,7 @@
 
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/identify.hpp"
+#include "deltadyn/identification/validate.hpp"
 
 namespace deltadyn {
 
@@ -33,5 +34,11 @@ namespace deltadyn {
 [[nodiscard]] Identification identify_with_effects(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& prior,
                                                    const Eigen::VectorXd& prior_std, const IdentificationOptions& options,
                                                    std::vector<Effect>& effects);
+
+/// validate() for a model with effects: measured torque and model both hold the torque of the effects.
+/// Throws deltadyn::Error as prepare_log() does.
+[[nodiscard]] Validation validate_with_effects(const Robot& robot, const std::vector<Log>& logs,
+                                               const std::vector<Effect>& effects, const Eigen::VectorXd& p,
+                                               const ProcessingOptions& processing, int threads = 0);
 
 }  // namespace deltadyn

@@ -23,6 +23,7 @@ struct ValidatedLog {
 /// Figures of one drive over all logs, rows near velocity reversals left out.
 struct ValidatedDrive {
   double rms_residual = 0;        ///< [N m | N]
+  double rms_torque = 0;          ///< measured, over the same rows
   double relative_residual = 0;   ///< rms residual over rms torque
   double max_residual = 0;        ///< largest |residual|
   double rms_with_reversals = 0;  ///< rows near reversals included
