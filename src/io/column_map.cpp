@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
 
+#include "deltadyn/io/text_encoding.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -47,8 +51,15 @@ class MapReader {
 
  private:
   toml::table parse() const {
+    std::ifstream file(path_, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    std::error_code ignored;
+    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path_, ignored)) {
+      throw Error("cannot read the map", path_, "check the path and the permissions");
+    }
     try {
-      return toml::parse_file(path_);
+      // An editor may have saved it in the computer's own characters.
+      return toml::parse(decode_text(bytes).text, path_);
     } catch (const toml::parse_error& e) {
       const auto line = e.source().begin.line;
       throw Error(std::string(e.description()), line > 0 ? fmt::format("{}, line {}", path_, line) : path_,

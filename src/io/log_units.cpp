@@ -122,6 +122,8 @@ constexpr Entry kUnits[] = {
     {"permilleofrated", {torque, share_of_rated, 1e-3}},
     {"01%", {torque, share_of_rated, 1e-3}},
     {"1/1000", {torque, share_of_rated, 1e-3}},
+    {"0/00", {torque, share_of_rated, 1e-3}},
+    {"o/oo", {torque, share_of_rated, 1e-3}},
     {"pu", {torque, share_of_rated, 1.0}},
 };
 

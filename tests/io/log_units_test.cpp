@@ -25,6 +25,7 @@ TEST(LogUnits, KnowsUnitsInTheSpellingsOfRecorders) {
         Row{"N\xC2\xB7m", Quantity::torque, Dimension::moment, 1}, Row{"kN", Quantity::torque, Dimension::force, 1e3},
         Row{"Arms", Quantity::torque, Dimension::current, 1}, Row{"0.1 %", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"\xE2\x80\xB0", Quantity::torque, Dimension::share_of_rated, 1e-3},
+        Row{"[0/00]", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"cnt", Quantity::position, Dimension::counts, 1}, Row{"counts/s", Quantity::velocity, Dimension::counts, 1},
         Row{"mm", Quantity::position, Dimension::length, 1e-3}, Row{"rev", Quantity::position, Dimension::angle, 2 * kPi}}) {
     const auto unit = log_unit(row.text);

@@ -7,11 +7,13 @@ namespace deltadyn {
 Recording read_recording(const std::string& path, const RecordingOptions& options) {
   if (const auto database = forms::rosbag2_database(path)) return forms::read_rosbag2(*database, options);
   const forms::TextFile file = forms::read_text_file(path);
-  // The special forms first: delimited text takes everything.
+  std::optional<Recording> recording;
   for (const auto recogniser : {forms::read_twincat, forms::read_halscope}) {
-    if (auto recording = recogniser(file)) return *std::move(recording);
+    if (!recording) recording = recogniser(file);
   }
-  return forms::read_delimited(file);
+  if (!recording) recording = forms::read_delimited(file);  // the special forms came first: delimited text takes everything
+  if (file.is_windows_1252) recording->form += ", in Windows-1252";
+  return *std::move(recording);
 }
 
 }  // namespace deltadyn

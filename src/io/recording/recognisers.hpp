@@ -14,7 +14,8 @@ namespace deltadyn::forms {
 /// A text export in memory.
 struct TextFile {
   std::string path;
-  std::string text;  ///< UTF-8 without byte-order mark
+  std::string text;              ///< UTF-8 without byte-order mark
+  bool is_windows_1252 = false;  ///< it was in Windows-1252
 };
 
 /// Reads a text file as UTF-8. Throws Error(bad_input): missing, a folder, empty, not a text.

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <utility>
 
+#include "deltadyn/io/text_encoding.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "recognisers.hpp"
@@ -48,43 +50,6 @@ constexpr BinaryForm kBinaryForms[] = {
     {"%PDF"sv, "a PDF", "give the recording itself, as CSV"},
 };
 
-void append_utf8(std::string& text, char32_t code) {
-  const auto put = [&text](char32_t byte) { text += static_cast<char>(byte); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xC0 | (code >> 6));
-    put(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    put(0xE0 | (code >> 12));
-    put(0x80 | ((code >> 6) & 0x3F));
-    put(0x80 | (code & 0x3F));
-  } else {
-    put(0xF0 | (code >> 18));
-    put(0x80 | ((code >> 12) & 0x3F));
-    put(0x80 | ((code >> 6) & 0x3F));
-    put(0x80 | (code & 0x3F));
-  }
-}
-
-/// Excel's "Unicode text".
-std::string from_utf16(std::string_view bytes, bool little) {
-  std::string text;
-  const auto unit = [&](std::size_t i) {
-    const auto low = static_cast<unsigned char>(bytes[i]), high = static_cast<unsigned char>(bytes[i + 1]);
-    return static_cast<char32_t>(little ? low | (high << 8) : high | (low << 8));
-  };
-  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
-    char32_t code = unit(i);
-    if (code >= 0xD800 && code < 0xDC00 && i + 3 < bytes.size()) {
-      code = 0x10000 + ((code - 0xD800) << 10) + ((unit(i + 2) - 0xDC00) & 0x3FF);
-      i += 2;
-    }
-    append_utf8(text, code);
-  }
-  return text;
-}
-
 std::string read_bytes(const std::string& path) {
   std::error_code failed;
   if (std::filesystem::is_directory(path, failed)) {
@@ -122,14 +87,9 @@ TextFile read_text_file(const std::string& path) {
   TextFile file{path, read_bytes(path)};
   if (file.text.empty()) throw Error("the file is empty", path, "check that the recording or its export is complete");
   refuse_binary_form(path, file.text);
-  const std::string_view head(file.text);
-  if (head.substr(0, 2) == "\xFF\xFE") {
-    file.text = from_utf16(head.substr(2), true);
-  } else if (head.substr(0, 2) == "\xFE\xFF") {
-    file.text = from_utf16(head.substr(2), false);
-  } else if (head.substr(0, 3) == "\xEF\xBB\xBF") {
-    file.text.erase(0, 3);
-  }
+  DecodedText decoded = decode_text(std::move(file.text));
+  file.text = std::move(decoded.text);
+  file.is_windows_1252 = decoded.is_windows_1252;
   if (file.text.find('\0') != std::string::npos) {
     throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
   }

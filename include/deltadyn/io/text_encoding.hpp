@@ -1,0 +1,18 @@
+#pragma once
+
+/// \file
+/// Texts of other programs as UTF-8.
+
+#include <string>
+
+namespace deltadyn {
+
+struct DecodedText {
+  std::string text;              ///< UTF-8 without byte-order mark
+  bool is_windows_1252 = false;  ///< it was no UTF-8, so each byte was taken as a character of Windows-1252 (Latin-1 with more)
+};
+
+/// UTF-8 and UTF-16 by their byte-order marks, UTF-8 without one, and what is none of these as Windows-1252.
+[[nodiscard]] DecodedText decode_text(std::string bytes);
+
+}  // namespace deltadyn

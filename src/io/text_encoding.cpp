@@ -1,0 +1,91 @@
+#include "deltadyn/io/text_encoding.hpp"
+
+#include <string_view>
+#include <utility>
+
+namespace deltadyn {
+namespace {
+
+void append_utf8(std::string& text, char32_t code) {
+  const auto put = [&text](char32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) {
+    put(code);
+  } else if (code < 0x800) {
+    put(0xC0 | (code >> 6));
+    put(0x80 | (code & 0x3F));
+  } else if (code < 0x10000) {
+    put(0xE0 | (code >> 12));
+    put(0x80 | ((code >> 6) & 0x3F));
+    put(0x80 | (code & 0x3F));
+  } else {
+    put(0xF0 | (code >> 18));
+    put(0x80 | ((code >> 12) & 0x3F));
+    put(0x80 | ((code >> 6) & 0x3F));
+    put(0x80 | (code & 0x3F));
+  }
+}
+
+/// Excel's "Unicode text".
+std::string from_utf16(std::string_view bytes, bool little) {
+  std::string text;
+  const auto unit = [&](std::size_t i) {
+    const auto low = static_cast<unsigned char>(bytes[i]), high = static_cast<unsigned char>(bytes[i + 1]);
+    return static_cast<char32_t>(little ? low | (high << 8) : high | (low << 8));
+  };
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    char32_t code = unit(i);
+    if (code >= 0xD800 && code < 0xDC00 && i + 3 < bytes.size()) {
+      code = 0x10000 + ((code - 0xD800) << 10) + ((unit(i + 2) - 0xDC00) & 0x3FF);
+      i += 2;
+    }
+    append_utf8(text, code);
+  }
+  return text;
+}
+
+/// Whether all bytes of a text are UTF-8, without surrogates and overlong forms.
+bool is_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned first = byte(i);
+    const std::size_t more = first < 0x80 ? 0 : (first >= 0xC2 && first < 0xE0 ? 1 : (first >= 0xE0 && first < 0xF0 ? 2 : 3));
+    if (first >= 0x80 && (first < 0xC2 || first > 0xF4)) return false;
+    if (i + more >= text.size() && more > 0) return false;
+    for (std::size_t k = 1; k <= more; ++k) {
+      if ((byte(i + k) & 0xC0) != 0x80) return false;
+    }
+    const unsigned second = more > 0 ? byte(i + 1) : 0;
+    const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second >= 0xA0) || (first == 0xF0 && second < 0x90) ||
+                     (first == 0xF4 && second >= 0x90);
+    if (bad) return false;
+    i += more + 1;
+  }
+  return true;
+}
+
+/// Windows-1252 is Latin-1 with other characters in the place of its second control codes; unused codes stay controls.
+std::string from_windows_1252(std::string_view bytes) {
+  static constexpr char16_t kUpper[32] = {0x20AC, 0x81,   0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021, 0x2C6,  0x2030, 0x160,
+                                          0x2039, 0x152,  0x8D,   0x17D,  0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+                                          0x2013, 0x2014, 0x2DC,  0x2122, 0x161,  0x203A, 0x153,  0x9D,   0x17E,  0x178};
+  std::string text;
+  text.reserve(bytes.size() + bytes.size() / 64);
+  for (const char c : bytes) {
+    const auto code = static_cast<unsigned char>(c);
+    append_utf8(text, code >= 0x80 && code < 0xA0 ? static_cast<char32_t>(kUpper[code - 0x80]) : static_cast<char32_t>(code));
+  }
+  return text;
+}
+
+}  // namespace
+
+DecodedText decode_text(std::string bytes) {
+  const std::string_view head(bytes);
+  if (head.substr(0, 2) == "\xFF\xFE") return {from_utf16(head.substr(2), true), false};
+  if (head.substr(0, 2) == "\xFE\xFF") return {from_utf16(head.substr(2), false), false};
+  if (head.substr(0, 3) == "\xEF\xBB\xBF") bytes.erase(0, 3);
+  if (is_utf8(bytes)) return {std::move(bytes), false};
+  return {from_windows_1252(bytes), true};
+}
+
+}  // namespace deltadyn
