@@ -12,6 +12,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "common_grid.hpp"
+#include "counter_turns.hpp"
 #include "guess_columns.hpp"
 #include "header_words.hpp"
 #include "recorded_time.hpp"
@@ -226,15 +227,10 @@ class Builder {
     if (one.channel->origin != 0) values.array() += static_cast<double>(one.channel->origin);
     const bool same = on_grid(one);
     if (one.map->quantity == Quantity::position) {
-      const double counts = one.map->counts_per_turn.value_or(0.0);
-      const double wrap = one.map->wrap ? *one.map->wrap : find_wrap(values, counts);
-      const Index jumps = wrap > 0 ? unwrap(values, wrap) : 0;
-      if (jumps > 0) {
-        notes.push_back(
-            fmt::format("{}: '{}' begins again after {:.10g}; {} jumps were taken out, and the first value taken as it is "
-                        "(offset in the column map if that is another turn)",
-                        recording_.file, one.channel->name, wrap, jumps));
-      }
+      const auto drive = static_cast<std::size_t>(one.map->drive - 1);
+      const std::string said = settle_counter(values, *one.map, one.taken.factor * one.map->scale,
+                                              robot_.kind_of_drive(one.map->drive - 1), robot_.limits[drive]);
+      if (!said.empty()) notes.push_back(fmt::format("{}: '{}': {}", recording_.file, one.channel->name, said));
     }
     if (same) {
       one.taken.how = "as recorded";
