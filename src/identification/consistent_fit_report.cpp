@@ -8,7 +8,7 @@ namespace deltadyn {
 std::string ConsistentFitSummary::brief_report() const {
   const std::string proof = !certificate.available ? "no certificate for this metric"
                             : certificate.passed   ? fmt::format("global optimum within {:.1e} of chi^2", certificate.gap)
-                                                   : fmt::format("NOT proven optimal (gap {:.2e})", certificate.gap);
+                                                   : fmt::format("not proven optimal (gap {:.2e})", certificate.gap);
   return fmt::format(
       "consistent fit: {} variables, chi^2 {:.6g} (prior {:.3g}), lambda {:.3g}{}, {} after {} + {} iterations, {:.1f} ms, {}",
       variables, data_cost, initial_data_cost, lambda, lambda_from_data ? " from the data" : "",
