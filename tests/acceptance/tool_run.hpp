@@ -50,7 +50,7 @@ struct ToolResult {
 };
 
 struct RunLimits {
-  unsigned seconds = 120;             ///< of wall-clock time
+  unsigned seconds = 300;             ///< of wall-clock time
   rlim_t file_bytes = RLIM_INFINITY;  ///< largest file the tool may write: the disk of the poor
 };
 
