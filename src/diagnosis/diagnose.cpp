@@ -135,9 +135,9 @@ class DiagnosisRun {
     double widest_hz = 0;
     if (wanted_.periods == Periods::given) out_.notes.push_back("periods are not averaged here: every log is used as it is");
     try {
-      detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz};
+      detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz, wanted_.cutoff_hz};
       if (cutoff_hz > 0) {
-        cutoff = {cutoff_hz, cutoff_hz};
+        cutoff = {cutoff_hz, cutoff_hz, cutoff_hz};
       } else if (options_.choose_cutoff) {
         // A delay, which the search weighs, must not end the band in which the model holds.
         const std::vector<Log> mended = detail::as_validated(robot_, all_logs_, {});
@@ -147,26 +147,17 @@ class DiagnosisRun {
       widest_hz = cutoff.widest_hz;
       report(0.05);
       take_fixed_effects_off();
-      judge_bristles(known_);
-      make_rows();
-      const auto scarce = [&]() {
-        const auto rows = detail::fewest_rows(rows_.logs);
-        return rows.share < kLeastKnown || rows.count < rows_needed();
-      };
-      if (cutoff.widest_hz > cutoff.chosen_hz && scarce()) {
-        out_.cutoff_hz = cutoff.widest_hz;
-        judge_bristles(known_);
-        make_rows();
-      }
+      use_cutoff(out_.cutoff_hz);
+      if (cutoff.widest_hz > out_.cutoff_hz && (fewest_rows().share < kLeastKnown || too_few())) use_cutoff(cutoff.widest_hz);
+      if (cutoff.sharp_hz > out_.cutoff_hz && too_few()) use_cutoff(cutoff.sharp_hz);
     } catch (const Error& error) {
       if (std::string(error.problem()).find("too short") == std::string::npos) throw;
       detail::say_too_short(length, std::max(10.0, 4 * length), out_);
       return false;
     }
     // Rows enough to fit the base model and still see something beside it?
-    const double fewest = detail::fewest_rows(rows_.logs).count;
-    if (fewest < rows_needed()) {
-      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest, 1.0), out_);
+    if (too_few()) {
+      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest_rows().count, 1.0), out_);
       return false;
     }
     p_fit_ = refit_parameters(base_, rows_.logs, p_);
@@ -212,6 +203,14 @@ class DiagnosisRun {
     if (options_.progress) options_.progress(share);
   }
 
+  void use_cutoff(double cutoff_hz) {
+    out_.cutoff_hz = cutoff_hz;
+    judge_bristles(known_);
+    make_rows();
+  }
+
+  [[nodiscard]] detail::KnownRows fewest_rows() const { return detail::fewest_rows(rows_.logs); }
+  [[nodiscard]] bool too_few() const { return fewest_rows().count < rows_needed(); }
   [[nodiscard]] double rows_needed() const { return std::max(120.0, kFewestRowsPerBase * base_.count()); }
 
   detail::ImproveInput input() const {

@@ -148,6 +148,7 @@ SearchCutoff search_cutoff(const Robot& robot, const BaseParameters& base, const
   SearchCutoff out;
   out.chosen_hz = std::min(model.cutoff_hz, kMostCutoff_hz);
   out.widest_hz = std::max(out.chosen_hz, std::min(kSharp_hz, model.motion.noise_limit_hz));
+  out.sharp_hz = std::max(out.widest_hz, kSharp_hz);
   return out;
 }
 

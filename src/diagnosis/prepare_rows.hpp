@@ -21,6 +21,7 @@ struct DiagnosisRows {
 struct SearchCutoff {
   double chosen_hz = 0;  ///< the one that delta-identify would choose for these logs, but no more than the search can use
   double widest_hz = 0;  ///< where reversals would take too many rows at that one: a narrow low pass widens them
+  double sharp_hz = 0;   ///< where they would still take nearly all: beyond the encoders' noise, which the search allows for
 };
 [[nodiscard]] SearchCutoff search_cutoff(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                          const ProcessingOptions& wanted, int threads);

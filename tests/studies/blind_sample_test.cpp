@@ -31,6 +31,11 @@ TEST(BlindStudy, FindsNothingMissingOnACleanLogWithCorrelatedNoise) {
   EXPECT_EQ(outcome.verdict, "nothing-missing") << to_line("clean-2", outcome);
 }
 
+TEST(BlindStudy, LooksBeyondTheBandOfNoisyEncodersWhereReversalsTakeTheRows) {
+  const Outcome outcome = run_case("clean", 152, kNullRuns);  // 5e-5 rad; up to 5 Hz next to nothing is left beside reversals
+  EXPECT_EQ(outcome.verdict, "nothing-missing") << to_line("clean-152", outcome);
+}
+
 TEST(BlindStudy, GivesNoNameToWhatTheCatalogueLacks) {
   const Outcome outcome = run_case("outside", 1, kNullRuns);  // friction that varies over another joint
   EXPECT_EQ(outcome.verdict, "unknown-structure") << to_line("outside-1", outcome);
