@@ -125,7 +125,9 @@ inline int run_tool(int argc, char** argv, const ToolText& text, const std::func
     return fail("error", e.what(), ExitCode::bad_input);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // prints the help or the version
-    return fail("error", std::string(e.what()) + "\n  mend: " + text.name + " --help shows the flags", ExitCode::usage);
+    std::string command = text.name;
+    for (const CLI::App* part : app.get_subcommands()) command += " " + part->get_name();
+    return fail("error", std::string(e.what()) + "\n  mend: " + command + " --help shows the flags", ExitCode::usage);
   } catch (const Error& e) {
     return fail("error", e.what(), e.code());
   } catch (const std::bad_alloc&) {

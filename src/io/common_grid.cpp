@@ -45,6 +45,12 @@ double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   return *middle;
 }
 
+double mean_rate_hz(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
+  const Index n = t_s.size();
+  const double span = n < 2 ? 0.0 : t_s(n - 1) - t_s(0);
+  return span > 0 ? static_cast<double>(n - 1) / span : 0.0;
+}
+
 Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how) {
   how.step_s = usual_step_s(series.t_s);
   const double grid_step = usual_step_s(grid_s);

@@ -23,10 +23,14 @@ struct GridStep {
 /// Median step of stamps [s].
 [[nodiscard]] double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s);
 
+/// Rows that follow the first over the time from first to last stamp [Hz]; 0 if there is none.
+[[nodiscard]] double mean_rate_hz(const Eigen::Ref<const Eigen::VectorXd>& t_s);
+
 /// Values at the times of the grid. A faster channel first passes a zero-phase low pass at 0.4 of the grid's rate, so that nothing
 /// folds into its band; then the cubic through the four samples around each time is taken, which shifts no frequency in time.
 /// Where the channel has a gap of more than 2.5 of its steps, and outside of it, the value is NaN: nothing is made up.
-[[nodiscard]] Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how);
+[[nodiscard]] Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s,
+                                        GridStep& how);
 
 /// Sample indices of a channel whose slower recorder was filled up with repeats of the last value: of each `factor` rows the one
 /// where new values appear.

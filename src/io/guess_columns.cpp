@@ -36,23 +36,6 @@ struct Set {
   std::string doubt;   ///< what the order of the drives rests on, if not on plain names
 };
 
-/// Units that a maker or a message states by custom, not in the header: ROS (REP 103) is SI, UR's RTDE is rad, A, N m.
-std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind) {
-  const bool turns = kind == DriveKind::revolute;
-  const auto begins = [&](const char* text) { return stem.rfind(text, 0) == 0; };
-  const bool ros = begins("/") || begins("field.");
-  const bool ur = begins("actual_q_") || begins("target_q_") || begins("actual_qd_") || begins("target_qd_") ||
-                  begins("target_qdd_") || begins("actual_current_") || begins("target_current_") || begins("target_moment_");
-  if (!ros && !ur) return "";
-  switch (quantity) {
-    case Quantity::position: return turns ? "rad" : "m";
-    case Quantity::velocity: return turns ? "rad/s" : "m/s";
-    case Quantity::acceleration: return turns ? "rad/s2" : "m/s2";
-    case Quantity::torque: return stem.find("current") != std::string::npos ? "A" : (turns ? "Nm" : "N");
-  }
-  return "";
-}
-
 std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
   switch (quantity) {
     case Quantity::position: return defaults.position_unit;
@@ -283,6 +266,22 @@ void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, c
 }
 
 }  // namespace
+
+std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind) {
+  const bool turns = kind == DriveKind::revolute;
+  const auto begins = [&](const char* text) { return stem.rfind(text, 0) == 0; };
+  const bool ros = begins("/") || begins("field.");
+  const bool ur = begins("actual_q_") || begins("target_q_") || begins("actual_qd_") || begins("target_qd_") ||
+                  begins("target_qdd_") || begins("actual_current_") || begins("target_current_") || begins("target_moment_");
+  if (!ros && !ur) return "";
+  switch (quantity) {
+    case Quantity::position: return turns ? "rad" : "m";
+    case Quantity::velocity: return turns ? "rad/s" : "m/s";
+    case Quantity::acceleration: return turns ? "rad/s2" : "m/s2";
+    case Quantity::torque: return stem.find("current") != std::string::npos ? "A" : (turns ? "Nm" : "N");
+  }
+  return "";
+}
 
 std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
                                          const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {

@@ -151,12 +151,10 @@ class Builder {
     const Timeline& timeline = recording_.timelines[channel.timeline];
     const std::vector<Index> rows = own_rows(channel, timeline);
     one.whole = rows.empty() && map.delay_s == 0;
-    if (one.whole) {
-      one.taken.step_s = usual_step_s(timeline.t_s);
-    } else {
-      one.series = series_of(channel.values, timeline, rows, map.delay_s);
-      one.taken.step_s = usual_step_s(one.series.t_s);
-    }
+    if (!one.whole) one.series = series_of(channel.values, timeline, rows, map.delay_s);
+    const Eigen::VectorXd& stamps = one.whole ? timeline.t_s : one.series.t_s;
+    one.taken.step_s = usual_step_s(stamps);
+    one.taken.rate_hz = mean_rate_hz(stamps);
     prepared_.push_back(std::move(one));
     if (!channel.remark.empty()) remarks_.push_back(fmt::format("{}: '{}': {}", recording_.file, channel.name, channel.remark));
   }
@@ -316,8 +314,8 @@ class Builder {
   std::vector<long> grid_line_;
 };
 
-/// What was taken for what, in one line for the notes of a log.
-std::string taken_in_a_line(const ImportedLog& result, const Recording& recording, const RobotDescription& robot) {
+/// What was taken for what, for the notes of a log: one line a fact.
+std::string what_was_taken(const ImportedLog& result, const Recording& recording, const RobotDescription& robot) {
   std::vector<std::string> parts;
   for (const TakenChannel& taken : result.taken) {
     const DriveColumns columns = drive_columns(robot, taken.map.drive - 1);
@@ -328,8 +326,8 @@ std::string taken_in_a_line(const ImportedLog& result, const Recording& recordin
     parts.push_back(fmt::format("{} from '{}' [{}]{}", name, taken.map.source, taken.map.unit,
                                 taken.how == "as recorded" ? "" : ", " + taken.how));
   }
-  return fmt::format("{}: read as {}; time from '{}' [{}]; {}", recording.file, recording.form, result.time_name,
-                     result.time_unit, fmt::join(parts, "; "));
+  return fmt::format("{}: read as {}; time from '{}' [{}]\n  {}", recording.file, recording.form, result.time_name,
+                     result.time_unit, fmt::join(parts, "\n  "));
 }
 
 }  // namespace
@@ -350,17 +348,18 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
   ColumnMap found = map_;
   for (const std::string& file : files) {
     recordings.push_back(read_recording(file, {map_.topic}));
+    ColumnMap of_file = map_;  // each file may name its time otherwise
     try {
-      ColumnMap of_file = map_;  // each file may name its time otherwise
       resolve_time(recordings.back(), of_file);
-      if (recordings.size() == 1) found = of_file;
     } catch (const Error& e) {
       ask(e.problem(), e.mend(), e.where());
     }
+    if (recordings.size() == 1) found = of_file;
   }
   map_ = found;
   recording_ = merged(std::move(recordings));
-  if (recording_.headerless && map_.channels.empty()) {
+  const bool nameless = recording_.headerless && map_.channels.empty();
+  if (nameless) {
     open_.clear();  // the one cause of all that is open
     ask("the header line is missing: the first line holds numbers only",
         "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins one) with the "
@@ -372,7 +371,7 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
         place(recording_.file, 1));
   }
   for (const Quantity quantity : kQuantities) {
-    if (map_.has(quantity)) continue;
+    if (nameless || map_.has(quantity)) continue;
     const bool needed =
         quantity == Quantity::position || (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
     for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
@@ -423,7 +422,7 @@ ImportedLog LogImport::log() const {
     demand(Quantity::acceleration);
   }
   ImportedLog result = Builder(recording_, map_, robot_).build();
-  result.log.notes.insert(result.log.notes.begin(), taken_in_a_line(result, recording_, robot_));
+  result.log.notes.insert(result.log.notes.begin(), what_was_taken(result, recording_, robot_));
   return result;
 }
 

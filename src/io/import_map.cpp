@@ -5,12 +5,43 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <set>
+#include <utility>
 
 #include "deltadyn/io/import_log.hpp"
 
+#include "guess_columns.hpp"
 #include "header_words.hpp"
 
 namespace deltadyn {
+namespace {
+
+/// Constants of motor and encoder without which the unit does not come to SI, as lines to fill in.
+std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kind) {
+  const auto unit = log_unit(channel.unit);
+  if (!unit) return {};
+  std::vector<std::string> lines;
+  const auto want = [&lines](const char* key, const char* what) {
+    lines.push_back(fmt::format("# {} = NUMBER   # STILL OPEN: {}", key, what));
+  };
+  if (unit->dimension == Dimension::current && !channel.torque_constant)
+    want("torque_constant_Nm_A", "of the motor [N m per A, as the current is given, peak or rms]");
+  if (unit->dimension == Dimension::share_of_rated && !channel.rated_torque)
+    want("rated_torque_Nm", "of the motor [N m, data sheet]");
+  if (unit->dimension == Dimension::counts && !channel.counts_per_turn) want("counts_per_turn", "of the encoder");
+  const bool of_motor =
+      unit->dimension == Dimension::angle || unit->dimension == Dimension::counts || unit->dimension == Dimension::moment;
+  if (kind == DriveKind::prismatic && of_motor && !channel.lead) want("lead_m_turn", "travel for a turn of the motor [m]");
+  return lines;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+}  // namespace
 
 void LogImport::note_joints_beyond(Quantity quantity) {
   const ChannelMap* first = map_.find(quantity, 1);
@@ -50,6 +81,9 @@ std::string LogImport::map_of_the_rest() const {
     std::optional<Quantity> quantity = words.quantity;
     if (!channel.quantity.empty()) quantity = quantity_of_word(channel.quantity);
     if (quantity) one.quantity = *quantity;
+    const DriveKind kind = robot_.kind_of_drive(0);
+    const std::string stem = channel.quantity.empty() ? words.stem : "/";
+    if (one.unit.empty() && quantity) one.unit = customary_unit(stem, *quantity, kind);
     std::string lines = to_toml(one);
     const auto replace = [&lines](const std::string& from, const std::string& to) {
       lines.replace(lines.find(from), from.size(), to);
@@ -59,7 +93,7 @@ std::string LogImport::map_of_the_rest() const {
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
     for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3)) lines.replace(at, 1, "\n# ");
-    text += "\n# " + lines + "\n";
+    text += "\n# " + lines + "\n" + joined(open_constants(one, kind));
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY (\"position\", "
@@ -68,11 +102,44 @@ std::string LogImport::map_of_the_rest() const {
          text;
 }
 
+/// The time as far as it is known: a live block where nothing is, so that one line is all that is to be filled in.
+std::string LogImport::open_time() const {
+  const bool known =
+      std::all_of(recording_.timelines.begin(), recording_.timelines.end(), [](const Timeline& t) { return t.t_s.size() > 0; });
+  if (known) return "";
+  if (map_.time_source.empty()) {
+    return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or rate_hz = "
+           "1000\n";
+  }
+  return "# unit = \"UNIT\"   # STILL OPEN: s, ms, us, ns, min or filetime; or tick_s = seconds of a tick\n";
+}
+
+std::string mend_in_map(std::string mend, const std::string& map) {
+  const std::string here = fmt::format("mend {} (what is open is marked there)", map);
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"write a column map (delta-log import --map-out map.toml begins one)", here},
+        {"write a column map (--map)", here + " and give it with --map"},
+        {"a column map (delta-log import --map-out map.toml begins one)", map},
+        {"in a column map (--map)", fmt::format("in {} and give that with --map", map)}}) {
+    const auto at = mend.find(from);
+    if (at == std::string::npos) continue;
+    mend.replace(at, from.size(), to);
+    return mend;
+  }
+  return mend;
+}
+
 std::string LogImport::map_text() const {
   std::vector<std::string> remarks = {fmt::format("Guessed from {}: {}.", recording_.file, recording_.form)};
+  std::set<std::string> constants;
+  for (const ChannelMap& channel : map_.channels) {
+    for (const std::string& line : open_constants(channel, robot_.kind_of_drive(channel.drive - 1)))
+      constants.insert(line.substr(2));
+  }
+  for (const std::string& constant : constants) remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
   for (const Open& open : open_) {
     remarks.push_back("STILL OPEN: " + open.what);
-    std::string mend = "  " + open.mend;
+    std::string mend = "  " + mend_in_map(open.mend, "this map");
     for (auto at = mend.find('\n'); at != std::string::npos; at = mend.find('\n', at + 3)) mend.replace(at, 1, "\n# ");
     remarks.push_back(mend);
   }
@@ -88,7 +155,13 @@ std::string LogImport::map_text() const {
     remarks.push_back(fmt::format("  \"{}\"{}  {:.6g} to {:.6g}", channel.name,
                                   channel.unit.empty() ? "" : " [" + channel.unit + "]", low, high));
   }
-  return to_toml(map_, remarks) + map_of_the_rest();
+  ColumnMap head = map_;
+  head.channels.clear();
+  std::string text = to_toml(head, remarks) + open_time();
+  for (const ChannelMap& channel : map_.channels) {
+    text += "\n" + to_toml(channel) + joined(open_constants(channel, robot_.kind_of_drive(channel.drive - 1)));
+  }
+  return text + map_of_the_rest();
 }
 
 }  // namespace deltadyn

@@ -157,6 +157,7 @@ void take_stamps(const Recording& recording, const RecordedChannel& channel, con
 
 void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap& map) {
   const auto unit = unit_of(channel, map);
+  map.time_source = channel.name;  // also for the map that the user mends
   if (!unit) {
     throw Error(fmt::format("the unit of the time column '{}' is not known; its usual step is {:.6g}", channel.name,
                             usual_step(channel.values)),
@@ -165,7 +166,6 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
                 "unit or rate_hz below [time] in a column map (--map)");
   }
   take_stamps(recording, channel, *unit, recording.timelines[channel.timeline]);
-  map.time_source = channel.name;
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;
 }
 

@@ -69,6 +69,31 @@ TEST_F(ImportTest, SaysWhatIsMissingAndWritesTheMapToMend) {
   succeed(import + Words{"-o", path("out.csv"), "--map", path("map.toml"), "--torque-constant", "1,1,1,1"});
 }
 
+// The map that was written just now is the one to be mended.
+TEST_F(ImportTest, NextStepNamesTheMapThatWasWritten) {
+  const std::string file =
+      workshop_.log("export.csv", [](Lines& lines) { lines[0] = "t_s,pos1,pos2,pos3,pos4,tau1_Nm,tau2_Nm,tau3_Nm,tau4_Nm"; });
+  const ToolResult refused =
+      run({"delta-log", "import", file, "--robot", path("robot.urdf"), "-o", path("out.csv"), "--map-out", path("m.toml")});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("mend " + path("m.toml")), std::string::npos) << refused.err;
+  EXPECT_EQ(refused.err.find("write a column map"), std::string::npos) << refused.err;
+}
+
+TEST_F(ImportTest, ListsAreSeparatedByCommasAndTakeNoFile) {
+  const std::string file =
+      workshop_.log("export.csv", [](Lines& lines) { lines[0] = "t_s,q1_rad,q2_rad,q3_rad,q4_rad,i1_A,i2_A,i3_A,i4_A"; });
+  const Words import = {"delta-log", "import", "--robot", path("robot.urdf"), "-o", path("out.csv")};
+  const ToolResult good = succeed(import + Words{"--torque-constant", "1,1,1,1", file});
+  EXPECT_NE(good.out.find("1500 rows"), std::string::npos) << good.out;
+  const ToolResult blanks = run(import + Words{"--torque-constant", "11.5", "11.5", "3.2", file});
+  EXPECT_EQ(blanks.code, 2);
+  EXPECT_NE(blanks.err.find("by commas"), std::string::npos) << blanks.err;
+  const ToolResult word = run(import + Words{"--torque-constant", "x", file});
+  EXPECT_EQ(word.code, 2);
+  EXPECT_NE(word.err.find("delta-log import --help"), std::string::npos) << word.err;
+}
+
 TEST_F(ImportTest, RefusesFlagsThatMakeNoSense) {
   const Words import = {"delta-log", "import", path("log.csv"), "--robot", path("robot.urdf"), "-o", path("out.csv")};
   for (const Words& flags : {Words{"--gear-ratio", "2,3"}, Words{"--gear-ratio", "-2"}, Words{"--torque-unit", "rad"},

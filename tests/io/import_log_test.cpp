@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using namespace testing;
 
 std::string with_comma(std::string text) {
@@ -270,7 +271,8 @@ TEST(LogImport, MapGivesSourceUnitSignScaleOffsetAndDelay) {
   const Log same = read_log(folder.path("log.csv"), robot, reading);
   EXPECT_NEAR((same.q - log.q).cwiseAbs().maxCoeff(), 0.0, 1e-12);
   ASSERT_FALSE(same.notes.empty());
-  EXPECT_THAT(same.notes[0], HasSubstr("q1_rad from 'b' [deg]"));
+  EXPECT_THAT(same.notes[0],
+              HasSubstr("read as text separated by ','; time from 'a' [ms]\n  q1_rad from 'b' [deg]\n  tau1_Nm from"));
 }
 
 TEST(LogImport, TellsDrivesApartByTheNumberThatDiffersCountedFromZeroOrOne) {
@@ -490,6 +492,87 @@ TEST(LogImport, MapTextHoldsABlockForEveryColumnThatIsNotTaken) {
   const ColumnMap back = read_column_map(folder.write("map.toml", map), robot);
   ASSERT_NE(back.find(Quantity::velocity, 1), nullptr);
   EXPECT_EQ(back.find(Quantity::velocity, 1)->source, "heat");
+}
+
+// What import would refuse next stands in the block of its channel, as a line to fill in.
+TEST(LogImport, MapTextMarksTheConstantsThatAreOpen) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  struct Case {
+    const char *head, *line;
+  };
+  for (const auto& [head, line] :
+       {Case{"t_s,q1 [rad],current1 [A]\n", "torque_constant_Nm_A"}, Case{"t_s,q1 [rad],torque1 [%]\n", "rated_torque_Nm"},
+        Case{"t_s,q1 [cnt],torque1 [Nm]\n", "counts_per_turn"}}) {
+    const std::string file = folder.write(
+        "log.csv", recorded(head, [](int, double t) { return fmt::format("{},{},{}\n", t, position(t), torque(t)); }));
+    std::string map = LogImport({file}, robot, {}).map_text();
+    EXPECT_THAT(map, HasSubstr(fmt::format("# STILL OPEN below: {}\n", line)));
+    const std::string open = fmt::format("# {} = NUMBER   # STILL OPEN", line);
+    ASSERT_THAT(map, HasSubstr(open));
+    map.replace(map.find(open), open.size(), fmt::format("{} = 2   # ", line));
+    ImportOptions options;
+    options.map_file = folder.write("map.toml", map);
+    EXPECT_EQ(LogImport({file}, robot, options).log().log.samples(), kMotionRows) << line;
+  }
+}
+
+TEST(LogImport, MapTextOfColumnsWithoutNamesBeginsWithTheTime) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  const std::string file =
+      folder.write("log.csv", recorded("", [](int k, double t) { return fmt::format("{},{},{}\n", k, position(t), torque(t)); }));
+  std::string map = LogImport({file}, robot, {}).map_text();
+  EXPECT_THAT(map, HasSubstr("\n[time]\nsource = \"column1\"\n# unit = \"UNIT\"   # STILL OPEN"));
+  EXPECT_THAT(map, Not(HasSubstr("# source = \"column1\"")));
+  EXPECT_THAT(map, HasSubstr("# source = \"column2\""));
+  EXPECT_THAT(map, Not(HasSubstr("--map-out")));  // it is written
+  map.replace(map.find("# unit = \"UNIT\"   #"), 19, "unit = \"ms\"   #");
+  for (const char* channel : {"position\"\nsource = 2\nunit = \"rad\"\n", "torque\"\nsource = 3\nunit = \"Nm\"\n"})
+    map += fmt::format("[[channel]]\ndrive = 1\nquantity = \"{}", channel);
+  ImportOptions options;
+  options.map_file = folder.write("map.toml", map);
+  EXPECT_NEAR(LogImport({file}, robot, options).log().log.q(300, 0), position(0.3), 1e-6);
+}
+
+// A machine with more joints than drives, so that all are to be chosen: their units are those of the message.
+TEST(LogImport, MapTextOfJointStatesHasTheUnitsOfRos) {
+  const TemporaryFolder folder;
+  const auto row = [](int, double t) { return fmt::format("{:.3f},1,2,3,4,5,6\n", 1.7e9 + t); };
+  const std::string text = recorded(
+      "__time,/joint_states/a/position,/joint_states/b/position,/joint_states/a/velocity,/joint_states/b/velocity,"
+      "/joint_states/a/effort,/joint_states/b/effort\n",
+      row);
+  const std::string file = folder.write("log.csv", text);
+  for (const DriveKind kind : {DriveKind::revolute, DriveKind::prismatic}) {
+    const RobotDescription robot = one_drive(kind);
+    const std::string map = LogImport({file}, robot, {}).map_text();
+    EXPECT_THAT(map, Not(HasSubstr("\"UNIT\"")));
+    const bool turns = kind == DriveKind::revolute;
+    for (const char* unit : {turns ? "rad" : "m", turns ? "rad/s" : "m/s", turns ? "Nm" : "N"})
+      EXPECT_THAT(map, HasSubstr(fmt::format("# unit = \"{}\"", unit)));
+  }
+}
+
+TEST(LogImport, RateIsThatOfTheRowsAndNotOfTheUsualInterval) {
+  const TemporaryFolder folder;
+  const RobotDescription robot = one_drive();
+  const std::string text = recorded("t_s,q1_rad,tau1 [Nm]\n", [](int k, double t) {
+    return fmt::format("{:.5f},{},{}\n", t + (k % 3 == 0 ? 2e-5 : 0.0), position(t),
+                       torque(t));  // two of three steps are longer or shorter
+  });
+  const ImportedLog log = LogImport({folder.write("log.csv", text)}, robot, {}).log();
+  EXPECT_NEAR(log.taken[0].rate_hz, 599.0 / (0.599 - 2e-5), 1e-6);
+}
+
+TEST(LogImport, NextStepNamesTheMapThatIsThere) {
+  for (const char* mend : {"write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs",
+                           "name the column q1_rad; or write a column map (--map)\n",
+                           "say which in a column map (delta-log import --map-out map.toml begins one)\n",
+                           "give delta-log import --rated-torque, or rated_torque_Nm in a column map (--map)"}) {
+    EXPECT_THAT(mend_in_map(mend, "m.toml"), HasSubstr("m.toml"));
+    EXPECT_THAT(mend_in_map(mend, "m.toml"), Not(HasSubstr("column map"))) << mend;
+  }
 }
 
 // The Scope scales on its screen; the rows are raw, and so is a unit after "Unit ScaleFactor" not theirs.

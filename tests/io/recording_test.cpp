@@ -152,6 +152,37 @@ TEST(Rosbag2, JointsByNameInWhateverOrderTheMessagesHaveThem) {
   }
 }
 
+// The publisher's clock is the better one: where only the receipts are out of order, messages are sorted by its stamps; a clock that
+// was set back in between is left aside.
+TEST(Rosbag2, StampsOfTheHeadersWinOverReceiptsOutOfOrder) {
+  const TemporaryFolder folder;
+  for (const bool set_back : {false, true}) {
+    const std::string path = folder.path(set_back ? "back.db3" : "late.db3");
+    {
+      Bag bag(path);
+      bag.topic(1, "/joint_states", "sensor_msgs/msg/JointState");
+      for (int k = 0; k < 40; ++k) {
+        const std::int64_t stamp = 1650000000000000000 + 1000000LL * k;
+        const std::int64_t received = stamp + (k == 20 ? 2500000 : 100000);  // behind the two that follow
+        bag.message(1, received, joint_state(stamp - (set_back && k > 30 ? 5000000000LL : 0), {"x"}, {1.0 * k}, {1.0 * k}));
+      }
+    }
+    const Recording recording = read_recording(path);
+    ASSERT_EQ(recording.notes.size(), 1U);
+    const Timeline& time = recording.timelines[0];
+    if (set_back) {
+      EXPECT_THAT(recording.notes[0], HasSubstr("not in order; the times of receipt are taken"));
+      EXPECT_NEAR(time.t_s(39), 0.039, 1e-9);
+      continue;
+    }
+    EXPECT_THAT(recording.notes[0], HasSubstr("1 message was received out of order; they are taken in the order of the stamps"));
+    for (int k = 0; k < 40; ++k) {
+      EXPECT_NEAR(time.t_s(k), 0.001 * k, 1e-9);
+      EXPECT_EQ(channel(recording, "/joint_states/x/position").values(k), k);
+    }
+  }
+}
+
 TEST(Rosbag2, SaysWhichTopicsThereAre) {
   const TemporaryFolder folder;
   {

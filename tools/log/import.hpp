@@ -4,6 +4,8 @@
 /// `delta-log import`: a log of these tools from what drives and recorders export.
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <optional>
@@ -50,7 +52,10 @@ class Import {
   void add_constants(CLI::App& c) {
     MapDefaults& d = options_.defaults;
     const auto list = [&c](const char* flag, std::vector<double>& to, const char* help) {
-      c.add_option(flag, to, help)->delimiter(',')->group("Constants, one for all drives or one for each");
+      c.add_option(flag, to, help)
+          ->delimiter(',')
+          ->allow_extra_args(false)  // else it takes the file behind it for a number
+          ->group("Constants, one for all drives or one for each: 20 or 20,20,20,5");
     };
     list("--gear-ratio", d.gear_ratio, "turns of the motor for one of the drive, where the recording is of the motor");
     list("--torque-constant", d.torque_constant, "of the motor [N m/A], for torques recorded as current");
@@ -75,6 +80,7 @@ class Import {
       throw Error("neither -o nor --map-out is given, so nothing would be written", "",
                   "give -o log.csv, --map-out map.toml, or both", ExitCode::usage);
     }
+    refuse_numbers_as_files();
     std::vector<std::string> inputs = files_;
     inputs.push_back(robot_file_);
     if (!options_.map_file.empty()) inputs.push_back(options_.map_file);
@@ -88,7 +94,7 @@ class Import {
       write_file(map_out_, import.map_text());
       fmt::print("wrote {}: the column map\n", map_out_);
     }
-    const auto result = output_.empty() ? log_or_open_question(import) : std::optional(import.log());
+    const auto result = output_.empty() ? log_or_open_question(import) : std::optional(log_or_mended_map(import));
     if (!result) return;
     print_taken(*result, import.recording(), robot);
     // The first note repeats the table for tools that have none.
@@ -96,9 +102,33 @@ class Import {
     if (!output_.empty()) {
       write_log(output_, result->log, robot);
       const Eigen::Index rows = result->log.samples();
-      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, rows, result->log.t_s(rows - 1), 1.0 / result->step_s);
+      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, rows, result->log.t_s(rows - 1), mean_rate(result->log));
     }
     add_figures(*result, run);
+  }
+
+  /// A map that was written just now is the one to be mended.
+  [[nodiscard]] ImportedLog log_or_mended_map(const LogImport& import) const {
+    try {
+      return import.log();
+    } catch (const Error& e) {
+      if (map_out_.empty()) throw;
+      throw Error(e.problem(), e.where(), mend_in_map(e.mend(), map_out_), e.code());
+    }
+  }
+
+  /// A list with blanks gives its tail away, and that is read as files.
+  void refuse_numbers_as_files() const {
+    for (const std::string& file : files_) {
+      char* end = nullptr;
+      (void)std::strtod(file.c_str(), &end);
+      if (*end != '\0' || std::filesystem::exists(file)) continue;
+      throw Error(
+          fmt::format("'{}' is no file but a number", file), "",
+          "separate the values of one flag by commas without blanks: --gear-ratio 20,20,20,5; delta-log import --help shows "
+          "the flags",
+          ExitCode::usage);
+    }
   }
 
   /// Where only a map was asked for, what is open is an answer and no failure.
@@ -106,7 +136,8 @@ class Import {
     try {
       return import.log();
     } catch (const Error& e) {
-      fmt::print("still open: {}\n  {}\nmend {} and give it with --map\n", e.problem(), e.mend(), map_out_);
+      fmt::print("still open: {}\n  {}\nmend {} and give it with --map\n", e.problem(), mend_in_map(e.mend(), map_out_),
+                 map_out_);
       return std::nullopt;
     }
   }
@@ -129,7 +160,7 @@ class Import {
     fmt::print("  {:<12} {:<{}}  {:<9}\n", "t_s", result.time_name, width, result.time_unit);
     for (const TakenChannel& taken : result.taken) {
       fmt::print("  {:<12} {:<{}}  {:<9} {:>12.6g}  {:>9.5g}  {}\n", column_of(taken, robot), taken.map.source, width,
-                 taken.map.unit, taken.factor * taken.map.scale, taken.step_s > 0 ? 1.0 / taken.step_s : 0.0, taken.how);
+                 taken.map.unit, taken.factor * taken.map.scale, taken.rate_hz, taken.how);
     }
     print_unused(result, recording);
   }
@@ -150,10 +181,16 @@ class Import {
       fmt::print("  not used: {}{}\n", fmt::join(unused, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
   }
 
+  /// Rows after the first over the time they take [Hz]; the log's time begins at zero.
+  static double mean_rate(const Log& log) {
+    const Eigen::Index rows = log.samples();
+    return log.t_s(rows - 1) > 0 ? static_cast<double>(rows - 1) / log.t_s(rows - 1) : 0.0;
+  }
+
   static void add_figures(const ImportedLog& result, ToolRun& run) {
     run.summary.add("samples", static_cast<double>(result.log.samples()));
     run.summary.add("duration_s", result.log.t_s(result.log.samples() - 1), "s");
-    run.summary.add("rate_hz", 1.0 / result.step_s, "Hz");
+    run.summary.add("rate_hz", mean_rate(result.log), "Hz");
     for (const TakenChannel& taken : result.taken) {
       run.summary.add(fmt::format("source_{}_drive{}", word_of(taken.map.quantity), taken.map.drive), taken.map.source,
                       taken.map.unit);

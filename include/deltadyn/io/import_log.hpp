@@ -22,9 +22,10 @@ struct ImportOptions {
 /// One line of what was taken for what.
 struct TakenChannel {
   ChannelMap map;
-  double factor = 1.0;  ///< from `map.unit` to SI at the drive, sign included
-  double step_s = 0.0;  ///< sample time of the channel itself
-  std::string how;      ///< how it came to the grid: "as recorded", "interpolated from 4 ms", "low pass 400 Hz, then ..."
+  double factor = 1.0;   ///< from `map.unit` to SI at the drive, sign included
+  double step_s = 0.0;   ///< usual sample time of the channel itself
+  double rate_hz = 0.0;  ///< its rows over its time
+  std::string how;       ///< how it came to the grid: "as recorded", "interpolated from 4 ms", "low pass 400 Hz, then ..."
 };
 
 struct ImportedLog {
@@ -61,6 +62,7 @@ class LogImport {
   /// Says which joints of a machine with more of them than the robot has drives were taken, and which not.
   void note_joints_beyond(Quantity quantity);
   [[nodiscard]] std::string map_of_the_rest() const;
+  [[nodiscard]] std::string open_time() const;
   void ask(const std::string& what, const std::string& mend, const std::string& where = "");
 
   const RobotDescription& robot_;
@@ -72,5 +74,9 @@ class LogImport {
   };
   std::vector<Open> open_;
 };
+
+/// The next step of an error, where a map to be mended is there already instead of one to be written.
+/// \param map  its name
+[[nodiscard]] std::string mend_in_map(std::string mend, const std::string& map);
 
 }  // namespace deltadyn

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <sqlite3.h>
 
 #include "deltadyn/runtime/error.hpp"
@@ -200,6 +201,26 @@ class Series {
     }
   }
 
+  /// Returns how many messages came after one with a later stamp.
+  std::size_t sort_by_stamps() {
+    std::vector<std::size_t> order(line.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::size_t late = 0;
+    for (std::size_t k = 1; k < order.size(); ++k) late += stamp_ns[k] < stamp_ns[k - 1] ? 1 : 0;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stamp_ns[a] < stamp_ns[b]; });
+    const auto sort = [&order](auto& series) {
+      const auto before = series;
+      for (std::size_t k = 0; k < order.size(); ++k) series[k] = before[order[k]];
+    };
+    for (auto& parts : values) {
+      for (auto& part : parts) sort(part);
+    }
+    sort(line);
+    sort(receipt_ns);
+    sort(stamp_ns);
+    return late;
+  }
+
   std::vector<long> line;
   std::vector<std::int64_t> stamp_ns, receipt_ns;
   std::vector<std::string> joints;
@@ -209,14 +230,36 @@ class Series {
   std::map<std::string, std::size_t> place_;
 };
 
-/// The publisher's stamps, unless it left them at zero or let them run backwards; then the times of receipt.
-const std::vector<std::int64_t>& stamps_of(const Series& series, Recording& recording) {
+/// Whether the headers' stamps are one clock that only the receipts mixed up: the way from one to the other takes a like time.
+bool is_one_clock(const Series& series) {
+  constexpr double kLongestDelaySpread = 1e9;  // ns
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t k = 0; k < series.line.size(); ++k) {
+    const double delay = static_cast<double>(series.receipt_ns[k]) - static_cast<double>(series.stamp_ns[k]);
+    low = std::min(low, delay);
+    high = std::max(high, delay);
+  }
+  return high - low < kLongestDelaySpread;
+}
+
+/// The publisher's stamps, unless it left them at zero or let them run backwards; then the times of receipt. Messages that were
+/// received out of order come into the order of their stamps.
+const std::vector<std::int64_t>& stamps_of(Series& series, Recording& recording) {
   const auto& stamps = series.stamp_ns;
-  const bool given = stamps.back() > stamps.front() && std::is_sorted(stamps.begin(), stamps.end());
-  if (given) return stamps;
+  const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+  const bool given = *last > *first;
+  if (given && std::is_sorted(stamps.begin(), stamps.end())) return stamps;
+  if (given && is_one_clock(series)) {
+    const std::size_t moved = series.sort_by_stamps();
+    recording.notes.push_back(
+        fmt::format("{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the "
+                    "better clock",
+                    recording.file, moved, moved == 1 ? " was" : "s were"));
+    return stamps;
+  }
   recording.notes.push_back(
       fmt::format("{}: the stamps in the headers of the messages are {}; the times of receipt are taken, which jitter",
-                  recording.file, stamps.back() == stamps.front() ? "all alike" : "not in order"));
+                  recording.file, given ? "not in order" : "all alike"));
   return series.receipt_ns;
 }
 
