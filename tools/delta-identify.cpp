@@ -145,11 +145,11 @@ class Identify {
       return identify_with_effects(robot, logs, prior, prior_std, options, effects);
     } catch (const Error& e) {
       if (e.code() == ExitCode::no_convergence) {
-        throw Error(
-            e.problem(), e.where(),
-            "the logs may not belong to this robot: check sign, unit and order of the drives and the lengths in the robot file; "
-            "else give --regularization a larger value",
-            e.code());
+        throw Error(e.problem(), e.where(),
+                    "the logs hardly belong to this robot: check the lengths in the robot file (delta-model info shows them), "
+                    "then sign, unit "
+                    "and order of the drives (delta-log check)",
+                    e.code());
       }
       if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
       throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
