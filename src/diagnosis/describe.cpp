@@ -71,8 +71,7 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : kFound;
     for (const EffectCandidate& other : found.sets[k]) {
-      if (other.name == one.name && other.joint == one.joint)
-        return "cannot be told from " + effect_kind(found.fits[k].effect.id).name;
+      if (other.name == one.name && other.joint == one.joint) return kLikeAnother + effect_kind(found.fits[k].effect.id).name;
     }
   }
   if (one.kept < kHidden) return "these motions cannot show it: a re-fit of the parameters absorbs it";
@@ -103,6 +102,23 @@ std::vector<RowCount> row_counts(const SearchContext& context, std::size_t drive
 }
 
 }  // namespace
+
+void settle_rulings(Diagnosis& out) {
+  if (out.verdict != DiagnosisVerdict::named && out.verdict != DiagnosisVerdict::confusable) return;
+  for (ConsideredEffect& one : out.considered) {
+    const auto same = [&](const EffectCandidate& other) { return other.name == one.name && other.joint == one.joint; };
+    const auto set = std::find_if(out.named.begin(), out.named.end(), [&](const NamedEffect& named) {
+      return std::any_of(named.confusable.begin(), named.confusable.end(), same);
+    });
+    if (std::any_of(out.named.begin(), out.named.end(), same)) {
+      one.ruling = kFound;
+    } else if (set != out.named.end()) {
+      one.ruling = kLikeAnother + set->name;
+    } else if (one.ruling == kFound || one.ruling.starts_with(kLikeAnother)) {
+      one.ruling = "fits, but is not confirmed";
+    }
+  }
+}
 
 void say_too_short(double length_s, double needed_s, Diagnosis& out) {
   out.verdict = DiagnosisVerdict::not_testable;

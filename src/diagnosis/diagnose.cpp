@@ -195,6 +195,7 @@ class DiagnosisRun {
     }
     const double largest_share = detail::judge(now, found_, known_, out_);
     detail::improve_and_prove(input(), largest_share, out_);
+    detail::settle_rulings(out_);
     detail::say(now, out_);
   }
 

@@ -59,6 +59,9 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
 /// named, or confusable if one has a set.
 [[nodiscard]] DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named);
 
+/// Names and sets may have changed since the effects were ruled on: the rulings say what holds at the end.
+void settle_rulings(Diagnosis& out);
+
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
 
@@ -96,6 +99,8 @@ struct Remainder {
 
 /// Ruling of an effect that the search has found.
 inline constexpr const char* kFound = "found";
+/// ... and of one of its set, before the name.
+inline constexpr const char* kLikeAnother = "cannot be told from ";
 
 /// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
 /// that are clean for every purpose have traces of that size.

@@ -102,6 +102,7 @@ NamedEffect swapped(NamedEffect one, std::size_t alternative) {
   EffectCandidate own = one;
   std::swap(static_cast<EffectCandidate&>(one), one.confusable[alternative]);
   one.confusable[alternative] = std::move(own);
+  one.why.clear();
   return one;
 }
 

@@ -298,6 +298,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     if (possible.empty()) continue;
     NamedEffect one;
     static_cast<EffectCandidate&>(one) = possible.front();
+    one.why.clear();
     // An effect that was taken in beside others can have gained more alone than all of them together.
     const Remainder torque = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude);
     largest_share = std::max(largest_share, noise_shares(context, torque, found.floor).maxCoeff());
