@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kSound = 0.02;    // of the torque: what a log without faults may leave
 constexpr double kWins = 0.85;     // of the residual: offsets of all drives are nearly a load
 constexpr double kMore = 0.95;     // of the residual of fewer drives
-constexpr double kLeast = 0.03;    // of the drive's rms torque: less is no matter
+constexpr double kLeast = 0.01;    // of the drive's rms torque: less is no matter
 constexpr double kSigmas = 15;     // of the offset
 constexpr Index kFewestRows = 20;  // of a drive
 
