@@ -19,13 +19,20 @@ using Eigen::VectorXd;
 
 constexpr int kParts = 4;  // of a file: enough to see that a delay grows in a line
 constexpr double kShortestPart_s = 2;
+constexpr double kLongestPart_s = 30;    // its middle tells a delay as well as all of it
 constexpr double kSigmas = 5;            // of a rate
 constexpr double kOffShare = 0.15;       // of the change over the file: so far a part may lie off the line
 constexpr double kLeastChange_s = 2e-4;  // less is for the one delay of the file
 constexpr double kTakesAway = 0.75;      // of the residual may be left; parts of sound logs leave 0.9 and more
 
-/// Parts of all logs, each under a name of its own, so that it may have a delay of its own; `owner` is the file that it belongs to.
-std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<int>& owner) {
+/// The middle of a part of a file, and the time that the whole part takes.
+struct Part {
+  int file = 0;
+  double first_s = 0, last_s = 0;
+};
+
+/// Parts of all logs, each under a name of its own, so that it may have a delay of its own.
+std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<Part>& which) {
   const std::vector<int> files = file_numbers(logs);
   std::vector<Log> parts;
   for (std::size_t l = 0; l < logs.size(); ++l) {
@@ -34,9 +41,10 @@ std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<int>& owner)
     const Index count = std::clamp<Index>(static_cast<Index>(length_s / kShortestPart_s), 1, kParts);
     for (Index k = 0; k < count; ++k) {
       const Index from = k * log.samples() / count, to = (k + 1) * log.samples() / count;
-      parts.push_back(part_of(log, from, to - from));
+      const Index most = static_cast<Index>(kLongestPart_s / log.sample_time_s()), length = std::min(to - from, most);
+      parts.push_back(part_of(log, from + (to - from - length) / 2, length));
       parts.back().file += fmt::format("#{}", parts.size());
-      owner.push_back(files[l]);
+      which.push_back({files[l], log.t_s(from), log.t_s(to - 1)});
     }
   }
   return parts;
@@ -64,8 +72,8 @@ std::optional<ClockDrift> line_through(const VectorXd& t, const VectorXd& delay)
 
 std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                             double highest_band_hz) {
-  std::vector<int> owner;
-  const std::vector<Log> parts = parts_of(logs, owner);
+  std::vector<Part> which;
+  const std::vector<Log> parts = parts_of(logs, which);
   SampleOptions options;
   options.highest_band_hz = highest_band_hz;
   options.stretches = 1;
@@ -79,16 +87,15 @@ std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParame
   out.rms_before = before;
   out.rms_after = after;
   bool any = false;
-  const int files = *std::max_element(owner.begin(), owner.end()) + 1;
+  const int files = which.back().file + 1;
   for (int file = 0; file < files; ++file) {
     std::vector<double> t, d;
     double first = 1e300, last = -1e300;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (owner[k] != file) continue;
-      const VectorXd& time = parts[k].t_s;
-      first = std::min(first, time(0));
-      last = std::max(last, time(time.size() - 1));
-      t.push_back(0.5 * (time(0) + time(time.size() - 1)));
+      if (which[k].file != file) continue;
+      first = std::min(first, which[k].first_s);
+      last = std::max(last, which[k].last_s);
+      t.push_back(0.5 * (which[k].first_s + which[k].last_s));
       d.push_back(delay(static_cast<Index>(k)));
     }
     const auto as_vector = [](const std::vector<double>& v) -> VectorXd {

@@ -22,11 +22,10 @@ constexpr double kLeast = 0.01;    // of the drive's rms torque: less is no matt
 constexpr double kSigmas = 15;     // of the offset
 constexpr Index kFewestRows = 20;  // of a drive
 
-/// All drives' rows, each over its rms torque; the drives' offsets are the last columns.
-struct Stack {
-  MatrixXd A;
-  VectorXd b, rms;
-  Index parameters = 0;
+/// All drives' rows, each over its rms torque, without what the base parameters explain of them.
+struct Rest {
+  MatrixXd offset;  ///< one column a drive
+  VectorXd torque, rms;
 
   bool fill(const Rows& rows, const Points& points) {
     const auto drives = static_cast<Index>(rows.drives.size());
@@ -35,9 +34,10 @@ struct Stack {
       if (drive.count() < kFewestRows) return false;
       total += drive.count();
     }
-    parameters = rows.drives.front().Y.cols();
-    A.setZero(total, parameters + drives);
-    b.resize(total);
+    const Index parameters = rows.drives.front().Y.cols();
+    MatrixXd A = MatrixXd::Zero(total, parameters);
+    offset.setZero(total, drives);
+    torque.resize(total);
     rms.resize(drives);
     Index row = 0;
     for (Index j = 0; j < drives; ++j) {
@@ -45,12 +45,17 @@ struct Stack {
       VectorXd tau(drive.count());
       for (Index k = 0; k < tau.size(); ++k) tau(k) = points.tau(drive.at[static_cast<std::size_t>(k)].point, j);
       rms(j) = std::max(tau.norm() / std::sqrt(static_cast<double>(tau.size())), 1e-12);
-      A.block(row, 0, tau.size(), parameters) = drive.Y / rms(j);
-      A.block(row, parameters + j, tau.size(), 1).setConstant(1 / rms(j));
-      b.segment(row, tau.size()) = tau / rms(j);
+      A.middleRows(row, tau.size()) = drive.Y / rms(j);
+      offset.col(j).segment(row, tau.size()).setConstant(1 / rms(j));
+      torque.segment(row, tau.size()) = tau / rms(j);
       row += tau.size();
     }
-    return total > 2 * A.cols();
+    const VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
+    A *= norm.cwiseInverse().asDiagonal();
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+    offset -= A * MatrixXd(qr.solve(offset));
+    torque -= A * VectorXd(qr.solve(torque));
+    return total > 2 * (parameters + drives);
   }
 };
 
@@ -60,41 +65,29 @@ struct Offsets {
   double residual = 1;  ///< relative
 };
 
-Offsets fit(const Stack& stack, const std::vector<int>& drives) {
-  const Index P = stack.parameters, count = static_cast<Index>(drives.size());
-  MatrixXd A(stack.A.rows(), P + count);
-  A.leftCols(P) = stack.A.leftCols(P);
-  for (Index k = 0; k < count; ++k) A.col(P + k) = stack.A.col(P + drives[static_cast<std::size_t>(k)]);
-  const VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
-  A *= norm.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-  const VectorXd x = norm.cwiseInverse().asDiagonal() * qr.solve(stack.b);
+Offsets fit(const Rest& rest, const std::vector<int>& drives) {
+  const auto count = static_cast<Index>(drives.size());
+  MatrixXd A(rest.torque.size(), count);
+  for (Index k = 0; k < count; ++k) A.col(k) = rest.offset.col(drives[static_cast<std::size_t>(k)]);
+  const MatrixXd inverse = MatrixXd(A.transpose() * A).completeOrthogonalDecomposition().pseudoInverse();
   Offsets out;
   out.drives = drives;
-  out.residual = (stack.b - A * norm.asDiagonal() * x).norm() / std::sqrt(static_cast<double>(stack.b.size()));
-  out.value = x.tail(count);
-  // Variance of the last columns, by what the other ones leave of them.
-  out.std.resize(count);
-  for (Index k = 0; k < count; ++k) {
-    MatrixXd others(A.rows(), A.cols() - 1);
-    others << A.leftCols(P + k), A.rightCols(count - k - 1);
-    const Eigen::ColPivHouseholderQR<MatrixXd> rest(others);
-    const VectorXd own = A.col(P + k) - others * rest.solve(A.col(P + k));
-    out.std(k) = out.residual / std::max(own.norm() * norm(P + k), 1e-300);
-  }
+  out.value = inverse * (A.transpose() * rest.torque);
+  out.residual = (rest.torque - A * out.value).norm() / std::sqrt(static_cast<double>(rest.torque.size()));
+  out.std = out.residual * inverse.diagonal().cwiseMax(0.0).cwiseSqrt();
   return out;
 }
 
-bool stands_out(const Offsets& o, const Stack& stack) {
+bool stands_out(const Offsets& o, const Rest& rest) {
   for (Index k = 0; k < o.value.size(); ++k) {
-    const double least = kLeast * stack.rms(o.drives[static_cast<std::size_t>(k)]);
+    const double least = kLeast * rest.rms(o.drives[static_cast<std::size_t>(k)]);
     if (std::abs(o.value(k)) < std::max(least, kSigmas * o.std(k))) return false;
   }
   return true;
 }
 
 /// Offsets of the fewest drives that explain the torque; more of them only where they leave clearly less.
-Offsets best_offsets(const Stack& stack, int drives) {
+Offsets best_offsets(const Rest& rest, int drives) {
   Offsets best;
   for (int count = 1; count <= drives; ++count) {
     Offsets next;
@@ -104,8 +97,8 @@ Offsets best_offsets(const Stack& stack, int drives) {
         if ((set >> j & 1) != 0) members.push_back(j);
       }
       if (static_cast<int>(members.size()) != count) continue;
-      Offsets one = fit(stack, members);
-      if (one.residual < next.residual && stands_out(one, stack)) next = std::move(one);
+      Offsets one = fit(rest, members);
+      if (one.residual < next.residual && stands_out(one, rest)) next = std::move(one);
     }
     if (next.residual < (best.residual < kSound ? kMore : 1.0) * best.residual) best = std::move(next);
   }
@@ -117,10 +110,10 @@ Offsets best_offsets(const Stack& stack, int drives) {
 std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
   const std::vector<std::string>& names = robot.parameter_names();
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(".offset"); })) return {};
-  Stack stack;
-  if (!stack.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
-  const double as_given = fit(stack, {}).residual;
-  const Offsets best = best_offsets(stack, robot.drives());
+  Rest rest;
+  if (!rest.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
+  const double as_given = rest.torque.norm() / std::sqrt(static_cast<double>(rest.torque.size()));
+  const Offsets best = best_offsets(rest, robot.drives());
   if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
   TorqueOffset out{{}, VectorXd::Zero(robot.drives())};
   LogFinding& f = out.finding;
