@@ -258,7 +258,7 @@ class ClosedLoop : public VirtualRobot {};
 // The loops answer the steps of the encoders with real torque, while the accelerations beside it are not all seen. In a slow motion
 // this stood out as a torque that comes 2 ms early.
 TEST_F(ClosedLoop, AnswersOfTheLoopsToTheEncodersAreNoDelay) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     plan("slow_plan.csv", 30, 0.1, seed);
     const Words sensors = {"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)};
     succeed(simulate("slow_plan.csv", "slow.csv", sensors));

@@ -106,7 +106,7 @@ TEST(EncoderUncertainty, FrictionOfARobotIsRightWithCoarseEncoders) {
   const auto robot = make_robot(delta_description("delta4"));
   const Eigen::VectorXd truth = delta_truth(*robot);
   double square = 0, count = 0;
-  for (const std::uint64_t seed : {5000, 5001, 5003}) {
+  for (const std::uint64_t seed : {5000U, 5001U, 5003U}) {
     SyntheticOptions how;
     how.duration_s = 10;
     how.torque_noise = 0.1;

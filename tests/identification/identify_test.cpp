@@ -14,7 +14,7 @@ using namespace testing_support;
 
 std::vector<Log> recorded(const Robot& robot, double outlier = 0) {
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     SyntheticOptions synthetic;
     synthetic.duration_s = 6;
     synthetic.torque_noise = 0.05;

@@ -61,7 +61,7 @@ TEST_P(LogGateBench, RemovesADelayOfSomeSamples) {
 }
 
 TEST_P(LogGateBench, LeavesATorqueInTimeAlone) {
-  for (const std::uint64_t seed : {21, 22, 23}) {
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
     BenchMove move = how();
     move.seed = seed;
     const Log log = move.make();

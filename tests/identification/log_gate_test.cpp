@@ -31,7 +31,7 @@ Eigen::VectorXd truth_of(const Robot& robot, const Recording& how) {
 /// A fast log and a slow one, as a drive records them.
 std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
   std::vector<Log> logs;
-  for (const std::uint64_t part : {0, 1}) {
+  for (const std::uint64_t part : {0U, 1U}) {
     SyntheticOptions synthetic;
     synthetic.duration_s = how.duration_s;
     synthetic.rate_hz = how.rate_hz;

@@ -55,7 +55,7 @@ TEST(ModelBand, IsTheWholeBandOfARigidDrive) {
 
 TEST(ModelBand, EndsBelowAVibrationWithoutTorque) {
   for (const double hz : {8.0, 12.0, 16.0}) {
-    for (const std::uint64_t seed : {21, 22}) {
+    for (const std::uint64_t seed : {21U, 22U}) {
       AxisLog log;
       log.seed = seed;
       const ModelBand band = band_of({vibrating(log, hz, 1.0)});

@@ -38,7 +38,7 @@ AxisLog drive_log(std::uint64_t seed) {
 
 TEST(OutsideTorque, IsLeftOutAndSaid) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     Log log = drive_log(seed).make();
     push(log, 7.0, 0.6);
     push(log, 13.0, 0.07);  // too weak to be certain by itself
@@ -59,7 +59,7 @@ TEST(OutsideTorque, IsLeftOutAndSaid) {
 // What a model lacks is no push: friction that is twice as large at slow speeds, a bristle, noise, a coarse encoder.
 TEST(OutsideTorque, IsNotWhatTheModelLacks) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  for (const std::uint64_t seed : {4, 5, 6}) {
+  for (const std::uint64_t seed : {4U, 5U, 6U}) {
     AxisLog how = drive_log(seed);
     how.presliding = seed == 5 ? 0.01 : 0;
     how.torque_noise = seed == 6 ? 1.5 : 0.05;
@@ -80,7 +80,7 @@ TEST(OutsideTorque, ALogThatIsPushedMostOfTheTimeStaysAsItIs) {
 // The torque of a servo that is off is left out already.
 TEST(OutsideTorque, IsNotATorqueThatIsMissing) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  for (const std::uint64_t seed : {8, 9, 10}) {
+  for (const std::uint64_t seed : {8U, 9U, 10U}) {
     Log log = drive_log(seed).make();
     // Off where the machine would need most: more is missing there than the drive gives in the rest of the log.
     Eigen::Index most = 0, half = 75;

@@ -37,7 +37,7 @@ class Presliding : public ::testing::TestWithParam<double> {};
 TEST_P(Presliding, IsFoundFromTheReversals) {
   const auto robot = axis();
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     AxisLog log;
     log.presliding = GetParam();
     log.seed = seed;
@@ -67,7 +67,7 @@ TEST_P(BristleDamping, IsFoundAndLeavesTheInertiaAlone) {
   const auto robot = axis();
   const auto [displacement, damping_s] = GetParam();
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {11, 12}) {
+  for (const std::uint64_t seed : {11U, 12U}) {
     AxisLog log;
     log.presliding = displacement;
     log.bristle_damping_s = damping_s;
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Bristles, BristleDamping,
 
 TEST(FindPresliding, NamesNoDampingWhereThereIsNone) {
   const auto robot = axis();
-  for (const std::uint64_t seed : {21, 22, 23, 24}) {
+  for (const std::uint64_t seed : {21U, 22U, 23U, 24U}) {
     AxisLog log;
     log.presliding = 3e-3;
     log.seed = seed;
@@ -102,7 +102,7 @@ TEST(FindPresliding, NamesNoDampingWhereThereIsNone) {
 
 TEST(FindPresliding, FindsNoneWhereCoulombsLawHolds) {
   const auto robot = axis();
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     AxisLog log;
     log.seed = seed;
     ProcessingOptions processing;
@@ -121,7 +121,7 @@ TEST(FindPresliding, FindsNoneBelowTheStepsOfACoarseEncoder) {
   coarse.base_frequency_hz = 0.3;
   coarse.encoder_step = 2 * std::numbers::pi / 4096;
   coarse.with_derivatives = false;
-  for (const std::uint64_t seed : {5000, 5003}) {
+  for (const std::uint64_t seed : {5000U, 5003U}) {
     coarse.seed = seed;
     ProcessingOptions processing;
     processing.cutoff_hz = 26;

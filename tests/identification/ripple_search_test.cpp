@@ -26,7 +26,7 @@ class RippleOfAnAxis : public ::testing::TestWithParam<double> {};
 TEST_P(RippleOfAnAxis, IsFoundBelowTheNoise) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {31, 32}) {
+  for (const std::uint64_t seed : {31U, 32U}) {
     AxisLog log;
     log.ripple = 0.03;  // the noise of a sample is 0.05
     log.waves = GetParam();
@@ -57,7 +57,7 @@ TEST(FindRipples, FindsNoneInCleanLogs) {
 TEST(FindRipples, ClaimsNoneBesideOtherStructure) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {81, 82}) {
+  for (const std::uint64_t seed : {81U, 82U}) {
     AxisLog log;
     log.ripple = 0.3;
     log.base_hz = 0.11;

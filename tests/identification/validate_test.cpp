@@ -12,7 +12,7 @@ using namespace testing_support;
 TEST(Validate, FiguresAreThoseOfTheRows) {
   const auto robot = make_robot(delta_description("delta3"));
   std::vector<Log> logs;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     SyntheticOptions synthetic;
     synthetic.seed = seed;
     synthetic.torque_noise = 0.2;

@@ -27,7 +27,7 @@ struct Fitted {
 
   Fitted() {
     std::vector<Log> logs;
-    for (const std::uint64_t seed : {1, 2}) logs.push_back(log(seed));
+    for (const std::uint64_t seed : {1U, 2U}) logs.push_back(log(seed));
     Eigen::VectorXd prior = Eigen::VectorXd::Zero(robot->parameters());
     prior.head(10) << 2, 0, 0, 0, 0.4, 0.4, 0.4, 0, 0, 0;
     prior.tail(2) << 1, 1;

@@ -25,7 +25,7 @@ using namespace deltadyn::testing_support;
 
 std::vector<Log> recorded(const Robot& robot, std::uint64_t seed, double fast_hz) {
   std::vector<Log> logs;
-  for (const std::uint64_t part : {0, 1}) {
+  for (const std::uint64_t part : {0U, 1U}) {
     SyntheticOptions options;
     options.duration_s = 10;
     options.torque_noise = 0.1;
