@@ -18,7 +18,6 @@ constexpr double kFault = 0.2, kFaultTrust = 2.0;
 constexpr double kWarning = 0.12, kWarningTrust = 1.3;
 constexpr double kCertain = 5.0;       // standard deviations of the data for a sign
 constexpr double kKnown = 0.3;         // relative deviation of the data above which a ratio says nothing
-constexpr double kHeavyRotor = 4.5;    // inertia over gravity, beside the prior's: reflected rotors triple a link's inertia
 constexpr double kBeyondRotors = 100;  // times the prior's inertia
 constexpr double kWeighed = 0.15;      // relative deviation of a prior whose parts were weighed
 constexpr double kSpread =
