@@ -286,7 +286,7 @@ class Diagnose {
                  drive.rms_after, drive.floor, 100 * drive.structure);
     }
     out.add("verdict", verdict_name(result.verdict));
-    const bool name = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;
+    const bool name = gives_a_name(result.verdict);
     out.add("effect", name ? result.named.front().name : "");
     out.add("class", name ? result.named.front().effect_class : "");
     out.add("joint", name ? result.named.front().joint : "");

@@ -104,7 +104,7 @@ std::vector<RowCount> row_counts(const SearchContext& context, std::size_t drive
 }  // namespace
 
 void settle_rulings(Diagnosis& out) {
-  if (out.verdict != DiagnosisVerdict::named && out.verdict != DiagnosisVerdict::confusable) return;
+  if (!gives_a_name(out.verdict)) return;
   for (ConsideredEffect& one : out.considered) {
     const auto same = [&](const EffectCandidate& other) { return other.name == one.name && other.joint == one.joint; };
     const auto set = std::find_if(out.named.begin(), out.named.end(), [&](const NamedEffect& named) {

@@ -148,7 +148,7 @@ class DiagnosisRun {
       report(0.05);
       take_fixed_effects_off();
       use_cutoff(out_.cutoff_hz);
-      if (cutoff.widest_hz > out_.cutoff_hz && (fewest_rows().share < kLeastKnown || too_few())) use_cutoff(cutoff.widest_hz);
+      if (cutoff.widest_hz > out_.cutoff_hz && (fewest_.share < kLeastKnown || too_few())) use_cutoff(cutoff.widest_hz);
       if (cutoff.sharp_hz > out_.cutoff_hz && too_few()) use_cutoff(cutoff.sharp_hz);
     } catch (const Error& error) {
       if (std::string(error.problem()).find("too short") == std::string::npos) throw;
@@ -157,7 +157,7 @@ class DiagnosisRun {
     }
     // Rows enough to fit the base model and still see something beside it?
     if (too_few()) {
-      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest_rows().count, 1.0), out_);
+      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest_.count, 1.0), out_);
       return false;
     }
     p_fit_ = refit_parameters(base_, rows_.logs, p_);
@@ -208,10 +208,10 @@ class DiagnosisRun {
     out_.cutoff_hz = cutoff_hz;
     judge_bristles(known_);
     make_rows();
+    fewest_ = detail::fewest_rows(rows_.logs);
   }
 
-  [[nodiscard]] detail::KnownRows fewest_rows() const { return detail::fewest_rows(rows_.logs); }
-  [[nodiscard]] bool too_few() const { return fewest_rows().count < rows_needed(); }
+  [[nodiscard]] bool too_few() const { return fewest_.count < rows_needed(); }
   [[nodiscard]] double rows_needed() const { return std::max(120.0, kFewestRowsPerBase * base_.count()); }
 
   detail::ImproveInput input() const {
@@ -291,6 +291,7 @@ class DiagnosisRun {
   std::optional<Log> held_log_;
   PerLogAndDrive<double> position_noises_;
   detail::DiagnosisRows rows_;
+  detail::KnownRows fewest_;  ///< of the rows that the band was chosen by
   GenericBasis basis_;
   std::unique_ptr<EffectSearch> search_;
   detail::SearchResult found_;

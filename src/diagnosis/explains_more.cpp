@@ -4,10 +4,6 @@ namespace deltadyn::detail {
 
 namespace {
 
-bool names(const Diagnosis& diagnosis) {
-  return diagnosis.verdict == DiagnosisVerdict::named || diagnosis.verdict == DiagnosisVerdict::confusable;
-}
-
 /// Squares of the hold-out residual beside the names, each drive in units of `scale`'s residual without them.
 double left_of_holdout(const Diagnosis& diagnosis, const Diagnosis& scale) {
   double sum = 0;
@@ -21,7 +17,8 @@ double left_of_holdout(const Diagnosis& diagnosis, const Diagnosis& scale) {
 }  // namespace
 
 bool explains_more(const Diagnosis& one, const Diagnosis& other) {
-  if (!names(one) || !names(other)) return names(one) && !names(other);
+  const bool name = gives_a_name(one.verdict), other_name = gives_a_name(other.verdict);
+  if (!name || !other_name) return name && !other_name;
   const bool held = !one.holdout_figures.empty() && one.holdout_figures.size() == other.holdout_figures.size();
   if (held) return left_of_holdout(one, other) < left_of_holdout(other, other);
   return one.explained_share > other.explained_share;

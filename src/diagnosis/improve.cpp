@@ -290,7 +290,7 @@ Identification identify_beside(const ImproveInput& input, const std::vector<Log>
 }
 
 void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosis& out) {
-  if (out.named.empty() || (out.verdict != DiagnosisVerdict::named && out.verdict != DiagnosisVerdict::confusable)) return;
+  if (out.named.empty() || !gives_a_name(out.verdict)) return;
   try {
     if (input.holdout == nullptr) {
       Trial trial;

@@ -421,7 +421,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     }
     out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
   }
-  if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
+  if (gives_a_name(out.verdict)) {
     leave_out_open_courses(context, out);
   }
   if (out.verdict == DiagnosisVerdict::nothing_missing || out.verdict == DiagnosisVerdict::not_testable) {
@@ -436,7 +436,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     out.verdict = DiagnosisVerdict::not_testable;
     out.headline = "Not testable: the motion does not even show all base parameters, so that an effect could hide behind them.";
   }
-  if (out.verdict == DiagnosisVerdict::named || out.verdict == DiagnosisVerdict::confusable) {
+  if (gives_a_name(out.verdict)) {
     for (const NamedEffect& one : out.named) out.effects.push_back(one.effect);
   } else {
     // A candidate that does not suffice, or that the hold-out log contradicts, is shown, not added.

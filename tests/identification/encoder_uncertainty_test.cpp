@@ -3,7 +3,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <iostream>
-#include <numbers>
 
 #include "deltadyn/identification/identify.hpp"
 
@@ -107,14 +106,8 @@ TEST(EncoderUncertainty, FrictionOfARobotIsRightWithCoarseEncoders) {
   const Eigen::VectorXd truth = delta_truth(*robot);
   double square = 0, count = 0;
   for (const std::uint64_t seed : {5000U, 5001U, 5003U}) {
-    SyntheticOptions how;
-    how.duration_s = 10;
-    how.torque_noise = 0.1;
-    how.base_frequency_hz = 0.3;
-    how.encoder_step = 2 * std::numbers::pi / 4096;
-    how.with_derivatives = false;
-    how.seed = seed;
-    const Identification found = identify(*robot, {synthetic_log(*robot, truth, how)}, truth, {}, IdentificationOptions{});
+    const std::vector<Log> logs = {synthetic_log(*robot, truth, coarse_recording(seed))};
+    const Identification found = identify(*robot, logs, truth, {}, IdentificationOptions{});
     const Eigen::VectorXd right = found.base.B * truth, std = found.base_estimate.std();
     for (Eigen::Index k = 0; k < right.size(); ++k) {
       const std::string& name = found.base.expressions[static_cast<std::size_t>(k)];

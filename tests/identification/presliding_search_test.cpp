@@ -1,7 +1,6 @@
 #include "deltadyn/identification/presliding_search.hpp"
 
 #include <gtest/gtest.h>
-#include <numbers>
 
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/validate.hpp"
@@ -115,18 +114,12 @@ TEST(FindPresliding, FindsNoneWhereCoulombsLawHolds) {
 // A position that jitters by the steps of its encoder rounds the reversals of Coulomb's friction.
 TEST(FindPresliding, FindsNoneBelowTheStepsOfACoarseEncoder) {
   const auto robot = make_robot(delta_description("delta4"));
-  SyntheticOptions coarse;
-  coarse.duration_s = 10;
-  coarse.torque_noise = 0.1;
-  coarse.base_frequency_hz = 0.3;
-  coarse.encoder_step = 2 * std::numbers::pi / 4096;
-  coarse.with_derivatives = false;
   for (const std::uint64_t seed : {5000U, 5003U}) {
-    coarse.seed = seed;
     ProcessingOptions processing;
     processing.cutoff_hz = 26;
     for (const PreslidingJoint& joint :
-         find_presliding(*robot, find_base_parameters(*robot), {synthetic_log(*robot, delta_truth(*robot), coarse)}, processing))
+         find_presliding(*robot, find_base_parameters(*robot),
+                         {synthetic_log(*robot, delta_truth(*robot), coarse_recording(seed))}, processing))
       EXPECT_EQ(joint.displacement, 0) << seed;
   }
 }

@@ -53,6 +53,18 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;
 };
 
+/// A recording with noise and encoders of 12 bits.
+inline SyntheticOptions coarse_recording(std::uint64_t seed) {
+  SyntheticOptions out;
+  out.duration_s = 10;
+  out.torque_noise = 0.1;
+  out.base_frequency_hz = 0.3;
+  out.encoder_step = 2 * std::numbers::pi / 4096;
+  out.with_derivatives = false;
+  out.seed = seed;
+  return out;
+}
+
 /// Fourier motion around the middle of the workspace. Exact q, qd, qdd unless quantised.
 inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, const SyntheticOptions& options) {
   const int n = robot.drives();

@@ -104,7 +104,7 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
       for (const std::string& text : *texts) fmt::print("#   {}\n", text);
     }
   }
-  const bool names = result.verdict == DiagnosisVerdict::named || result.verdict == DiagnosisVerdict::confusable;
+  const bool names = gives_a_name(result.verdict);
   for (const NamedEffect& one : result.named) {
     if (!names) break;
     out.named += (out.named.empty() ? "" : ";") + one.name + "@" + one.joint;

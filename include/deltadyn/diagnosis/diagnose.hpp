@@ -19,6 +19,10 @@ namespace deltadyn {
 enum class DiagnosisVerdict { nothing_missing, named, confusable, unknown_structure, not_testable };
 /// "nothing-missing", "named", ...
 [[nodiscard]] const char* verdict_name(DiagnosisVerdict verdict);
+/// Does the verdict give a name, alone or with others of its set?
+[[nodiscard]] constexpr bool gives_a_name(DiagnosisVerdict verdict) {
+  return verdict == DiagnosisVerdict::named || verdict == DiagnosisVerdict::confusable;
+}
 
 struct DiagnosisOptions {
   ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false; bristles and ripples are the model's
