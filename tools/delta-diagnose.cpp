@@ -71,8 +71,8 @@ class Diagnose {
   ExitCode execute(ToolRun& run) {
     if (list_) {
       for (const EffectKind& kind : effect_catalogue()) {
-        fmt::print("{:<28} {:<18} {}{}\n", kind.name, kind.effect_class, kind.meaning,
-                   kind.alias.empty() ? "" : " (also " + kind.alias + ")");
+        fmt::print("{:<28} {:<18} {}{}\n", kind.name, effect_class_name(kind.effect_class), kind.meaning,
+                   kind.alias.empty() ? "" : fmt::format(" (also {})", kind.alias));
       }
       return ExitCode::done;
     }

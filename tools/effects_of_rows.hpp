@@ -27,7 +27,7 @@ inline std::vector<Effect> presliding_effects(const ParameterTable& table, const
     const ParameterEntry* coulomb = table.find(fmt::format("drive{}.coulomb", joint + 1));
     if (coulomb == nullptr || !(coulomb->value > 0)) continue;
     Effect effect;
-    effect.id = EffectId::presliding;
+    effect.id = effect_with(Role::bristle);
     effect.joint = joint;
     effect.shape = Eigen::Vector2d(displacement(joint), damping(joint));
     effect.amplitude = Eigen::VectorXd::Constant(1, coulomb->value);
@@ -41,7 +41,7 @@ inline std::vector<Effect> ripple_effects(const ParameterTable& table, const Rob
   std::vector<Effect> effects;
   for (const Ripple& ripple : ripples_of(table, robot)) {
     Effect effect;
-    effect.id = EffectId::torque_ripple;
+    effect.id = effect_with(Role::wave);
     effect.joint = ripple.drive;
     effect.shape = Eigen::VectorXd::Constant(1, ripple.n);
     effect.amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine);

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "diagnosis_steps.hpp"
-#include "form_share.hpp"
 
 namespace deltadyn::detail {
 
@@ -89,7 +88,7 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   }
   if (blocks >= kLeastBlocks) variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));
   const VectorXd std = scale.cwiseProduct(variance.cwiseMax(0.0).cwiseSqrt());
-  const double form = form_share(fit.effect.id).amplitude;
+  const double form = effect_kind(fit.effect.id).form.amplitude;
   fit.effect.amplitude_std = (std.head(k).cwiseAbs2() + (form * fit.effect.amplitude).cwiseAbs2()).cwiseSqrt();
   if (effect_kind(fit.effect.id).tied) fit.effect.shape_std(0) = fit.effect.amplitude_std(0);
   for (std::size_t s = 0; s < shapes.size(); ++s) {

@@ -74,7 +74,7 @@ EffectCandidate candidate_of(const SearchContext& context, const SearchResult& f
   EffectCandidate out;
   out.effect = fit.effect;
   out.name = hypothesis.name();
-  out.effect_class = hypothesis.kind().effect_class;
+  out.effect_class = effect_class_name(hypothesis.kind().effect_class);
   out.joint = hypothesis.joint_name();
   out.gain = fit.gain;
   out.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);

@@ -71,7 +71,8 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : kFound;
     for (const EffectCandidate& other : found.sets[k]) {
-      if (other.name == one.name && other.joint == one.joint) return kLikeAnother + effect_kind(found.fits[k].effect.id).name;
+      if (other.name == one.name && other.joint == one.joint)
+        return kLikeAnother + std::string(effect_kind(found.fits[k].effect.id).name);
     }
   }
   if (one.kept < kHidden) return "these motions cannot show it: a re-fit of the parameters absorbs it";
@@ -84,7 +85,7 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
                        effect_kind(first.effect.id).name);
   }
   if (one.p_alone <= alpha) return "a trace, too small to matter";
-  if (found.before.scores[h].gain <= 0 && effect_kind(context.search.hypotheses()[h].id).amplitudes.front().positive)
+  if (found.before.scores[h].gain <= 0 && effect_kind(context.search.hypotheses()[h].id).amplitudes.front().positive())
     return "ruled out: it would need the wrong sign";
   return "no evidence";
 }
@@ -198,7 +199,7 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     ConsideredEffect one;
     one.name = hypotheses[h].name();
-    one.effect_class = hypotheses[h].kind().effect_class;
+    one.effect_class = effect_class_name(hypotheses[h].kind().effect_class);
     one.joint = hypotheses[h].joint_name();
     one.unit = effect_unit(hypotheses[h].kind().amplitudes.front().unit, hypotheses[h].joint, context.robot.description());
     one.gain_alone = found.before.scores[h].gain;

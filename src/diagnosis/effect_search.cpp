@@ -47,10 +47,10 @@ struct Reach {
 };
 
 Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const VectorXd& shape) {
-  const EffectShape& kind = hypothesis.kind().shapes[parameter];
+  const ShapeTraits& kind = hypothesis.kind().shapes[parameter];
+  const ShapeSearch& search = kind.search;
   const double value = shape(static_cast<Index>(parameter));
   if (!shape_is_free(hypothesis.id, parameter, shape)) return {};
-  if (kind.name == "exponent") return {true, false, std::max(1.2, value - 0.5), value + 0.7};
   if (kind.scale == ShapeScale::waves) {
     double spacing = 0.25 * std::abs(value), longest = value;
     for (const VectorXd& other : hypothesis.shapes) {
@@ -58,14 +58,21 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
       const double distance = std::abs(other(0) - value);
       if (distance > 1e-12) spacing = std::min(spacing, distance);
     }
-    // Less than one wave of torque over the range of the drive is no wave but part of one: of gravity, load, anything. Friction that
-    // varies once a turn of the joint shows as such a part.
-    const bool whole = hypothesis.id == EffectId::torque_ripple;
+    // The longest start value is one wave over the range.
+    const bool whole = search.least >= 1;
     return {true, false, whole ? std::max(value - spacing, longest) : value - spacing, value + spacing};
   }
-  // A level far below the peaks would be a matter of gain or load.
-  if (hypothesis.id == EffectId::saturation) return {true, true, 0.9 * value, 1.1 * value};
-  return {true, true, 0.55 * value, 1.8 * value};
+  if (kind.scale == ShapeScale::place) {
+    double spacing = 0;  // to the next start value, or as far again beyond the last
+    for (const VectorXd& other : hypothesis.shapes) {
+      const double distance = std::abs(other(static_cast<Index>(parameter)) - value);
+      if (distance > 1e-12 && (spacing == 0 || distance < spacing)) spacing = distance;
+    }
+    return {true, false, value - spacing, value + spacing};
+  }
+  if (search.kind == ShapeSearch::by_difference)
+    return {true, false, std::max(search.least, value + search.low), value + search.high};
+  return {true, true, search.low * value, search.high * value};
 }
 
 }  // namespace
@@ -74,7 +81,7 @@ EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>&
                            const std::vector<Effect>& known, const VectorXd& presliding)
     : model_(model), logs_(logs), basis_(basis), hypotheses_(all_hypotheses(model.robot(), logs, known)), rows_() {
   std::erase_if(hypotheses_, [&](const Hypothesis& one) {
-    return one.id == EffectId::presliding && one.joint < presliding.size() && presliding(one.joint) > 0;
+    return one.kind().role == Role::bristle && one.joint < presliding.size() && presliding(one.joint) > 0;
   });
   rows_.resize(hypotheses_.size());
   std::exception_ptr failure;
@@ -286,7 +293,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       one.inner = one.white.inner(state.problem->r, Q_r, state.problem->segments, 0, k);
       if (state.bias[h].size() > 0) one.inner = freed_of_bias(one.inner, state.bias[h].segment(first, k));
     }
-    for (const EffectAmplitude& amplitude : hypotheses_[h].kind().amplitudes) one.positive.push_back(amplitude.positive);
+    for (const AmplitudeTraits& amplitude : hypotheses_[h].kind().amplitudes) one.positive.push_back(amplitude.positive());
     ones.push_back(std::move(one));
   }
   Pair out;

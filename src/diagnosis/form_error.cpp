@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "form_share.hpp"
-
 namespace deltadyn::detail {
 
 using Eigen::Index;
@@ -18,7 +16,7 @@ constexpr double kFarMore = 3.0;   // an effect that gains so many times what th
 constexpr double kAsGood = 0.9;    // share of a gain from which an effect at the earlier one's place would do as well
 constexpr double kReached = 0.05;  // of an effect's squares: a drive with less is not reached
 
-const std::string& class_of(EffectId id) {
+EffectClass class_of(EffectId id) {
   return effect_kind(id).effect_class;
 }
 
@@ -26,17 +24,13 @@ const std::string& class_of(EffectId id) {
 /// stated for its one side are, for the other side, such losses and a share of the torque itself, as gravity and inertia make it. And
 /// friction that differs by direction may do so by rate, place or time.
 bool alike(EffectId one, EffectId other) {
-  const auto is = [](EffectId id, const char* effect_class) { return effect_kind(id).effect_class == effect_class; };
-  const auto by_position = [&](EffectId id) { return is(id, "position-periodic") || is(id, "reversal-memory"); };
-  const auto of_torque = [&](EffectId id) {
-    return is(id, "load") || is(id, "quasi-constant") || is(id, "pose-force") || is(id, "inertia-like");
-  };
-  const auto of_friction = [&](EffectId id) {
-    return by_position(id) || is(id, "velocity-shape") || is(id, "quasi-constant") || is(id, "drift");
-  };
-  const bool by_direction = one == EffectId::asymmetric_coulomb || one == EffectId::asymmetric_viscous;
-  return class_of(one) == class_of(other) || (by_position(one) && by_position(other)) || (is(one, "load") && of_torque(other)) ||
-         (by_direction && of_friction(other));
+  using Class = EffectClass;
+  const Class a = class_of(one), b = class_of(other);
+  const auto by_position = [](Class c) { return c == Class::position_periodic || c == Class::reversal_memory; };
+  const bool b_of_torque = b == Class::load || b == Class::quasi_constant || b == Class::pose_force || b == Class::inertia_like;
+  const bool b_of_friction = by_position(b) || b == Class::velocity_shape || b == Class::quasi_constant || b == Class::drift;
+  return a == b || (by_position(a) && by_position(b)) || (a == Class::load && b_of_torque) ||
+         (effect_kind(one).by_direction && b_of_friction);
 }
 
 }  // namespace
@@ -82,7 +76,7 @@ bool FormErrors::explain(const Fit& fit) const {
     const bool same_kind = fit.effect.id == other.id, depends_alike = alike(other.id, fit.effect.id);
     const bool here = (fit.effect.joint == other.joint && (other.joint >= 0 || depends_alike)) ||
                       (other.joint >= 0 && best_at(other.joint) > kAsGood * fit.gain);
-    const FormShare form = form_share(other.id);
+    const FormShare form = effect_kind(other.id).form;
     double share = depends_alike ? form.own : form.other;
     // A second effect of a kind may be the first one at the wrong place.
     if (!here) share = same_kind ? kElsewhere : std::min(share, depends_alike ? kElsewhere : kOther);

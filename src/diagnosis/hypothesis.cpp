@@ -14,12 +14,10 @@ namespace {
 
 constexpr double kFinestWave = 0.5;  // spacing of the waves over the range: a quarter of a wave out of step at the ends
 constexpr double kPassBand = 0.6;    // of the cut-off: a ripple above it at the usual speed is filtered away
-constexpr int kMostWaves = 60;
-constexpr int kMostFrictionWaves = 10;  // friction varies over a turn, not over a tooth
 
 /// What the motion of a joint is like over all logs.
 struct MotionScale {
-  double largest_rate = 0, usual_rate = 0, range = 0, largest_torque = 0;
+  double largest_rate = 0, usual_rate = 0, middle = 0, range = 0, largest_torque = 0;
 };
 
 MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
@@ -41,36 +39,41 @@ MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
   scale.largest_rate = rates.empty() ? 0 : rates[static_cast<std::size_t>(0.995 * static_cast<double>(rates.size() - 1))];
   scale.usual_rate = rates.empty() ? 0 : rates[rates.size() / 2];
   scale.range = std::max(high - low, 0.0);
+  scale.middle = joint >= 0 ? 0.5 * (low + high) : 0.0;
   return scale;
 }
 
-std::vector<double> waves(const MotionScale& scale, double cutoff_hz, int most) {
+std::vector<double> waves(const MotionScale& scale, double cutoff_hz, double least, double most) {
   std::vector<double> n;
   if (!(scale.range > 0)) return n;
   const double per_wave = 2 * std::numbers::pi / scale.range;
   const double highest = 2 * std::numbers::pi * kPassBand * cutoff_hz / std::max(scale.usual_rate, 1e-9);
-  for (double w = 1.0; w <= most && w * per_wave <= highest; w += kFinestWave) n.push_back(w * per_wave);
+  for (double w = least; w <= most && w * per_wave <= highest; w += kFinestWave) n.push_back(w * per_wave);
   return n;
 }
 
-std::vector<double> grid_of(const EffectShape& shape, const Hypothesis& hypothesis, const MotionScale& scale,
+std::vector<double> grid_of(const ShapeTraits& shape, const Hypothesis& hypothesis, const MotionScale& scale,
                             const std::vector<LogRows>& logs, const Robot& robot) {
   const bool turns = hypothesis.joint < 0 || robot.description().kind_of_drive(hypothesis.joint) == DriveKind::revolute;
-  std::vector<double> grid = shape.grid;
+  std::vector<double> grid = start_values(shape);
   double unit = 1;
   switch (shape.scale) {
-    case ShapeScale::absolute: break;
+    case ShapeScale::absolute:
+    case ShapeScale::choice: break;
     case ShapeScale::largest_rate: unit = scale.largest_rate; break;
     case ShapeScale::largest_torque: unit = scale.largest_torque; break;
     case ShapeScale::displacement: unit = std::max(turns ? 1.0 : 0.1, scale.range); break;
     case ShapeScale::range: unit = scale.range; break;
+    case ShapeScale::place:
+      for (double& value : grid) value = scale.middle + value * scale.range;
+      return grid;
     case ShapeScale::waves: {
       double cutoff_hz = 1e9;
       for (const LogRows& log : logs) {
         // Half the rate of the rows stands for the pass band.
         cutoff_hz = std::min(cutoff_hz, 0.4 * log.log.rate_hz / static_cast<double>(log.log.stride));
       }
-      return waves(scale, cutoff_hz, hypothesis.id == EffectId::position_dependent_friction ? kMostFrictionWaves : kMostWaves);
+      return waves(scale, cutoff_hz, shape.start[0], shape.start[1]);
     }
     case ShapeScale::logs:
       for (const LogRows& log : logs) grid.push_back(log.number);
@@ -80,31 +83,37 @@ std::vector<double> grid_of(const EffectShape& shape, const Hypothesis& hypothes
   return grid;
 }
 
+/// Of start values that differ in a mere unit only, the last serves.
+void keep_one_unit(const EffectKind& kind, std::vector<VectorXd>& shapes) {
+  if (kind.is_unit == nullptr || shapes.empty()) return;
+  for (std::size_t k = 0; k < kind.shapes.size(); ++k) {
+    const double last = shapes.back()(static_cast<Index>(k));
+    std::erase_if(shapes, [&](const VectorXd& s) { return kind.is_unit(k, s.data()) && s(static_cast<Index>(k)) != last; });
+  }
+}
+
 bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
   const ParameterOptions& options = robot.parameter_options();
-  switch (hypothesis.id) {
-    case EffectId::asymmetric_coulomb: return options.offset;
-    case EffectId::rotor_inertia:
+  switch (hypothesis.kind().base_term) {
+    case BaseTerm::none: return false;
+    case BaseTerm::offset: return options.offset;
+    case BaseTerm::rotor_inertia:
       // An axis has one inertia only; the telescope's drive turns the tool, whose inertia stands in the model.
       return robot.description().parts.empty() || hypothesis.joint >= static_cast<int>(robot.description().limbs.size()) ||
              std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), hypothesis.joint + 1) > 0;
-    case EffectId::limb_inertia_mismatch:
-      return options.individual_limbs || robot.description().drive_kind != DriveKind::revolute;
+    case BaseTerm::limb: return options.individual_limbs;
     // One drive alone: its torque constant scales all its parameters and cannot be seen.
-    case EffectId::torque_constant_error: return robot.drives() == 1;
-    default: return false;
+    case BaseTerm::torque_scale: return robot.drives() == 1;
   }
+  return false;
 }
 
 }  // namespace
 
 bool shape_is_free(EffectId id, std::size_t parameter, const VectorXd& shape) {
-  const EffectShape& kind = effect_kind(id).shapes[parameter];
-  if (kind.scale == ShapeScale::logs || id == EffectId::kinematic_offset || kind.name == "recorded" || kind.name == "encoder" ||
-      kind.name == "damping")
-    return false;
-  if (kind.name == "exponent") return id == EffectId::convex_viscous;
-  return id != EffectId::shear_thinning || !(shape(1) > 0);  // the power law's reference rate is a matter of units
+  const EffectKind& kind = effect_kind(id);
+  if (kind.shapes[parameter].search.kind == ShapeSearch::fixed) return false;
+  return kind.is_unit == nullptr || !kind.is_unit(parameter, shape.data());
 }
 
 std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs, const std::vector<Effect>& known) {
@@ -119,7 +128,7 @@ std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<Log
       if (is_known || base_holds(robot, hypothesis)) continue;
       if (joint >= 0) hypothesis.largest_torque = scales[static_cast<std::size_t>(joint + 1)].largest_torque;
       // Every combination of the shapes' start values.
-      for (const EffectShape& shape : kind.shapes) {
+      for (const ShapeTraits& shape : kind.shapes) {
         const std::vector<double> grid = grid_of(shape, hypothesis, scales[static_cast<std::size_t>(joint + 1)], logs, robot);
         std::vector<VectorXd> combined;
         for (const VectorXd& so_far : hypothesis.shapes) {
@@ -131,12 +140,7 @@ std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<Log
         }
         hypothesis.shapes = combined;
       }
-      if (kind.id == EffectId::shear_thinning) {
-        // The power law has no rate of its own: one start value serves.
-        const double reference = scales[static_cast<std::size_t>(joint + 1)].largest_rate;
-        std::erase_if(hypothesis.shapes,
-                      [&](const VectorXd& s) { return s(1) > 0 && std::abs(s(0) - reference) > 1e-9 * reference; });
-      }
+      keep_one_unit(kind, hypothesis.shapes);
       if (!hypothesis.shapes.empty()) all.push_back(std::move(hypothesis));
     }
   }

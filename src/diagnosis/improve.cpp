@@ -229,7 +229,7 @@ std::vector<Ripple> lost_ripples(const std::vector<Ripple>& found, const std::ve
     return std::any_of(found.begin(), found.end(),
                        [&](const Ripple& one) { return one.drive == ripple.drive && near(one.n, ripple.n); }) ||
            std::any_of(effects.begin(), effects.end(), [&](const Effect& one) {
-             return one.id == EffectId::torque_ripple && one.joint == ripple.drive && near(one.shape(0), ripple.n);
+             return one.id == effect_with(Role::wave) && one.joint == ripple.drive && near(one.shape(0), ripple.n);
            });
   });
   return lost;
@@ -237,7 +237,7 @@ std::vector<Ripple> lost_ripples(const std::vector<Ripple>& found, const std::ve
 
 Effect effect_of(const Ripple& ripple) {
   Effect effect;
-  effect.id = EffectId::torque_ripple;
+  effect.id = effect_with(Role::wave);
   effect.joint = ripple.drive;
   effect.shape = VectorXd::Constant(1, ripple.n);
   effect.amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine);

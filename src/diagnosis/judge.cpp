@@ -10,6 +10,7 @@
 
 #include "confusable_set.hpp"
 #include "holdout_proof.hpp"
+#include "ranking.hpp"
 
 namespace deltadyn::detail {
 
@@ -102,8 +103,9 @@ struct OpenCourse {
 /// logs that are fast for the drive.
 /// \param gap_shrink  on the hold-out log; NaN without one
 std::optional<OpenCourse> open_course(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
-  const EffectId id = one.effect.id;
-  if (id != EffectId::shear_thinning && id != EffectId::convex_viscous) return std::nullopt;
+  const EffectKind& kind = effect_kind(one.effect.id);
+  const Course course = kind.course != nullptr ? kind.course(one.effect.shape.data()) : Course::not_by_rate;
+  if (course == Course::not_by_rate) return std::nullopt;
   const Index j = one.effect.joint;
   double training = 0, slowest = std::numeric_limits<double>::infinity();
   for (const LogRows& log : context.logs) {
@@ -117,15 +119,14 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
   if (!std::isfinite(wanted)) wanted = there;
   if (training >= kSlowLogs * wanted) return std::nullopt;
   const double unsure = one.effect.amplitude_std(0) / std::abs(one.effect.amplitude(0));
-  const bool power = id == EffectId::shear_thinning && one.effect.shape(1) > 0;
   std::string reason;
   if (unsure > kUnsureCourse) {
     reason = fmt::format("with an uncertainty of {:.0f} % of its size", 100 * unsure);
   } else if (there > kFaster * training && gap_shrink < kMetBeyond) {
     reason = fmt::format("but closes {:.0f} % of the gap on the faster hold-out log only", 100 * gap_shrink);
-  } else if (one_speed && power) {
+  } else if (one_speed && course == Course::endless) {
     reason = "but as a power of the rate, which never ends";
-  } else if (one_speed && id == EffectId::shear_thinning && training < kCourse * one.effect.shape(0)) {
+  } else if (one_speed && course == Course::ends_at_rate && training < kCourse * one.effect.shape(0)) {
     reason =
         fmt::format("but the logs end at {:.2g} times the rate of the bend, before it is over", training / one.effect.shape(0));
   } else {
@@ -143,8 +144,9 @@ bool may_be_nothing(const Effect& effect) {
 /// Why a fit is none that a machine can have; empty if it may be one.
 std::string no_effect(const Effect& effect, double cutoff_hz) {
   if (may_be_nothing(effect)) return "its size may be zero within its 95 % interval";
-  if (effect.id != EffectId::joint_elasticity) return "";
-  const double resonance_hz = 1 / (2 * std::numbers::pi * std::sqrt(std::max(std::abs(effect.amplitude(0)), 1e-300)));
+  const EffectKind& kind = effect_kind(effect.id);
+  if (kind.resonance_hz == nullptr) return "";
+  const double resonance_hz = kind.resonance_hz(effect.amplitude.data());
   if (resonance_hz > kResonance * cutoff_hz) return "";
   return fmt::format("its resonance of {:.2g} Hz would show as such in logs that are used up to {:.3g} Hz", resonance_hz,
                      cutoff_hz);
@@ -277,7 +279,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
     if (found.hygiene[k]) {
-      if (fit.effect.id == EffectId::shear_thinning) {
+      if (near_rest(context, fit)) {
         out.notes.push_back(fmt::format(
             "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
             hypothesis.joint_name(), fit.effect.shape(0)));

@@ -251,8 +251,7 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
   }
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     // Columns of pose alone: a few encoder counts do nothing there.
-    const EffectId id = hypotheses[h].id;
-    if (id != EffectId::base_tilt && id != EffectId::kinematic_offset && id != EffectId::hose_force) sensitive_.push_back(h);
+    if (hypotheses[h].kind().effect_class != EffectClass::pose_force) sensitive_.push_back(h);
   }
   still_ = rows_of(own, sensitive_);
   const int team = threads > 0 ? threads : omp_get_max_threads();

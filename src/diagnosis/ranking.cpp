@@ -9,25 +9,13 @@ namespace deltadyn::detail {
 namespace {
 
 constexpr double kSimplerGain =
-    0.95;  // share of the best one's gain for which an effect is preferred that it holds as a special case
-constexpr double kSameLoss = 0.5;     // smaller over larger loss of a gear from which both count as one
-constexpr double kSkewSamples = 1.0;  // a skew up to one sample is a matter of who samples when, not of the robot
-constexpr double kRestShare = 0.03;   // of the largest rate: friction that bends below it is friction at rest
-constexpr double kLagSamples = 1.0;   // and so is so short a lag
+    0.95;                         // share of the best one's gain for which an effect is preferred that it holds as a special case
+constexpr double kSamples = 1.0;  // a skew or lag up to one sample is a matter of who samples when, not of the robot
 
-/// Does a rich effect lie so near its special case that only the form of the catalogue can have parted them? Losses that depend on the
-/// direction hardly differ less than by a factor of two.
+/// Does a rich effect lie so near its special case that only the form of the law can have parted them?
 bool nearly_special(const Fit& rich) {
-  if (rich.effect.id != EffectId::directional_efficiency) return false;
-  const double driving = rich.effect.amplitude(0), back_driving = rich.effect.amplitude(1);
-  return std::min(driving, back_driving) > kSameLoss * std::max(driving, back_driving);
-}
-
-bool near_rest(const SearchContext& context, const Fit& fit) {
-  if (fit.effect.id != EffectId::shear_thinning || fit.effect.shape(1) > 0) return false;
-  double largest = 0;
-  for (const LogRows& log : context.logs) largest = std::max(largest, log.qd.col(fit.effect.joint).cwiseAbs().maxCoeff());
-  return fit.effect.shape(0) < kRestShare * largest;
+  const EffectKind& kind = effect_kind(rich.effect.id);
+  return kind.nearly_special != nullptr && kind.nearly_special(rich.effect.amplitude.data());
 }
 
 }  // namespace
@@ -45,8 +33,7 @@ std::vector<std::size_t> best_of(const EffectSearch& search, const EffectSearch:
 }
 
 bool holds(EffectId rich, EffectId simple) {
-  return (rich == EffectId::directional_efficiency && simple == EffectId::load_dependent_friction) ||
-         (rich == EffectId::limb_inertia_mismatch && simple == EffectId::rotor_inertia);
+  return effect_kind(simple).special_case_of == effect_kind(rich).name;
 }
 
 std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
@@ -79,11 +66,19 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   return simpler ? simpler : best;
 }
 
+bool near_rest(const SearchContext& context, const Fit& fit) {
+  const EffectKind& kind = effect_kind(fit.effect.id);
+  if (kind.only_near_rest == nullptr) return false;
+  double largest = 0;
+  for (const LogRows& log : context.logs) largest = std::max(largest, log.qd.col(fit.effect.joint).cwiseAbs().maxCoeff());
+  return kind.only_near_rest(fit.effect.shape.data(), largest);
+}
+
 bool hygienic(const SearchContext& context, const Fit& fit) {
   if (near_rest(context, fit)) return true;
-  const double samples = fit.effect.shape.size() > 0 ? std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz : 0.0;
-  if (fit.effect.id == EffectId::time_skew) return samples <= kSkewSamples;
-  return fit.effect.id == EffectId::current_lag && samples <= kLagSamples;
+  const EffectKind& kind = effect_kind(fit.effect.id);
+  return kind.effect_class == EffectClass::phase && kind.tied &&
+         std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz <= kSamples;
 }
 
 }  // namespace deltadyn::detail

@@ -24,6 +24,8 @@ inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are ref
 [[nodiscard]] std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
                                           const std::function<bool(const Fit&)>& counts);
 
+/// Friction that bends near rest only: not Coulomb's, and no effect.
+[[nodiscard]] bool near_rest(const SearchContext& context, const Fit& fit);
 /// What is corrected without a name: a skew or a lag of about a sample, and Coulomb's law that is smoothed near rest.
 [[nodiscard]] bool hygienic(const SearchContext& context, const Fit& fit);
 

@@ -95,7 +95,7 @@ void say(const SearchContext& context, Diagnosis& out) {
       out.next.push_back("To tell " + one.name + " from " + others +
                          ", record a motion that separates them: --plan-next FILE writes one.");
     }
-    out.next.push_back(one.name + ": " + kind.remedy + ".");
+    out.next.push_back(fmt::format("{}: {}.", one.name, kind.remedy));
   }
   out.headline = out.verdict == DiagnosisVerdict::named
                      ? "Missing: " + names + "."

@@ -200,7 +200,7 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
   const EffectKind& kind = hypothesis.kind();
   const Index k = hypothesis.amplitudes;
   std::vector<bool> positive;
-  for (const EffectAmplitude& amplitude : kind.amplitudes) positive.push_back(amplitude.positive);
+  for (const AmplitudeTraits& amplitude : kind.amplitudes) positive.push_back(amplitude.positive());
   Score best;
   best.amplitude = VectorXd::Zero(k);
   if (signature.white.cols == 0) return best;

@@ -96,7 +96,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
 
 /// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number names.
 WrittenModel of_another_log(WrittenModel model) {
-  std::erase_if(model.effects, [](const Effect& effect) { return effect.id == EffectId::payload; });
+  std::erase_if(model.effects, [](const Effect& effect) { return of_one_log(effect.id); });
   return model;
 }
 

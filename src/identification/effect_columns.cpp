@@ -4,32 +4,9 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/effects/aerodynamic_drag.hpp"
-#include "deltadyn/effects/asymmetric_coulomb.hpp"
-#include "deltadyn/effects/asymmetric_viscous.hpp"
-#include "deltadyn/effects/backlash.hpp"
-#include "deltadyn/effects/base_tilt.hpp"
-#include "deltadyn/effects/convex_viscous.hpp"
-#include "deltadyn/effects/current_lag.hpp"
-#include "deltadyn/effects/directional_efficiency.hpp"
-#include "deltadyn/effects/hose_force.hpp"
-#include "deltadyn/effects/hysteresis.hpp"
-#include "deltadyn/effects/joint_elasticity.hpp"
-#include "deltadyn/effects/kinematic_offset.hpp"
-#include "deltadyn/effects/limb_inertia_mismatch.hpp"
-#include "deltadyn/effects/load_dependent_friction.hpp"
-#include "deltadyn/effects/payload.hpp"
-#include "deltadyn/effects/position_dependent_friction.hpp"
-#include "deltadyn/effects/presliding.hpp"
-#include "deltadyn/effects/rotor_inertia.hpp"
-#include "deltadyn/effects/saturation.hpp"
-#include "deltadyn/effects/shear_thinning.hpp"
-#include "deltadyn/effects/stribeck.hpp"
-#include "deltadyn/effects/telescope_side_load.hpp"
-#include "deltadyn/effects/telescope_stribeck.hpp"
-#include "deltadyn/effects/thermal_drift.hpp"
-#include "deltadyn/effects/torque_constant_error.hpp"
-#include "deltadyn/effects/torque_ripple.hpp"
+#include "deltadyn/core/sign.hpp"
+#include "deltadyn/effects/side_load.hpp"
+#include "deltadyn/runtime/changed_machine.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
@@ -41,63 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLag = 1e-4;   // [rad | m], as small
-constexpr double kTilt = 1e-3;  // [rad], small beside any gravity direction, large beside rounding
+constexpr double kLag = 1e-4;  // [rad | m], as small
 
 [[noreturn]] void refuse(const PreparedLog& log, Index sample, Status status) {
   throw Error(fmt::format("{} at t_s = {:.6g}", message(status), log.t_s(sample)), log.file,
               "check that the robot file belongs to this machine, and zero, sign and unit of the drive positions");
-}
-
-/// A drive's column from a function of the sample.
-template <class Function>
-std::vector<EffectColumn> one(int drive, Index samples, const Function& value) {
-  EffectColumn column{drive, MatrixXd(samples, 1)};
-  for (Index k = 0; k < samples; ++k) column.values(k, 0) = value(k);
-  return {std::move(column)};
-}
-
-template <class Function>
-std::vector<EffectColumn> pair_of(int drive, Index samples, const Function& value) {
-  std::vector<EffectColumn> columns(2, EffectColumn{drive, MatrixXd(samples, 1)});
-  for (Index k = 0; k < samples; ++k) {
-    const auto both = value(k);
-    columns[0].values(k, 0) = both.cosine;
-    columns[1].values(k, 0) = both.sine;
-  }
-  return columns;
-}
-
-/// Drive torques of a force on the plate: J^T f at every sample.
-template <class Function>
-EffectColumn on_plate(const EffectSignals& s, const Function& force) {
-  const Index n = s.q.cols();
-  EffectColumn column{-1, MatrixXd(s.q.rows(), n)};
-  for (Index k = 0; k < s.q.rows(); ++k) {
-    const Eigen::Vector3d f = force(k);
-    for (Index j = 0; j < n; ++j) column.values(k, j) = s.J.row(k).segment<3>(3 * j).dot(f);
-  }
-  return column;
-}
-
-template <class Function>
-EffectColumn on_bar(const EffectSignals& s, const Function& force) {
-  EffectColumn column{-1, MatrixXd(s.q.rows(), s.q.cols())};
-  for (Index k = 0; k < s.q.rows(); ++k) column.values.row(k) = force(k) * s.J_bar.row(k);
-  return column;
-}
-
-/// (what a changed torque is) - torque, per unit of the change: for the effects whose shape is their amplitude.
-template <class Function>
-std::vector<EffectColumn> changed_torque(const EffectSignals& s, int joint, double amount, const Function& change) {
-  const Index first = joint >= 0 ? joint : 0;
-  const Index count = joint >= 0 ? 1 : s.torque.cols();
-  EffectColumn column{joint, MatrixXd(s.torque.rows(), count)};
-  for (Index j = 0; j < count; ++j) {
-    const VectorXd torque = s.torque.col(first + j);
-    column.values.col(j) = (change(torque) - torque) / amount;
-  }
-  return {std::move(column)};
 }
 
 /// Inertia of each drive with the others held, in the middle of the workspace.
@@ -109,67 +34,180 @@ VectorXd drive_inertia(const Robot& robot, const VectorXd& p) {
     if (std::isfinite(limits.lower + limits.upper)) q(j) = 0.5 * (limits.lower + limits.upper);
   }
   MatrixXd M(n, n);
-  if (robot.mass_matrix(q, p, M) != Status::ok && robot.mass_matrix(VectorXd::Zero(n), p, M) != Status::ok)
-    return VectorXd::Ones(n);
+  if (robot.mass_matrix(q, p, M) != Status::ok && robot.mass_matrix(VectorXd::Zero(n), p, M) != Status::ok) {
+    throw Error("the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
+                robot.description().name, "mend the limits of the drives in the robot file");
+  }
   return M.diagonal().cwiseMax(1e-12);
 }
 
-EffectColumn elastic(const EffectSignals& s, int joint, const VectorXd& shape) {
-  const Index n = s.q.cols(), N = s.q.rows();
-  const double motor = shape(1) * s.inertia(joint);
-  const VectorXd torque_dd = s.load_dd.col(joint) - motor * s.snap.col(joint);
-  if (static_cast<ElasticEncoder>(std::lround(shape(0))) == ElasticEncoder::arm)
-    return {joint, torque_dd.unaryExpr([](double x) { return joint_elasticity(x); })};
-  const auto drive = static_cast<std::size_t>(joint);
-  EffectColumn column{-1, MatrixXd(N, n)};
-  for (Index k = 0; k < N; ++k) {
-    for (Index i = 0; i < n; ++i) {
-      const double along_lag = s.load_lag[drive](k, i) - shape(1) * s.inertia_lag[drive](k, i);
-      column.values(k, i) = joint_elasticity(along_lag, i == joint ? motor * torque_dd(k) : 0.0, s.inertia(joint) - motor);
+/// Places for the columns of one effect.
+std::vector<EffectColumn> empty_columns(std::size_t count, int drive, Index samples, Index drives) {
+  return std::vector<EffectColumn>(count, EffectColumn{drive, MatrixXd::Zero(samples, drives)});
+}
+
+/// What a law of joint `j` sees at one sample.
+JointInput<double> input_of_drive(const EffectSignals& s, const MatrixXd& gravity, Index j, Index k) {
+  JointInput<double> in;
+  in.position = s.q(k, j);
+  in.rate = s.qd(k, j);
+  in.acceleration = s.qdd(k, j);
+  in.sign = sign_of(in.rate);
+  in.time = s.t_s(k) - s.t_s(0);
+  in.load = s.load(k, j);
+  in.gravity_x = gravity(0, j);
+  in.gravity_z = gravity(1, j);
+  return in;
+}
+
+JointInput<double> input_of_bar(const EffectSignals& s, const Eigen::Vector3d& gravity, Index k) {
+  JointInput<double> in;
+  in.rate = s.bar_rate(k);
+  in.sign = sign_of(in.rate);
+  in.time = s.t_s(k) - s.t_s(0);
+  in.side_load = side_load<double>(s.bar.row(k).transpose(), s.acceleration.row(k).transpose(), gravity);
+  return in;
+}
+
+/// Columns of a law of a drive, with or without memory, from what it sees at each sample.
+template <class E, class Input>
+std::vector<EffectColumn> columns_of_law(int drive, const Shape<double>& shape, Index samples, const Input& input) {
+  std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, drive, samples, 1);
+  double state = 0, before = 0;
+  for (Index k = 0; k < samples; ++k) {
+    const JointInput<double> in = input(k);
+    ColumnsOf<double, E> values;
+    if constexpr (kIs<E, JointMemory>) {
+      state = k == 0 ? E::start(in.sign, shape) : E::moved(state, in.position - before, in, shape);
+      before = in.position;
+      values = E::columns(state, in, shape);
+    } else {
+      values = E::columns(in, shape);
+    }
+    for (std::size_t c = 0; c < values.size(); ++c) out[c].values(k, 0) = values[c];
+  }
+  return out;
+}
+
+/// A law of a joint that the drives move through a row of its Jacobian.
+void spread(const std::vector<EffectColumn>& law, const auto& J, std::vector<EffectColumn>& out) {
+  for (std::size_t c = 0; c < law.size(); ++c) {
+    for (Index k = 0; k < out[c].values.rows(); ++k) out[c].values.row(k) += law[c].values(k, 0) * J(k);
+  }
+}
+
+template <class E>
+std::vector<EffectColumn> columns_on_plate(const EffectSignals& s, const Shape<double>& shape, const Eigen::Vector3d& gravity) {
+  const Index n = s.q.cols();
+  std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, s.q.rows(), n);
+  PlateInput<double> in;
+  in.gravity = gravity;
+  for (Index k = 0; k < s.q.rows(); ++k) {
+    in.position = s.position.row(k);
+    in.velocity = s.velocity.row(k);
+    in.acceleration = s.acceleration.row(k);
+    const auto forces = E::columns(in, shape);
+    for (std::size_t c = 0; c < forces.size(); ++c) {
+      for (Index j = 0; j < n; ++j) out[c].values(k, j) = s.J.row(k).segment<3>(3 * j).dot(forces[c]);
     }
   }
-  return column;
+  return out;
 }
 
-VectorXd delayed(const VectorXd& x, double samples) {
-  VectorXd out(x.size());
-  for (Index k = 0; k < x.size(); ++k) {
-    const double at = std::clamp(static_cast<double>(k) - samples, 0.0, static_cast<double>(x.size() - 1));
-    const Index low = std::min(static_cast<Index>(at), x.size() - 2);
-    const double share = at - static_cast<double>(low);
-    out(k) = (1 - share) * x(low) + share * x(low + 1);
+/// (what is recorded of the torque) - torque, per unit of the change.
+template <class E>
+std::vector<EffectColumn> columns_of_record(const EffectSignals& s, int joint, const Shape<double>& shape) {
+  const double amount = E::traits().tied ? shape[0] : 1.0;
+  const Index first = joint >= 0 ? joint : 0, count = joint >= 0 ? 1 : s.torque.cols();
+  std::vector<EffectColumn> out = empty_columns(1, joint, s.torque.rows(), count);
+  for (Index j = 0; j < count; ++j) {
+    const VectorXd torque = s.torque.col(first + j);
+    out[0].values.col(j) = (E::record(torque, s.sample_time_s, amount, shape) - torque) / amount;
   }
   return out;
 }
 
-VectorXd lagged(const VectorXd& x, double time_constant, double dt) {
-  VectorXd out(x.size());
-  // A torque that is linear between the samples: the input's mean over the step.
-  CurrentLag<double> lag(time_constant, x(0));
-  out(0) = x(0);
-  for (Index k = 1; k < x.size(); ++k) out(k) = lag.step(0.5 * (x(k) + x(k - 1)), dt);
+template <class E>
+std::vector<EffectColumn> columns_of_spring(const EffectSignals& s, int joint, const Shape<double>& shape) {
+  const Index n = s.q.cols();
+  const auto drive = static_cast<std::size_t>(joint);
+  std::vector<EffectColumn> out = empty_columns(1, -1, s.q.rows(), n);
+  for (Index k = 0; k < s.q.rows(); ++k) {
+    for (Index i = 0; i < n; ++i) {
+      ElasticInput<double> in;
+      in.load_dd = s.load_dd(k, joint);
+      in.snap = s.snap(k, joint);
+      in.inertia = s.inertia(joint);
+      in.load_lag = s.load_lag[drive](k, i);
+      in.inertia_lag = s.inertia_lag[drive](k, i);
+      in.own = i == joint;
+      out[0].values(k, i) = E::column(in, shape);
+    }
+  }
+  const MatrixXd& all = out[0].values;
+  if (all.col(joint).cwiseAbs().sum() == all.cwiseAbs().sum()) return {EffectColumn{joint, all.col(joint)}};
   return out;
 }
 
-std::vector<EffectColumn> with_memory(const EffectSignals& s, EffectId id, int joint, const VectorXd& shape) {
-  const auto q = s.q.col(joint);
-  const auto v = s.qd.col(joint);
-  const Index samples = q.size();
-  if (id == EffectId::presliding) {
-    Presliding<double> state(shape(0), coulomb_friction(v(0)));
-    const double damping = shape.size() > 1 ? shape(1) : 0.0;
-    return one(joint, samples, [&](Index k) {
-      const double bristle = state.move(k > 0 ? q(k) - q(k - 1) : 0.0);
-      return damped_presliding(v(k), bristle, shape(0), damping) - coulomb_friction(v(k));
-    });
+/// Gravity outwards and upwards in the frame of the limb that each drive moves; 0 for drives without one.
+MatrixXd gravity_of_limbs(const RobotDescription& robot) {
+  MatrixXd gravity = MatrixXd::Zero(2, robot.drives());
+  for (std::size_t i = 0; i < robot.limbs.size() && static_cast<int>(i) < robot.drives(); ++i) {
+    const double azimuth = robot.limbs[i].azimuth;
+    gravity.col(static_cast<Index>(i)) << std::cos(azimuth) * robot.gravity.x() + std::sin(azimuth) * robot.gravity.y(),
+        robot.gravity.z();
   }
-  if (id == EffectId::hysteresis) {
-    Hysteresis<double> state({shape(0), shape(1)}, coulomb_friction(v(0)));
-    return one(joint, samples, [&](Index k) { return state.move(k > 0 ? q(k) - q(k - 1) : 0.0); });
+  return gravity;
+}
+
+/// All combinations of the start values of an effect's shapes: machines change by choices only.
+std::vector<Shape<double>> choices_of(const EffectTraits& traits) {
+  std::vector<Shape<double>> all(1, Shape<double>{});
+  for (std::size_t k = 0; k < traits.shapes.size(); ++k) {
+    std::vector<Shape<double>> next;
+    for (Shape<double> one : all) {
+      for (const double value : start_values(traits.shapes[k])) {
+        one[k] = value;
+        next.push_back(one);
+      }
+    }
+    all = next;
   }
-  Backlash<double> play(shape(0));
-  return one(joint, samples,
-             [&](Index k) { return backlash(play.move(k > 0 ? q(k) - q(k - 1) : 0.0, s.load(k, joint)), s.load(k, joint)); });
+  return all;
+}
+
+template <class E>
+void add_differences_of(const Robot& robot, std::vector<MachineDifference>& all) {
+  constexpr EffectTraits traits = E::traits();
+  const auto changed = [&](int joint, const Shape<double>& shape, std::size_t amplitude, double by) {
+    ChangedMachine machine(robot.description());
+    std::array<double, kMostAmplitudes> amplitudes{};
+    amplitudes[amplitude] = by;
+    E::change(machine, joint, amplitudes, shape);
+    return MachineDifference::Side{make_robot(machine.description, robot.parameter_options()), machine.home_offset};
+  };
+  for (const int joint : effect_joints(effect_id<E>, robot.description())) {
+    for (const Shape<double>& shape : choices_of(traits)) {
+      for (std::size_t a = 0; a < traits.amplitudes.size(); ++a) {
+        all.push_back(
+            {effect_id<E>, joint, shape, a, E::kStep, changed(joint, shape, a, E::kStep), changed(joint, shape, a, -E::kStep)});
+      }
+    }
+  }
+}
+
+template <class E>
+constexpr bool kByDifferences = kIs<E, MachineChange>;
+
+template <class... Effects>
+std::vector<MachineDifference> differences_of(EffectList<Effects...>, const Robot& robot) {
+  std::vector<MachineDifference> all;
+  const auto add = [&](auto effect) {
+    using E = decltype(effect);
+    if constexpr (kByDifferences<E>) add_differences_of<E>(robot, all);
+  };
+  (add(Effects()), ...);
+  return all;
 }
 
 }  // namespace
@@ -181,35 +219,14 @@ EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effec
     if (name.find(".viscous") != std::string::npos || name.find(".coulomb") != std::string::npos)
       friction_.push_back(static_cast<int>(k));
   }
-  const RobotDescription& description = robot.description();
-  if (description.parts.empty()) return;
-  for (int axis = 0; axis < 2; ++axis) {
-    RobotDescription tilted = description;
-    tilted.gravity = tilted_gravity(description.gravity, axis == 0 ? kTilt : 0.0, axis == 1 ? kTilt : 0.0);
-    tilted_[axis] = make_robot(tilted, robot.parameter_options());
-  }
-  for (const KinematicOffset kind : {KinematicOffset::arm, KinematicOffset::strut}) {
-    for (std::size_t limb = 0; limb < description.limbs.size(); ++limb) {
-      for (const double sign : {1.0, -1.0}) {
-        RobotDescription longer = description;
-        LimbGeometry<double>& geometry = longer.limbs[limb];
-        const double step = sign * kinematic_step<double>();
-        if (kind == KinematicOffset::strut) {
-          geometry.strut += step;
-        } else if (description.drive_kind == DriveKind::revolute) {
-          geometry.p_DE_0.x() += step;
-        } else {
-          geometry.p_DE_0 += step * geometry.axis_L;
-        }
-        longer_.push_back(make_robot(longer, robot.parameter_options()));
-      }
-    }
-  }
+  gravity_ = gravity_of_limbs(robot.description());
+  differences_ = differences_of(AllEffects(), robot);
 }
 
 EffectModel::~EffectModel() = default;
 
-EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bool with_errors, const EffectSignals* near) const {
+EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bool with_differences,
+                                   const EffectSignals* near) const {
   const Index N = log.t_s.size();
   const Index n = robot_.drives();
   EffectSignals out;
@@ -218,7 +235,7 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
   out.qd = log.qd;
   out.qdd = log.qdd;
   out.sample_time_s = 1.0 / log.rate_hz;
-  for (MatrixXd* m : {&out.torque, &out.load, &out.J_bar, &out.passive}) m->resize(N, n);
+  for (MatrixXd* m : {&out.torque, &out.load, &out.J_bar}) m->resize(N, n);
   for (MatrixXd* m : {&out.position, &out.velocity, &out.acceleration, &out.bar}) m->resize(N, 3);
   out.J.resize(N, 3 * n);
   out.bar_rate.resize(N);
@@ -244,10 +261,15 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     for (Index j = 0; j < n; ++j) out.J.row(k).segment<3>(3 * j) = state.J.col(j).transpose();
     out.bar_rate(k) = state.bar_rate;
     out.J_bar.row(k) = state.J_bar;
-    out.passive.row(k) = state.passive.transpose();
+    if (k == 0) {
+      out.passive_rate.resize(N, state.passive_rate.size());
+      out.J_passive.resize(N, state.J_passive.size());
+    }
+    out.passive_rate.row(k) = state.passive_rate.transpose();
+    for (Index m = 0; m < state.J_passive.rows(); ++m) out.J_passive.row(k).segment(m * n, n) = state.J_passive.row(m);
   }
   add_lags(p, near, out);
-  if (with_errors && !robot_.description().parts.empty()) add_errors(log, p, out);
+  if (with_differences) add_differences(log, p, out);
   return out;
 }
 
@@ -308,137 +330,96 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
   }
 }
 
-void EffectModel::add_errors(const PreparedLog& log, const VectorXd& p, EffectSignals& out) const {
+void EffectModel::add_differences(const PreparedLog& log, const VectorXd& p, EffectSignals& out) const {
   const Index N = log.t_s.size();
   const Index n = robot_.drives();
-  const auto limbs = static_cast<Index>(robot_.description().limbs.size());
-  const double step = kinematic_step<double>();
-  out.tilt_x.resize(N, n);
-  out.tilt_y.resize(N, n);
-  out.kinematic.assign(static_cast<std::size_t>(3 * limbs), MatrixXd(N, n));
+  out.changed.assign(differences_.size(), MatrixXd(N, n));
 #pragma omp parallel for schedule(static)
   for (Index k = 0; k < N; ++k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
-    VectorXd plus(n), minus(n), shifted = q;
-    const auto torque = [&](const Robot& robot, const VectorXd& at, VectorXd& tau) {
+    VectorXd plus(n), minus(n);
+    const auto torque = [&](const MachineDifference::Side& side, VectorXd& tau) {
       // Right at the edge of the reach a changed length may not close: then the column says nothing there.
-      if (robot.inverse_dynamics(at, qd, qdd, p, tau) != Status::ok) tau = out.torque.row(k);
+      if (side.robot->inverse_dynamics(q + side.home_offset, qd, qdd, p, tau) != Status::ok) tau = out.torque.row(k);
     };
-    for (int axis = 0; axis < 2; ++axis) {
-      torque(*tilted_[axis], q, plus);
-      (axis == 0 ? out.tilt_x : out.tilt_y).row(k) = (plus - out.torque.row(k).transpose()).transpose() / kTilt;
-    }
-    for (Index limb = 0; limb < limbs; ++limb) {
-      shifted = q;
-      shifted(limb) = q(limb) + step;
-      torque(robot_, shifted, plus);
-      shifted(limb) = q(limb) - step;
-      torque(robot_, shifted, minus);
-      out.kinematic[static_cast<std::size_t>(limb)].row(k) = kinematic_offset<Eigen::ArrayXd>(plus, minus, step).transpose();
-    }
-    for (Index kind = 1; kind < 3; ++kind) {
-      for (Index limb = 0; limb < limbs; ++limb) {
-        const auto at = static_cast<std::size_t>(2 * (limbs * (kind - 1) + limb));
-        torque(*longer_[at], q, plus);
-        torque(*longer_[at + 1], q, minus);
-        out.kinematic[static_cast<std::size_t>(limbs * kind + limb)].row(k) =
-            kinematic_offset<Eigen::ArrayXd>(plus, minus, step).transpose();
-      }
+    for (std::size_t d = 0; d < differences_.size(); ++d) {
+      torque(differences_[d].plus, plus);
+      torque(differences_[d].minus, minus);
+      out.changed[d].row(k) = (plus - minus).transpose() / (2 * differences_[d].step);
     }
   }
 }
 
-std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId id, int joint, const VectorXd& shape,
-                                               int log_number) const {
-  const Index N = s.q.rows();
-  const Index j = std::max(joint, 0);
-  const auto v = [&s, j](Index k) { return s.qd(k, j); };
-  const Eigen::Vector3d gravity = robot_.description().gravity;
-  const auto axes = [&](const auto& force) {
-    std::vector<EffectColumn> columns;
-    for (int axis = 0; axis < 3; ++axis) columns.push_back(on_plate(s, [&](Index k) { return force(k, axis); }));
-    return columns;
-  };
-  switch (id) {
-    case EffectId::stribeck: return one(joint, N, [&](Index k) { return stribeck<double>(v(k), {shape(0), shape(1)}); });
-    case EffectId::shear_thinning: {
-      const ShearLaw law = shape(1) > 0 ? ShearLaw::power : ShearLaw::exponential;
-      return one(joint, N, [&](Index k) { return shear_thinning<double>(v(k), {shape(0), shape(1)}, law); });
-    }
-    case EffectId::convex_viscous: return one(joint, N, [&](Index k) { return convex_viscous(v(k), shape(0)); });
-    case EffectId::asymmetric_coulomb: return one(joint, N, [](Index) { return asymmetric_coulomb<double>(); });
-    case EffectId::asymmetric_viscous: return one(joint, N, [&](Index k) { return asymmetric_viscous(v(k)); });
-    case EffectId::load_dependent_friction:
-      return one(joint, N, [&](Index k) { return load_dependent_friction(v(k), s.load(k, j)); });
-    case EffectId::directional_efficiency: {
-      std::vector<EffectColumn> columns;
-      for (const auto side : {EfficiencyColumn::driving, EfficiencyColumn::back_driving}) {
-        columns.push_back(one(joint, N, [&](Index k) { return directional_efficiency(v(k), s.load(k, j), side); }).front());
-      }
-      return columns;
-    }
-    case EffectId::presliding:
-    case EffectId::hysteresis:
-    case EffectId::backlash: return with_memory(s, id, joint, shape);
-    case EffectId::torque_ripple: return pair_of(joint, N, [&](Index k) { return torque_ripple(s.q(k, j), shape(0)); });
-    case EffectId::position_dependent_friction:
-      return pair_of(joint, N, [&](Index k) { return position_dependent_friction(s.q(k, j), v(k), shape(0)); });
-    case EffectId::joint_elasticity: return {elastic(s, joint, shape)};
-    case EffectId::rotor_inertia: return one(joint, N, [&](Index k) { return rotor_inertia(s.qdd(k, j)); });
-    case EffectId::limb_inertia_mismatch: {
-      std::vector<EffectColumn> columns =
-          one(joint, N, [&](Index k) { return limb_inertia_mismatch(s.q(k, j), s.qdd(k, j), -gravity.z()).moment; });
-      columns.push_back(one(joint, N, [&](Index k) { return s.qdd(k, j); }).front());
-      return columns;
-    }
-    case EffectId::base_tilt: return {EffectColumn{-1, s.tilt_x}, EffectColumn{-1, s.tilt_y}};
-    case EffectId::payload: {
-      const bool here = static_cast<int>(std::lround(shape(0))) == log_number;
-      return {on_plate(s, [&](Index k) -> Eigen::Vector3d {
-        return here ? payload_force<double>(s.acceleration.row(k).transpose(), gravity) : Eigen::Vector3d::Zero();
-      })};
-    }
-    case EffectId::torque_constant_error: return one(joint, N, [&](Index k) { return torque_constant_error(s.torque(k, j)); });
-    case EffectId::time_skew:
-      return changed_torque(s, joint, shape(0), [&](const VectorXd& tau) { return delayed(tau, shape(0) / s.sample_time_s); });
-    case EffectId::current_lag:
-      if (shape(1) > 0) {  // the command before the lag was recorded
-        return changed_torque(s, joint, shape(0), [&](const VectorXd& tau) -> VectorXd {
-          const VectorXd rate = differentiate(tau, s.sample_time_s, 1, 3);
-          return tau + shape(0) * rate.unaryExpr([](double x) { return current_lead(x); });
-        });
-      }
-      return changed_torque(s, joint, shape(0), [&](const VectorXd& tau) { return lagged(tau, shape(0), s.sample_time_s); });
-    case EffectId::saturation: return one(joint, N, [&](Index k) { return saturation(s.torque(k, j), shape(0)); });
-    case EffectId::thermal_drift:
-      return one(joint, N, [&](Index k) { return thermal_drift(v(k), s.t_s(k) - s.t_s(0), shape(0)); });
-    case EffectId::passive_joint_friction: return {EffectColumn{-1, s.passive}};
-    case EffectId::aerodynamic_drag:
-      return {on_plate(s, [&](Index k) { return aerodynamic_drag<double>(s.velocity.row(k).transpose()); })};
-    case EffectId::telescope_stribeck:
-      return {on_bar(s, [&](Index k) { return telescope_stribeck<double>(s.bar_rate(k), {shape(0), shape(1)}); })};
-    case EffectId::telescope_side_load:
-      return {on_bar(s, [&](Index k) {
-        return telescope_side_load<double>(s.bar_rate(k), s.bar.row(k).transpose(), s.acceleration.row(k).transpose(), gravity);
-      })};
-    case EffectId::hose_force: {
-      std::vector<EffectColumn> columns = axes([](Index, int axis) -> Eigen::Vector3d { return Eigen::Vector3d::Unit(axis); });
-      // Against the origin of the base: the fit finds the point without force by f0.
-      for (EffectColumn& column : axes([&s](Index k, int axis) -> Eigen::Vector3d {
-             const Eigen::Vector3d stretch = hose_stretch<double>(s.position.row(k).transpose(), Eigen::Vector3d::Zero());
-             return stretch(axis) * Eigen::Vector3d::Unit(axis);
-           })) {
-        columns.push_back(std::move(column));
-      }
-      return columns;
-    }
-    case EffectId::kinematic_offset: {
-      const auto limbs = static_cast<Index>(robot_.description().limbs.size());
-      const auto kind = static_cast<Index>(std::lround(shape(0)));
-      return {EffectColumn{-1, s.kinematic[static_cast<std::size_t>(limbs * kind + j)]}};
-    }
+std::vector<EffectColumn> EffectModel::columns_of_changes(const EffectSignals& s, EffectId id, int joint,
+                                                          const Shape<double>& shape) const {
+  std::vector<EffectColumn> out;
+  for (std::size_t d = 0; d < differences_.size(); ++d) {
+    const MachineDifference& one = differences_[d];
+    if (one.id == id && one.joint == joint && one.shape == shape) out.push_back({-1, s.changed.at(d)});
   }
-  return {};
+  return out;
+}
+
+std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, EffectId id, int joint,
+                                                            const Shape<double>& shape) const {
+  const Index N = s.q.rows(), n = s.q.cols();
+  std::vector<EffectColumn> out;
+  visit_effect(id, [&](auto effect) {
+    using E = decltype(effect);
+    if constexpr (kIs<E, JointLaw> || kIs<E, JointMemory>) {
+      if (joint >= 0) {
+        out = columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
+        return;
+      }
+      out = empty_columns(kAmplitudesOf<E>, -1, N, n);
+      if (E::traits().place == EffectPlace::telescope) {
+        const Eigen::Vector3d gravity = robot_.description().gravity;
+        spread(
+            columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, gravity, k); }),
+            [&](Index k) { return s.J_bar.row(k); }, out);
+        return;
+      }
+      for (Index m = 0; m < s.passive_rate.cols(); ++m) {
+        const auto input = [&](Index k) {
+          JointInput<double> in;
+          in.rate = s.passive_rate(k, m);
+          in.sign = sign_of(in.rate);
+          in.time = s.t_s(k) - s.t_s(0);
+          return in;
+        };
+        spread(
+            columns_of_law<E>(0, shape, N, input), [&](Index k) { return s.J_passive.row(k).segment(m * n, n); }, out);
+      }
+    }
+  });
+  return out;
+}
+
+std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId id, int joint, const VectorXd& given,
+                                               int log_number) const {
+  const Shape<double> shape = shape_of(id, given);
+  std::vector<EffectColumn> out;
+  visit_effect(id, [&](auto effect) {
+    using E = decltype(effect);
+    if constexpr (kIs<E, JointLaw> || kIs<E, JointMemory>) {
+      out = columns_of_joint_law(s, id, joint, shape);
+    } else if constexpr (kIs<E, PlateForce>) {
+      out = columns_on_plate<E>(s, shape, robot_.description().gravity);
+    } else if constexpr (kIs<E, RecordedChange>) {
+      out = columns_of_record<E>(s, joint, shape);
+    } else if constexpr (kIs<E, ElasticJoint>) {
+      out = columns_of_spring<E>(s, joint, shape);
+    } else {
+      static_assert(kByDifferences<E>, "an effect is of one of the kinds");
+      out = columns_of_changes(s, id, joint, shape);
+    }
+  });
+  const EffectKind& kind = effect_kind(id);
+  for (std::size_t k = 0; k < kind.shapes.size(); ++k) {
+    if (kind.shapes[k].scale != ShapeScale::logs || std::lround(shape[k]) == log_number) continue;
+    for (EffectColumn& column : out) column.values.setZero();
+  }
+  return out;
 }
 
 MatrixXd low_passed_rows(const PreparedLog& log, const Eigen::Ref<const MatrixXd>& values) {
@@ -459,10 +440,7 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
   const Index n = model.robot().drives();
   std::vector<MatrixXd> out(static_cast<std::size_t>(n), MatrixXd::Zero(log.rows, amplitude_count(effects)));
   if (effects.empty()) return out;
-  const bool errors = std::any_of(effects.begin(), effects.end(), [](const Effect& e) {
-    return e.id == EffectId::base_tilt || e.id == EffectId::kinematic_offset;
-  });
-  const EffectSignals signals = model.signals(log, p, errors);
+  const EffectSignals signals = model.signals(log, p, needs_differences(effects));
   Index at = 0;
   for (const Effect& effect : effects) {
     for (const EffectColumn& column : model.columns(signals, effect.id, effect.joint, effect.shape, log_number)) {
@@ -474,6 +452,12 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
     }
   }
   return out;
+}
+
+bool needs_differences(const std::vector<Effect>& effects) {
+  bool any = false;
+  for (const Effect& one : effects) visit_effect(one.id, [&any](auto effect) { any |= kByDifferences<decltype(effect)>; });
+  return any;
 }
 
 Index amplitude_count(const std::vector<Effect>& effects) {

@@ -22,11 +22,6 @@ PreparedLog motion_of(const Robot& robot, const Log& log, ProcessingOptions opti
   return prepare_log(robot, log, options);
 }
 
-bool needs_errors(const std::vector<Effect>& effects) {
-  return std::any_of(effects.begin(), effects.end(),
-                     [](const Effect& e) { return e.id == EffectId::base_tilt || e.id == EffectId::kinematic_offset; });
-}
-
 }  // namespace
 
 MatrixXd effect_torque(const EffectModel& model, const EffectSignals& signals, const std::vector<Effect>& effects,
@@ -57,7 +52,7 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
   int number = 0;
   for (Log& log : out) {
     const PreparedLog motion = motion_of(robot, log, options);
-    log.tau -= effect_torque(model, model.signals(motion, p, needs_errors(effects)), effects, ++number);
+    log.tau -= effect_torque(model, model.signals(motion, p, needs_differences(effects)), effects, ++number);
   }
   return out;
 }

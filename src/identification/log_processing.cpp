@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "deltadyn/effects/coulomb_friction.hpp"
-#include "deltadyn/effects/presliding.hpp"
-#include "deltadyn/effects/torque_ripple.hpp"
+#include "deltadyn/core/sign.hpp"
+#include "deltadyn/effects/bristle.hpp"
+#include "deltadyn/effects/wave.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/fourier.hpp"
@@ -68,14 +68,14 @@ void add_presliding(const ProcessingOptions& options, const Eigen::MatrixXd& rat
     const double displacement = value_or_none(options.presliding, j);
     if (!(displacement > 0)) continue;
     const double damping_s = value_or_none(options.presliding_damping_s, j);
-    Presliding<double> bristle(displacement, coulomb_friction(rates(0, j)));
+    Bristle<double> bristle(displacement, sign_of(rates(0, j)));
     for (Index k = 0; k < rates.rows(); ++k) {
       // The bar has no position of its own in the log: its rate serves, over the step that leads here.
       const double step = k == 0             ? 0.0
                           : j < log.q.cols() ? log.q(k, j) - log.q(k - 1, j)
                                              : 0.5 * (rates(k, j) + rates(k - 1, j)) / log.rate_hz;
       const double state = bristle.move(step), rate = rates(k, j);
-      log.coulomb_share(k, j) = damped_presliding(rate, state, displacement, damping_s) * coulomb_friction(rate);
+      log.coulomb_share(k, j) = damped_bristle(rate, state, displacement, damping_s) * sign_of(rate);
     }
   }
 }
@@ -85,8 +85,8 @@ void add_ripples(const ProcessingOptions& options, PreparedLog& log) {
   log.ripple.setZero(log.q.rows(), log.q.cols());
   for (const Ripple& ripple : options.ripples) {
     for (Index k = 0; k < log.q.rows(); ++k) {
-      const RipplePair<double> wave = torque_ripple(log.q(k, ripple.drive), ripple.n);
-      log.ripple(k, ripple.drive) += ripple.cosine * wave.cosine + ripple.sine * wave.sine;
+      const Wave<double> parts = wave(log.q(k, ripple.drive), ripple.n);
+      log.ripple(k, ripple.drive) += ripple.cosine * parts.cosine + ripple.sine * parts.sine;
     }
   }
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deltadyn/effects/coulomb_friction.hpp"
-#include "deltadyn/effects/presliding.hpp"
+#include "deltadyn/core/sign.hpp"
+#include "deltadyn/effects/bristle.hpp"
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
@@ -121,7 +121,7 @@ class Search {
         if (robot_.friction_joint_rates(q, qd, v) != Status::ok || robot_.regressor(q, qd, qdd, Y) != Status::ok) continue;
         log.rates.row(k) = v.transpose();
         for (std::size_t joint = 0; joint < coulomb_.size(); ++joint)
-          log.direction[joint].row(k) = coulomb_friction(v(static_cast<Index>(joint))) * Y.col(coulomb_[joint]).transpose();
+          log.direction[joint].row(k) = sign_of(v(static_cast<Index>(joint))) * Y.col(coulomb_[joint]).transpose();
       }
       for (Index joint = 0; joint < range_.size(); ++joint) {
         double at = 0, low = 0, high = 0;
@@ -146,12 +146,12 @@ class Search {
   [[nodiscard]] Columns columns(const SearchLog& log, Index joint, double displacement, bool damped) const {
     const MatrixXd& direction = log.direction[static_cast<std::size_t>(joint)];
     MatrixXd values = direction, of_rate = direction;
-    Presliding<double> bristle(std::max(displacement, 1e-12), coulomb_friction(log.rates(0, joint)));
+    Bristle<double> bristle(std::max(displacement, 1e-12), sign_of(log.rates(0, joint)));
     for (Index k = 0; k < direction.rows(); ++k) {
       const double rate = log.rates(k, joint);
-      const double state = displacement > 0 ? bristle.move(k > 0 ? step(log, joint, k) : 0.0) : coulomb_friction(rate);
+      const double state = displacement > 0 ? bristle.move(k > 0 ? step(log, joint, k) : 0.0) : sign_of(rate);
       values.row(k) *= state;
-      if (damped) of_rate.row(k) *= presliding_rate(rate, state, displacement);
+      if (damped) of_rate.row(k) *= bristle_rate(rate, state, displacement);
     }
     Columns out = {low_passed_rows(log.prepared, values)};
     if (damped) out.push_back(low_passed_rows(log.prepared, of_rate));

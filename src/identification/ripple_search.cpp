@@ -7,7 +7,7 @@
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
-#include "deltadyn/effects/torque_ripple.hpp"
+#include "deltadyn/effects/wave.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/signal/log_part.hpp"
@@ -149,12 +149,12 @@ class RippleSearch {
   [[nodiscard]] std::vector<Columns> columns(int drive, double n) const {
     std::vector<Columns> out;
     for (const RippleLog& log : logs_) {
-      MatrixXd wave(log.prepared.q.rows(), 2);
-      for (Index k = 0; k < wave.rows(); ++k) {
-        const RipplePair<double> pair = torque_ripple(log.prepared.q(k, drive), n);
-        wave.row(k) << pair.cosine, pair.sine;
+      MatrixXd raw(log.prepared.q.rows(), 2);
+      for (Index k = 0; k < raw.rows(); ++k) {
+        const Wave<double> pair = wave(log.prepared.q(k, drive), n);
+        raw.row(k) << pair.cosine, pair.sine;
       }
-      const MatrixXd low = low_passed_rows(log.prepared, wave);
+      const MatrixXd low = low_passed_rows(log.prepared, raw);
       Columns both(2, MatrixXd::Zero(low.rows(), robot_.drives()));
       for (std::size_t c = 0; c < 2; ++c) both[c].col(drive) = low.col(static_cast<Index>(c));
       out.push_back(std::move(both));

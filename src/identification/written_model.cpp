@@ -11,7 +11,7 @@ namespace deltadyn {
 
 bool holds_timing(const std::vector<Effect>& effects) {
   return std::any_of(effects.begin(), effects.end(),
-                     [](const Effect& one) { return one.id == EffectId::time_skew || one.id == EffectId::current_lag; });
+                     [](const Effect& one) { return effect_kind(one.id).effect_class == EffectClass::phase; });
 }
 
 WrittenValidation validate_written(const Robot& robot, std::vector<Log> logs, const WrittenModel& model,

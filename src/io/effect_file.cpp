@@ -133,6 +133,7 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
                     "add a row for it");
       }
     }
+    check_sizes(effect, path, ExitCode::bad_input);
   }
   return effects;
 }

@@ -13,9 +13,9 @@ namespace {
 bool add_as_parameter(const Effect& effect, NamedValues& values) {
   if (effect.joint < 0 || effect.amplitude.size() < 1) return false;
   const std::string drive = fmt::format("drive{}", effect.joint + 1);
-  switch (effect.id) {
-    case EffectId::rotor_inertia: values[drive + ".rotor_inertia"] += effect.amplitude(0); return true;
-    case EffectId::asymmetric_coulomb: values[drive + ".offset"] += effect.amplitude(0); return true;
+  switch (effect_kind(effect.id).base_term) {
+    case BaseTerm::rotor_inertia: values[drive + ".rotor_inertia"] += effect.amplitude(0); return true;
+    case BaseTerm::offset: values[drive + ".offset"] += effect.amplitude(0); return true;
     default: return false;
   }
 }

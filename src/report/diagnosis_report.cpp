@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "deltadyn/report/format.hpp"
-#include "deltadyn/report/log_report.hpp"
 #include "deltadyn/report/html_report.hpp"
+#include "deltadyn/report/log_report.hpp"
 
 namespace deltadyn {
 
@@ -219,14 +219,14 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   for (const NamedEffect& one : d.named) {
     const EffectKind& kind = effect_kind(one.effect.id);
     report.subheading(one.name + " at " + one.joint);
-    report.paragraph("In words: " + kind.meaning + ". It acts at " + one.region + ".");
+    report.paragraph(fmt::format("In words: {}. It acts at {}.", kind.meaning, one.region));
     Table table({{"parameter", Align::left}, {"value ± standard deviation", Align::right}, {"95 % interval", Align::right}});
     for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
       const auto at = static_cast<Index>(k);
       const std::string unit = pretty_unit(effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
       const double value = one.effect.amplitude(at),
                    half = 1.96 * (one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0);
-      table.row({kind.amplitudes[k].name, format_with_uncertainty(value, half / 1.96, unit),
+      table.row({std::string(kind.amplitudes[k].name), format_with_uncertainty(value, half / 1.96, unit),
                  format_interval(value - half, value + half, unit)});
     }
     for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
@@ -234,10 +234,10 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
       const auto at = static_cast<Index>(k);
       const double value = one.effect.shape(at), std = one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan("");
       if (std::isfinite(std)) {
-        table.row({kind.shapes[k].name, format_with_uncertainty(value, std, unit),
+        table.row({std::string(kind.shapes[k].name), format_with_uncertainty(value, std, unit),
                    format_interval(value - 1.96 * std, value + 1.96 * std, unit)});
       } else {
-        table.row({kind.shapes[k].name, format_number(value, unit), "the best of a few choices"});
+        table.row({std::string(kind.shapes[k].name), format_number(value, unit), "the best of a few choices"});
       }
     }
     report.table(table);

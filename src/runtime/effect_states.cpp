@@ -1,6 +1,6 @@
 #include "deltadyn/runtime/effect_states.hpp"
 
-#include "deltadyn/effects/passive_joint_friction.hpp"
+#include "deltadyn/kinematics/passive_joints.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 
@@ -31,7 +31,12 @@ class EffectStatesOf final : public EffectStates {
       state.J_bar = motion.posture.telescope.J_length;
       state.bar = motion.posture.telescope.e;
     }
-    state.passive = passive_joint_friction(motion);
+    state.passive_rate.resize(kPassiveJoints<R>);
+    state.J_passive.resize(kPassiveJoints<R>, R::kDrives);
+    for_each_passive_joint(motion, [&state](int index, const PassiveJoint<double, R>& joint) {
+      state.passive_rate(index) = joint.rate;
+      state.J_passive.row(index) = passive_joints_alike<R>(index) * joint.J;
+    });
     return status;
   }
 

@@ -5,162 +5,137 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "deltadyn/effects/asymmetric_coulomb.hpp"
-#include "deltadyn/effects/asymmetric_viscous.hpp"
-#include "deltadyn/effects/convex_viscous.hpp"
-#include "deltadyn/effects/coulomb_friction.hpp"
-#include "deltadyn/effects/directional_efficiency.hpp"
-#include "deltadyn/effects/load_dependent_friction.hpp"
-#include "deltadyn/effects/position_dependent_friction.hpp"
-#include "deltadyn/effects/presliding.hpp"
-#include "deltadyn/effects/shear_thinning.hpp"
-#include "deltadyn/effects/stribeck.hpp"
-#include "deltadyn/effects/telescope_stribeck.hpp"
-#include "deltadyn/effects/thermal_drift.hpp"
-#include "deltadyn/effects/torque_ripple.hpp"
-#include "deltadyn/effects/viscous_friction.hpp"
+#include "deltadyn/runtime/changed_machine.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
 namespace {
 
-/// The rate, but never of the other sign: within one integration step a joint slides in one direction.
-double sliding_rate(const JointMotion& motion) {
+/// What the laws see. The rate is never of the other sign: within one integration step a joint slides in one direction.
+JointInput<double> input_of(const JointMotion& motion, double load) {
   constexpr double kLeast = std::numeric_limits<double>::min();
-  return motion.direction * std::max(motion.direction * motion.rate, kLeast);
+  JointInput<double> in;
+  in.position = motion.position;
+  in.rate = motion.direction * std::max(motion.direction * motion.rate, kLeast);
+  in.sign = motion.direction;
+  in.time = motion.time;
+  in.load = load;
+  in.side_load = motion.side_load;
+  return in;
 }
+
+template <class E>
+constexpr bool kIsLaw = (kIs<E, JointLaw> || kIs<E, JointMemory>)&&!HasChange<E, ChangedMachine>::value;
 
 }  // namespace
 
 bool FrictionLaw::takes(EffectId id) {
-  switch (id) {
-    case EffectId::stribeck:
-    case EffectId::shear_thinning:
-    case EffectId::convex_viscous:
-    case EffectId::asymmetric_coulomb:
-    case EffectId::asymmetric_viscous:
-    case EffectId::load_dependent_friction:
-    case EffectId::directional_efficiency:
-    case EffectId::presliding:
-    case EffectId::hysteresis:
-    case EffectId::torque_ripple:
-    case EffectId::position_dependent_friction:
-    case EffectId::thermal_drift:
-    case EffectId::telescope_stribeck:
-    case EffectId::telescope_side_load: return true;
-    default: return false;
-  }
+  bool takes = false;
+  visit_effect(id, [&takes](auto effect) { takes = kIsLaw<decltype(effect)>; });
+  return takes;
 }
 
-void FrictionLaw::add(const Effect& effect) {
-  const std::string& name = effect_kind(effect.id).name;
-  const std::string where = name + "@" + effect_joint_name(effect.id, effect.joint);
-  const double first = effect.amplitude(0);
-  switch (effect.id) {
-    case EffectId::load_dependent_friction:
-      driving_ += first;
-      back_driving_ += first;
-      break;
-    case EffectId::directional_efficiency:
-      driving_ += first;
-      back_driving_ += effect.amplitude(1);
-      break;
-    case EffectId::presliding:
-      if (bristle_ > 0) throw Error("presliding is given twice for one joint", where, "give it once", ExitCode::usage);
-      bristle_ = first;
-      bristle_displacement_ = effect.shape(0);
-      bristle_damping_ = effect.shape.size() > 1 ? effect.shape(1) : 0.0;
-      break;
-    case EffectId::hysteresis:
-      if (loop_) throw Error("hysteresis is given twice for one joint", where, "give it once", ExitCode::usage);
-      loop_ = std::make_shared<const Effect>(effect);
-      break;
-    default: effects_.push_back(effect); break;
+void FrictionLaw::add(const Effect& effect, double count) {
+  const EffectKind& kind = effect_kind(effect.id);
+  const std::string where = fmt::format("{}@{}", kind.name, effect_joint_name(effect.id, effect.joint));
+  Term term{effect.id, shape_of(effect), amplitudes_of(effect), kMostMemories};
+  for (double& amplitude : term.amplitude) amplitude *= count;
+  if (kind.memory) {
+    const bool twice = std::any_of(terms_.begin(), terms_.end(), [&](const Term& other) { return other.id == effect.id; });
+    if (twice || memories_ == kMostMemories)
+      throw Error(fmt::format("{} is given twice for one joint", kind.name), where, "give it once", ExitCode::usage);
+    term.memory = memories_++;
   }
-  side_load_ = side_load_ || effect.id == EffectId::telescope_side_load;
-  jumps_ = jumps_ || (effect.id != EffectId::torque_ripple && effect.id != EffectId::asymmetric_coulomb &&
-                      effect.id != EffectId::thermal_drift && effect.id != EffectId::convex_viscous);
-  if (!(back_driving_ < 1)) {
-    throw Error(fmt::format("a gear that loses {} of the load cannot be driven back at all", back_driving_), where,
+  terms_.push_back(term);
+  look_at_rest(where);
+}
+
+void FrictionLaw::look_at_rest(const std::string& where) {
+  const auto differs = [](double one, double other) { return std::abs(one - other) > 1e-12 * (std::abs(one) + std::abs(other)); };
+  JointMotion up, down;
+  down.direction = -1;
+  const double plain = resistance(up, 0);
+  load_ = differs(resistance(up, 1), plain) || differs(resistance(up, -1), plain);
+  JointMotion loaded = up;
+  loaded.side_load = 1;
+  side_load_ = differs(resistance(loaded, 0), plain);
+  jumps_ = coulomb_ != 0 || load_ || side_load_;
+  const double back_driving = lost_share(up, -1);
+  if (!(back_driving < 1)) {
+    throw Error(fmt::format("a gear that loses {} of the load cannot be driven back at all", back_driving), where,
                 "give a share below 1", ExitCode::usage);
   }
   // At rest friction must resist both ways, at every position.
-  JointMotion up, down;
-  up.direction = 1;
-  down.direction = -1;
+  const double size = terms_.empty() ? 0.0 : std::abs(terms_.back().amplitude[0]);
   for (int k = 0; k < 64; ++k) {
     up.position = down.position = 0.1 * k;
-    if (resistance(up) - resistance(down) < -1e-9 * (coulomb_ + std::abs(first))) {
-      throw Error(fmt::format("with {} N m (N) the friction at rest would push instead of hold", first), where,
-                  fmt::format("the joint's Coulomb friction is {}; give the effect a smaller amplitude", coulomb_),
+    const double hold = resistance(up, 0) - resistance(down, 0);
+    jumps_ = jumps_ || hold > 1e-9 * (coulomb_ + size);
+    if (hold < -1e-9 * (coulomb_ + size)) {
+      throw Error(fmt::format("with {} N m (N) the friction at rest would push instead of hold", terms_.back().amplitude[0]),
+                  where, fmt::format("the joint's Coulomb friction is {}; give the effect a smaller amplitude", coulomb_),
                   ExitCode::usage);
     }
   }
 }
 
-double FrictionLaw::effect_force(const Effect& effect, double rate, const JointMotion& motion) const {
-  const auto a = [&effect](Eigen::Index k) { return effect.amplitude(k); };
-  const auto s = [&effect](Eigen::Index k) { return effect.shape(k); };
-  switch (effect.id) {
-    case EffectId::stribeck: return a(0) * stribeck<double>(rate, {s(0), s(1)});
-    case EffectId::shear_thinning:
-      // Exponent 0 is the exponential law, as in the catalogue.
-      return a(0) * shear_thinning<double>(rate, {s(0), s(1)}, s(1) > 0 ? ShearLaw::power : ShearLaw::exponential);
-    case EffectId::convex_viscous: return a(0) * convex_viscous(rate, s(0));
-    case EffectId::asymmetric_coulomb: return a(0) * asymmetric_coulomb<double>();
-    case EffectId::asymmetric_viscous: return a(0) * asymmetric_viscous(rate);
-    case EffectId::torque_ripple: {
-      const auto wave = torque_ripple(motion.position, s(0));
-      return a(0) * wave.cosine + a(1) * wave.sine;
+double FrictionLaw::force(const Term& term, const JointInput<double>& in, const LawMemories& memory) {
+  double sum = 0;
+  visit_effect(term.id, [&](auto effect) {
+    using E = decltype(effect);
+    if constexpr (kIsLaw<E>) {
+      ColumnsOf<double, E> columns;
+      if constexpr (kIs<E, JointMemory>) {
+        columns = E::columns(memory[term.memory], in, term.shape);
+      } else {
+        columns = E::columns(in, term.shape);
+      }
+      for (std::size_t c = 0; c < columns.size(); ++c) sum += term.amplitude[c] * columns[c];
     }
-    case EffectId::position_dependent_friction: {
-      const auto wave = position_dependent_friction(motion.position, rate, s(0));
-      return a(0) * wave.cosine + a(1) * wave.sine;
-    }
-    case EffectId::thermal_drift: return a(0) * thermal_drift(rate, motion.time, s(0));
-    case EffectId::telescope_stribeck: return a(0) * telescope_stribeck<double>(rate, {s(0), s(1)});
-    // The side load is a length already; the formula of effects/telescope_side_load.hpp gave it.
-    case EffectId::telescope_side_load: return a(0) * motion.side_load * coulomb_friction(rate);
-    default: return 0;
-  }
+  });
+  return sum;
 }
 
-double FrictionLaw::resistance(const JointMotion& motion) const {
-  const double rate = sliding_rate(motion);
-  double force = viscous_ * viscous_friction(rate) + coulomb_ * coulomb_friction(rate);
-  for (const Effect& effect : effects_) force += effect_force(effect, rate, motion);
-  if (bristle_ > 0) {
-    force +=
-        bristle_ * (damped_presliding(rate, motion.bristle, bristle_displacement_, bristle_damping_) - coulomb_friction(rate));
-  }
-  if (loop_) force += loop_->amplitude(0) * motion.loop;
-  return force;
+double FrictionLaw::resistance(const JointMotion& motion, double load) const {
+  const JointInput<double> in = input_of(motion, load);
+  double sum = viscous_ * in.rate + coulomb_ * in.sign + offset_;
+  for (const Term& term : terms_) sum += force(term, in, motion.memory);
+  return sum;
 }
 
-// tau = load + resistance + |load| s share, with the share that holds for the sign of load s.
-double FrictionLaw::required(double load, const JointMotion& motion) const {
-  double tau = load + resistance(motion);
-  if (driving_ != 0 || back_driving_ != 0) {
-    const double rate = sliding_rate(motion);
-    tau += driving_ * directional_efficiency(rate, load, EfficiencyColumn::driving) +
-           back_driving_ * directional_efficiency(rate, load, EfficiencyColumn::back_driving);
-  }
-  return tau;
+double FrictionLaw::lost_share(const JointMotion& motion, int along) const {
+  return motion.direction * (resistance(motion, along * motion.direction) - resistance(motion, 0));
 }
 
 double FrictionLaw::transmitted(double tau, const JointMotion& motion) const {
-  const double rest = tau - resistance(motion);
-  if (driving_ == 0 && back_driving_ == 0) return rest;
-  // The load has the sign of the rest, since neither share reaches 1 against it.
-  return rest * motion.direction > 0 ? rest / (1 + driving_) : rest / (1 - back_driving_);
+  const double rest = tau - resistance(motion, 0);
+  if (!load_ || motion.direction == 0) return rest;
+  // The load has the sign of the rest, since the laws of the load are homogeneous in it and no share reaches 1 against it.
+  return rest * motion.direction > 0 ? rest / (1 + lost_share(motion, 1)) : rest / (1 - lost_share(motion, -1));
 }
 
-HysteresisShape<double> FrictionLaw::loop_shape() const {
-  return loop_ ? HysteresisShape<double>{loop_->shape(0), loop_->shape(1)} : HysteresisShape<double>{};
+LawMemories FrictionLaw::start(int direction) const {
+  LawMemories memory{};
+  for (const Term& term : terms_) {
+    visit_effect(term.id, [&](auto effect) {
+      using E = decltype(effect);
+      if constexpr (kIs<E, JointMemory>) memory[term.memory] = E::start(static_cast<double>(direction), term.shape);
+    });
+  }
+  return memory;
 }
 
-double FrictionLaw::loop_rate(double rate, double state) const {
-  return loop_ ? hysteresis_rate(rate, state, loop_shape()) : 0;
+LawMemories FrictionLaw::moved(const LawMemories& memory, double way) const {
+  LawMemories out = memory;
+  for (const Term& term : terms_) {
+    visit_effect(term.id, [&](auto effect) {
+      using E = decltype(effect);
+      if constexpr (kIs<E, JointMemory>) {
+        out[term.memory] = E::moved(memory[term.memory], way, JointInput<double>(), term.shape);
+      }
+    });
+  }
+  return out;
 }
 
 }  // namespace deltadyn

@@ -7,6 +7,7 @@
 
 #include "deltadyn/dynamics/equations_of_motion.hpp"
 #include "deltadyn/dynamics/forward_dynamics.hpp"
+#include "deltadyn/kinematics/passive_joints.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/simulation/mechanism.hpp"
 
@@ -28,9 +29,7 @@ class MechanismOf final : public Mechanism {
     multiplicity_.assign(static_cast<std::size_t>(Layout::kFrictionJoints), 1.0);
     if (R::kTelescope) telescope_ = N;
     if (passive_) {
-      // As effects/passive_joint_friction.hpp counts them: two struts a limb with a ball at either end.
-      for (int i = 0; i < R::kLimbs; ++i) multiplicity_.insert(multiplicity_.end(), {2.0, 2.0, 4.0});
-      if (R::kTelescope) multiplicity_.insert(multiplicity_.end(), {2.0, 2.0});
+      for (int k = 0; k < kPassiveJoints<R>; ++k) multiplicity_.push_back(passive_joints_alike<R>(k));
     }
   }
 
@@ -100,25 +99,8 @@ class MechanismOf final : public Mechanism {
           motion.posture.telescope.J_length);
     }
     if (!passive_) return;
-    if constexpr (kHasPlate<R>) {
-      for (int i = 0; i < R::kLimbs; ++i) {
-        const auto& posture = motion.posture.limbs[i];
-        const auto& rates = motion.limbs[i];
-        RowVector<double, N> J_elbow = posture.J_beta;
-        double elbow_rate = rates.beta_d;
-        if constexpr (R::kDrive == DriveKind::revolute) {
-          J_elbow(i) -= 1.0;
-          elbow_rate -= motion.qd(i);
-        }
-        add(0, elbow_rate, rates.beta_dd, J_elbow);
-        add(0, rates.beta_d, rates.beta_dd, posture.J_beta);
-        add(0, rates.gamma_d, rates.gamma_dd, posture.J_gamma);
-      }
-      if constexpr (R::kTelescope) {
-        add(0, motion.telescope.a_d, motion.telescope.a_dd, motion.posture.telescope.J_a);
-        add(0, motion.telescope.b_d, motion.telescope.b_dd, motion.posture.telescope.J_b);
-      }
-    }
+    for_each_passive_joint(
+        motion, [&add](int, const PassiveJoint<double, R>& joint) { add(0, joint.rate, joint.acceleration, joint.J); });
   }
 
   Geometry<double, R> geometry_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/effects/hysteresis.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/simulation/dormand_prince.hpp"
 
@@ -51,7 +50,7 @@ struct Plant::Impl : detail::JointDynamics {
 
   [[nodiscard]] double relative(const State& error, const State& next) const {
     double worst = 0;
-    for (int k = 0; k < 2 * coordinates() + loops(); ++k) {
+    for (int k = 0; k < 2 * coordinates(); ++k) {
       const double scale = options.tolerance * std::max({1.0, std::abs(x(k)), std::abs(next(k))});
       worst = std::max(worst, std::abs(error(k)) / scale);
     }
@@ -115,7 +114,7 @@ struct Plant::Impl : detail::JointDynamics {
     if (terms_at(x, scratch) != Status::ok) lost("is in a pose that cannot be");
     for (int j = 0; j < joints; ++j) {
       if (!parts.laws[at(j)].minds_reversals() || std::abs(scratch.robot.rate(j)) > 1e-9) continue;
-      if (direction[at(j)] != 0) note_bristle(j, scratch);
+      if (direction[at(j)] != 0) note_turn(j, scratch);
       direction[at(j)] = 0;
       held_until[at(j)] = now + kHoldUndecided;
       ++counts.undecided;
@@ -136,7 +135,7 @@ struct Plant::Impl : detail::JointDynamics {
       for (int j = 0; j < joints; ++j) {
         if (!parts.laws[at(j)].minds_reversals() || direction[at(j)] == 0) continue;
         if (direction[at(j)] * scratch.robot.rate(j) <= 0) {
-          note_bristle(j, scratch);
+          note_turn(j, scratch);
           direction[at(j)] = 0;
           ++counts.reversals;
         }
@@ -144,7 +143,7 @@ struct Plant::Impl : detail::JointDynamics {
     }
     hold_still(x);
     if (terms_at(x, scratch) != Status::ok) lost("is in a pose that cannot be");
-    release(now, x, scratch, true);
+    release(now, scratch, true);
     if (derivative(now, x, rate_now) != Status::ok) lost("is in a pose that cannot be");
   }
 
@@ -187,9 +186,7 @@ struct Plant::Impl : detail::JointDynamics {
   State x, rate_now;
   double now = 0, step_size = 1e-3;
   bool inverse_begun = false;
-  JointVector inverse_position;  ///< of the sample before, for effects with memory
-  std::vector<Presliding<double>> inverse_bristle;
-  std::vector<Hysteresis<double>> inverse_loop;
+  std::vector<Turn> inverse_memory;  ///< at the sample before
 };
 
 Plant::Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
@@ -246,7 +243,7 @@ void Plant::start(const DriveVector& q, const DriveVector& qd) {
     const double rate = all.robot.rate(j);
     const int sense = rate > 1e-12 ? 1 : (rate < -1e-12 ? -1 : 0);
     m.direction[Impl::at(j)] = sense;
-    m.bristle[Impl::at(j)] = {static_cast<double>(sense), all.robot.position(j)};
+    m.turned[Impl::at(j)] = {m.parts.laws[Impl::at(j)].start(sense), all.robot.position(j)};
   }
   m.tau_start.setZero(m.n);
   m.tau_end.setZero(m.n);
@@ -358,38 +355,27 @@ DriveVector Plant::inverse(double time, const DriveVector& q, const DriveVector&
                 "check that the trajectory belongs to this robot");
   }
   const int bar = m.parts.mechanism->telescope_joint();
-  if (!m.inverse_begun) {
-    m.inverse_begun = true;
-    m.inverse_bristle.clear();
-    m.inverse_loop.clear();
-    for (int j = 0; j < m.joints; ++j) {
-      const double displacement = m.parts.laws[Impl::at(j)].bristle_displacement();
-      const double rate = terms.robot.rate(j);
-      m.inverse_bristle.emplace_back(displacement > 0 ? displacement : 1.0, rate > 0 ? 1.0 : (rate < 0 ? -1.0 : 0.0));
-      const auto shape = m.parts.laws[Impl::at(j)].loop_shape();
-      m.inverse_loop.emplace_back(shape);
-    }
-  } else {
-    for (int j = 0; j < m.joints; ++j) {
-      const double step = terms.robot.position(j) - m.inverse_position(j);
-      m.inverse_bristle[Impl::at(j)].move(step);
-      m.inverse_loop[Impl::at(j)].move(step);
-    }
+  const auto sense = [&terms](int j) { return terms.robot.rate(j) > 0 ? 1 : (terms.robot.rate(j) < 0 ? -1 : 0); };
+  m.inverse_memory.resize(Impl::at(m.joints));
+  for (int j = 0; j < m.joints; ++j) {
+    const FrictionLaw& law = m.parts.laws[Impl::at(j)];
+    auto& before = m.inverse_memory[Impl::at(j)];
+    const double position = terms.robot.position(j);
+    before = {m.inverse_begun ? law.moved(before.memory, position - before.position) : law.start(sense(j)), position};
   }
-  m.inverse_position = terms.robot.position;
+  m.inverse_begun = true;
   const Eigen::Vector3d a = terms.robot.a_bias + terms.robot.J_r * qdd;
-  const double side_load = bar >= 0 ? telescope_side_load<double>(1.0, terms.robot.bar, a, m.parts.gravity) : 0.0;
+  const double across = bar >= 0 ? side_load<double>(terms.robot.bar, a, m.parts.gravity) : 0.0;
   DriveVector load = terms.robot.M * qdd - terms.force.head(m.n);
   std::vector<JointMotion> motions;
   for (int j = 0; j < m.joints; ++j) {
     JointMotion motion;
     motion.rate = terms.robot.rate(j);
-    motion.direction = motion.rate > 0 ? 1 : (motion.rate < 0 ? -1 : 0);
+    motion.direction = sense(j);
     motion.position = terms.robot.position(j);
     motion.time = time;
-    motion.side_load = side_load;
-    motion.bristle = m.inverse_bristle[Impl::at(j)].state();
-    motion.loop = m.inverse_loop[Impl::at(j)].state();
+    motion.side_load = across;
+    motion.memory = m.inverse_memory[Impl::at(j)].memory;
     if (j >= m.n) load += terms.robot.J.row(j).transpose() * m.parts.laws[Impl::at(j)].required(0, motion);
     motions.push_back(motion);
   }

@@ -11,10 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/effects/aerodynamic_drag.hpp"
-#include "deltadyn/effects/hose_force.hpp"
-#include "deltadyn/effects/presliding.hpp"
-#include "deltadyn/effects/telescope_side_load.hpp"
+#include "deltadyn/effects/side_load.hpp"
 #include "deltadyn/simulation/plant.hpp"
 #include "deltadyn/simulation/stick_slip.hpp"
 
@@ -22,8 +19,8 @@
 
 namespace deltadyn::detail {
 
-constexpr int kMaxCoordinates = 2 * kMaxDrives;                      // arms and the motors of soft drives
-constexpr int kMaxState = 2 * kMaxCoordinates + kMaxDrives + 1 + 2;  // + hysteresis of drives and telescope + work, losses
+constexpr int kMaxCoordinates = 2 * kMaxDrives;     // arms and the motors of soft drives
+constexpr int kMaxState = 2 * kMaxCoordinates + 2;  // + work, losses
 
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxState, 1>;
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCoordinates, 1>;
@@ -50,23 +47,18 @@ struct JointDynamics {
     n = parts.mechanism->drives();
     joints = parts.mechanism->joints();
     soft = static_cast<int>(parts.soft.size());
-    for (int j = 0; j < joints; ++j) {
-      const FrictionLaw& law = parts.laws[at(j)];
-      if (law.has_loop()) loop_joints.push_back(j);
-    }
     coordinate_of_drive.resize(at(n));
     for (int j = 0; j < n; ++j) coordinate_of_drive[at(j)] = j;
     for (int e = 0; e < soft; ++e) coordinate_of_drive[at(parts.soft[at(e)].drive)] = n + e;
     direction.assign(at(joints), 0);
-    bristle.resize(at(joints));
+    turned.resize(at(joints));
     held_until.assign(at(joints), -1.0);
     tau_start = tau_end = DriveVector::Zero(n);
   }
 
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] int coordinates() const { return n + soft; }
-  [[nodiscard]] int loops() const { return static_cast<int>(loop_joints.size()); }
-  [[nodiscard]] int size() const { return 2 * coordinates() + loops() + 2; }
+  [[nodiscard]] int size() const { return 2 * coordinates() + 2; }
 
   // --- torque of the drives -------------------------------------------------------------------
 
@@ -86,6 +78,23 @@ struct JointDynamics {
     double other_losses = 0;  ///< power of springs' dampers, drag and hose [W]
   };
 
+  /// Forces of effects do not depend on the plate's acceleration; those that do change the machine.
+  [[nodiscard]] Eigen::Vector3d force_on_plate(const Effect& effect, const MechanismTerms& robot) const {
+    PlateInput<double> in;
+    in.position = robot.r;
+    in.velocity = robot.v;
+    in.gravity = parts.gravity;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    visit_effect(effect.id, [&](auto type) {
+      using E = decltype(type);
+      if constexpr (kIs<E, PlateForce>) {
+        const auto forces = E::columns(in, shape_of(effect));
+        for (std::size_t c = 0; c < forces.size(); ++c) sum += effect.amplitude(static_cast<Eigen::Index>(c)) * forces[c];
+      }
+    });
+    return sum;
+  }
+
   Status terms_at(const State& state, Terms& terms) const {
     const DriveVector q = state.head(n), qd = state.segment(coordinates(), n);
     if (const Status status = parts.mechanism->evaluate(q, qd, terms.robot); status != Status::ok) return status;
@@ -97,16 +106,10 @@ struct JointDynamics {
     terms.J.setZero(joints, c);
     terms.J.leftCols(n) = terms.robot.J;
     terms.other_losses = 0;
-    if (parts.drag > 0) {
-      const Eigen::Vector3d drag = parts.drag * aerodynamic_drag<double>(terms.robot.v);
-      terms.force.head(n) -= terms.robot.J_r.transpose() * drag;
-      terms.other_losses += drag.dot(terms.robot.v);
-    }
-    if (parts.hose) {
-      const Eigen::Vector3d hose =
-          parts.hose_force + parts.hose_stiffness.cwiseProduct(hose_stretch<double>(terms.robot.r, parts.hose_reference));
-      terms.force.head(n) -= terms.robot.J_r.transpose() * hose;
-      terms.other_losses += hose.dot(terms.robot.v);
+    for (const Effect& effect : parts.plate_forces) {
+      const Eigen::Vector3d force = force_on_plate(effect, terms.robot);
+      terms.force.head(n) -= terms.robot.J_r.transpose() * force;
+      terms.other_losses += force.dot(terms.robot.v);
     }
     for (int e = 0; e < soft; ++e) {
       const SoftDrive& spring = parts.soft[at(e)];
@@ -128,26 +131,21 @@ struct JointDynamics {
     return terms.cholesky.info() == Eigen::Success ? Status::ok : Status::out_of_range;
   }
 
-  [[nodiscard]] JointMotion motion_of(int j, double time, const State& state, const Terms& terms, int sense,
-                                      double side_load) const {
+  [[nodiscard]] JointMotion motion_of(int j, double time, const Terms& terms, int sense, double side_load) const {
     JointMotion motion;
     motion.rate = terms.robot.rate(j);
     motion.direction = sense;
     motion.position = terms.robot.position(j);
     motion.time = time;
     motion.side_load = side_load;
-    if (parts.laws[at(j)].bristle_displacement() > 0) motion.bristle = bristle_state(j, motion.position);
-    for (int k = 0; k < loops(); ++k) {
-      if (loop_joints[at(k)] == j) motion.loop = state(2 * coordinates() + k);
-    }
+    if (parts.laws[at(j)].has_memory()) motion.memory = memory_at(j, motion.position);
     return motion;
   }
 
-  /// Presliding needs no state of its own: since the last reversal it is a function of the position alone.
-  [[nodiscard]] double bristle_state(int j, double position) const {
-    const Bristle& since = bristle[at(j)];
-    Presliding<double> law(parts.laws[at(j)].bristle_displacement(), since.state);
-    return law.move(position - since.position);
+  /// Memories need no state of their own: since the last reversal they are functions of the position alone.
+  [[nodiscard]] LawMemories memory_at(int j, double position) const {
+    const Turn& since = turned[at(j)];
+    return parts.laws[at(j)].moved(since.memory, position - since.position);
   }
 
   [[nodiscard]] double torque_of_joint(int j, double time) const { return j < n ? torque_at(j, time) : 0.0; }
@@ -164,7 +162,7 @@ struct JointDynamics {
   };
 
   /// Accelerations with the joints in `held` kept at rest. `side_load` is that of the telescope.
-  void solve(double time, const State& state, const Terms& terms, double side_load, Solution& out) const {
+  void solve(double time, const Terms& terms, double side_load, Solution& out) const {
     Coordinates force = terms.force;
     out.transmitted.setZero(joints);
     int held = 0;
@@ -174,8 +172,8 @@ struct JointDynamics {
         rows[at(held++)] = j;
         continue;
       }
-      out.transmitted(j) = parts.laws[at(j)].transmitted(torque_of_joint(j, time),
-                                                         motion_of(j, time, state, terms, sense_of(j, terms), side_load));
+      out.transmitted(j) =
+          parts.laws[at(j)].transmitted(torque_of_joint(j, time), motion_of(j, time, terms, sense_of(j, terms), side_load));
       force += terms.J.row(j).transpose() * out.transmitted(j);
     }
     out.acceleration = terms.cholesky.solve(force);
@@ -197,18 +195,18 @@ struct JointDynamics {
   }
 
   /// The side load of the telescope depends on the acceleration, which it changes a little: a few rounds settle it.
-  double solve_with_side_load(double time, const State& state, const Terms& terms, Solution& out) const {
+  double solve_with_side_load(double time, const Terms& terms, Solution& out) const {
     const int bar = parts.mechanism->telescope_joint();
     if (bar < 0 || !parts.laws[at(bar)].has_side_load()) {
-      solve(time, state, terms, 0, out);
+      solve(time, terms, 0, out);
       return 0;
     }
     double load = 0;
     constexpr int kRounds = 50;
     for (int round = 0; round < kRounds; ++round) {
-      solve(time, state, terms, load, out);
+      solve(time, terms, load, out);
       const Eigen::Vector3d a = terms.robot.a_bias + terms.robot.J_r * out.acceleration.head(n);
-      const double next = telescope_side_load<double>(1.0, terms.robot.bar, a, parts.gravity);
+      const double next = deltadyn::side_load<double>(terms.robot.bar, a, parts.gravity);
       const bool settled = std::abs(next - load) <= 1e-13 * (1 + next);
       load = next;
       if (settled) break;
@@ -219,15 +217,11 @@ struct JointDynamics {
   Status derivative(double time, const State& state, State& rate) {
     ++counts.evaluations;
     if (const Status status = terms_at(state, scratch); status != Status::ok) return status;
-    solve_with_side_load(time, state, scratch, solution);
+    solve_with_side_load(time, scratch, solution);
     const int c = coordinates();
     rate.resize(size());
     rate.head(c) = state.segment(c, c);
     rate.segment(c, c) = solution.acceleration;
-    for (int k = 0; k < loops(); ++k) {
-      const int j = loop_joints[at(k)];
-      rate(2 * c + k) = parts.laws[at(j)].loop_rate(scratch.robot.rate(j), state(2 * c + k));
-    }
     double power = 0, loss = scratch.other_losses;
     for (int j = 0; j < joints; ++j) {
       const double tau = torque_of_joint(j, time), v = scratch.robot.rate(j);
@@ -237,22 +231,22 @@ struct JointDynamics {
       else
         loss += tau * v;  // v is zero but for rounding
     }
-    rate(2 * c + loops()) = power;
-    rate(2 * c + loops() + 1) = loss;
+    rate(2 * c) = power;
+    rate(2 * c + 1) = loss;
     return Status::ok;
   }
 
   // --- rest ---------------------------------------------------------------------------------------
 
   /// What a joint at rest can pass on: between sliding up and sliding down.
-  void bounds(int j, double time, const State& state, const Terms& terms, double side_load, double& low, double& high) const {
+  void bounds(int j, double time, const Terms& terms, double side_load, double& low, double& high) const {
     if (time < held_until[at(j)]) {
       low = -kBeyondAnyForce;
       high = kBeyondAnyForce;
       return;
     }
     const double tau = torque_of_joint(j, time);
-    JointMotion motion = motion_of(j, time, state, terms, 1, side_load);
+    JointMotion motion = motion_of(j, time, terms, 1, side_load);
     motion.rate = 0;
     low = parts.laws[at(j)].transmitted(tau, motion);
     motion.direction = -1;
@@ -261,9 +255,9 @@ struct JointDynamics {
   }
 
   /// Decides on all joints at rest together; true if any of them starts to slide. Directions are set only if `act`.
-  bool release(double time, const State& state, Terms& terms, bool act) {
+  bool release(double time, Terms& terms, bool act) {
     Solution free;
-    const double side_load = solve_with_side_load(time, state, terms, free);
+    const double side_load = solve_with_side_load(time, terms, free);
     std::vector<int> rest;
     for (int j = 0; j < joints; ++j) {
       if (stuck(j)) rest.push_back(j);
@@ -282,7 +276,7 @@ struct JointDynamics {
       const int j = rest[static_cast<std::size_t>(k)];
       J.row(k) = terms.J.row(j);
       b(k) = terms.J.row(j).dot(a0) + terms.robot.bias_rate(j);
-      bounds(j, time, state, terms, side_load, low(k), high(k));
+      bounds(j, time, terms, side_load, low(k), high(k));
     }
     const JointMatrix A = J * terms.cholesky.solve(J.transpose());
     const StickSlip result = solve_stick_slip(A, b, low, high);
@@ -301,15 +295,15 @@ struct JointDynamics {
   bool breaks_loose(double time, const State& state) {
     if (!any_stuck()) return false;
     if (terms_at(state, scratch) != Status::ok) return false;
-    const double side_load = solve_with_side_load(time, state, scratch, solution);
+    const double side_load = solve_with_side_load(time, scratch, solution);
     for (int j = 0; j < joints; ++j) {
       if (!stuck(j)) continue;
       double low = 0, high = 0;
-      bounds(j, time, state, scratch, side_load, low, high);
+      bounds(j, time, scratch, side_load, low, high);
       const double slack = 1e-9 * (high - low) + 1e-12;
       // The shares of joints that hold one another are not unique: ask for all of them together before believing it.
       if (solution.transmitted(j) < low - slack || solution.transmitted(j) > high + slack) {
-        return release(time, state, scratch, false);
+        return release(time, scratch, false);
       }
     }
     return false;
@@ -344,11 +338,11 @@ struct JointDynamics {
     return true;
   }
 
-  /// Remembers where presliding turned round.
-  void note_bristle(int j, const Terms& terms) {
-    if (parts.laws[at(j)].bristle_displacement() <= 0) return;
+  /// Remembers where the joint turned round.
+  void note_turn(int j, const Terms& terms) {
+    if (!parts.laws[at(j)].has_memory()) return;
     const double position = terms.robot.position(j);
-    bristle[at(j)] = {bristle_state(j, position), position};
+    turned[at(j)] = {memory_at(j, position), position};
   }
 
   [[nodiscard]] bool any_stuck() const {
@@ -358,18 +352,19 @@ struct JointDynamics {
     return false;
   }
 
-  struct Bristle {
-    double state = 0, position = 0;
+  struct Turn {
+    LawMemories memory = {};
+    double position = 0;
   };
 
   PlantOptions options;
   PlantParts parts;
   int n = 0, joints = 0, soft = 0;
-  std::vector<int> loop_joints, coordinate_of_drive;
+  std::vector<int> coordinate_of_drive;
   DriveVector tau_start, tau_end;
   double command_time = 0;
   std::vector<int> direction;  ///< +1, -1, 0 stuck; means nothing for joints that do not mind reversals
-  std::vector<Bristle> bristle;
+  std::vector<Turn> turned;
   std::vector<double> held_until;  ///< times before which a joint does not break loose
   PlantCounts counts;
   Terms scratch;

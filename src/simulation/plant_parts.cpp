@@ -5,19 +5,14 @@
 #include <fmt/format.h>
 #include <numbers>
 
-#include "deltadyn/effects/base_tilt.hpp"
-#include "deltadyn/effects/kinematic_offset.hpp"
+#include "deltadyn/runtime/changed_machine.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn::detail {
 namespace {
 
-// What the catalogue's one number leaves open about a real spring or real play.
-constexpr double kMotorShare = 0.6;        // of a drive's inertia that sits before the spring: rotor and gear of a fast robot
-constexpr double kLeastMotorShare = 0.3;   // before play: a motor much lighter than its load cannot be controlled across it
-constexpr double kDampingRatio = 0.05;     // of a gear with its bearings
-constexpr double kFlankFrequencyHz = 250;  // resonance of motor and load while a flank carries
+constexpr double kDampingRatio = 0.05;  // of a gear with its bearings
 
 /// Parameters by name, every limb on its own.
 class Values {
@@ -54,141 +49,121 @@ class Values {
 };
 
 [[noreturn]] void refuse(const Effect& effect, const std::string& what, const std::string& mend) {
-  throw Error(what, effect_kind(effect.id).name + "@" + effect_joint_name(effect.id, effect.joint), mend, ExitCode::usage);
+  throw Error(what, fmt::format("{}@{}", effect_kind(effect.id).name, effect_joint_name(effect.id, effect.joint)), mend,
+              ExitCode::usage);
+}
+
+/// Is the effect built into the machine, and does it act on the plate by its law?
+bool changes_machine(EffectId id) {
+  bool changes = false;
+  visit_effect(id, [&changes](auto effect) { changes = HasChange<decltype(effect), ChangedMachine>::value; });
+  return changes;
+}
+bool pushes_plate(EffectId id) {
+  bool pushes = false;
+  visit_effect(id, [&pushes](auto effect) { pushes = kIs<decltype(effect), PlateForce>; });
+  return pushes && !changes_machine(id);
 }
 
 class Builder {
  public:
   Builder(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p)
-      : description_(description), values_(description, names, p) {
-    options_.home_offset = DriveVector::Zero(description.drives());
-  }
+      : machine_(description), values_(description, names, p) {}
 
   PlantParts build(const std::vector<Effect>& effects) {
-    for (const Effect& effect : effects) place(effect);
-    parts_.gravity = description_.gravity;
-    parts_.mechanism = make_mechanism(description_, values_.all(), options_);
-    const int n = description_.drives();
-    for (int j = 0; j < parts_.mechanism->joints(); ++j) {
-      if (j > n || (j == n && !description_.telescope)) {
-        parts_.laws.emplace_back(0.0, passive_friction_ * parts_.mechanism->multiplicity(j));
-        continue;
-      }
-      const std::string joint = j < n ? fmt::format("drive{}", j + 1) : "telescope";
-      parts_.laws.emplace_back(values_[joint + ".viscous"], values_[joint + ".coulomb"]);
-      if (j < n && values_[joint + ".offset"] != 0) {
-        Effect offset;
-        offset.id = EffectId::asymmetric_coulomb;
-        offset.joint = j;
-        offset.amplitude = Eigen::VectorXd::Constant(1, values_[joint + ".offset"]);
-        parts_.laws.back().add(offset);
-      }
-    }
-    for (const Effect& effect : effects) {
-      if (!FrictionLaw::takes(effect.id)) continue;
-      const int joint = effect.joint >= 0 ? effect.joint : parts_.mechanism->telescope_joint();
-      parts_.laws[static_cast<std::size_t>(joint)].add(effect);
-    }
-    for (const Effect& effect : effects) {
-      if (effect.id == EffectId::joint_elasticity) add_spring(effect);
-      if (effect.id == EffectId::backlash) add_play(effect);
-    }
+    for (const Effect& effect : effects) change(effect);
+    for (const auto& [name, more] : machine_.parameters) values_[name] += more;
+    MechanismOptions options;
+    options.home_offset = machine_.home_offset;
+    options.passive_joints = std::any_of(effects.begin(), effects.end(), [](const Effect& effect) {
+      return effect_kind(effect.id).place == EffectPlace::passive_joints;
+    });
+    parts_.gravity = machine_.description.gravity;
+    parts_.mechanism = make_mechanism(machine_.description, values_.all(), options);
+    add_laws(effects);
+    for (const auto& [drive, spring] : machine_.springs) add_spring(drive, spring);
     return std::move(parts_);
   }
 
  private:
-  void place(const Effect& effect) {
-    const auto a = [&effect](Eigen::Index k) { return effect.amplitude(k); };
-    const std::size_t limb = static_cast<std::size_t>(std::max(0, effect.joint));
-    const std::string drive = fmt::format("drive{}", effect.joint + 1);
-    switch (effect.id) {
-      case EffectId::rotor_inertia: values_[drive + ".rotor_inertia"] += a(0); break;
-      case EffectId::limb_inertia_mismatch:
-        if (description_.drive_kind == DriveKind::prismatic) {
-          refuse(effect, "a carriage that slides has neither moment nor inertia about its drive", "use rotor_inertia, a mass");
-        }
-        values_[fmt::format("upper_arm{}.mcx", effect.joint + 1)] += a(0);
-        values_[fmt::format("upper_arm{}.Iyy", effect.joint + 1)] += a(1);
-        break;
-      case EffectId::payload: values_["platform.m"] += a(0); break;
-      case EffectId::base_tilt: description_.gravity = tilted_gravity<double>(description_.gravity, a(0), a(1)); break;
-      case EffectId::passive_joint_friction:
-        options_.passive_joints = true;
-        passive_friction_ += a(0);
-        break;
-      case EffectId::aerodynamic_drag: parts_.drag += a(0); break;
-      case EffectId::hose_force:
-        parts_.hose = true;
-        parts_.hose_force += effect.amplitude.head<3>();
-        parts_.hose_stiffness += effect.amplitude.segment<3>(3);
-        break;
-      case EffectId::kinematic_offset:
-        switch (static_cast<KinematicOffset>(std::lround(effect.shape(0)))) {
-          case KinematicOffset::home: options_.home_offset(effect.joint) += a(0); break;
-          case KinematicOffset::arm:
-            if (description_.drive_kind == DriveKind::prismatic) refuse(effect, "a carriage has no arm", "use kind 0 or 2");
-            description_.limbs[limb].p_DE_0.x() += a(0);
-            break;
-          case KinematicOffset::strut: description_.limbs[limb].strut += a(0); break;
-        }
-        break;
-      default: break;
+  void change(const Effect& effect) {
+    const std::vector<int> joints = effect_joints(effect.id, machine_.description);
+    if (std::find(joints.begin(), joints.end(), effect.joint) == joints.end())
+      refuse(effect, "this robot has no such place for the effect", "look at delta-simulate --list-effects");
+    check_sizes(effect, std::string(effect_kind(effect.id).name), ExitCode::usage);
+    if (pushes_plate(effect.id)) parts_.plate_forces.push_back(effect);
+    const std::size_t springs = machine_.springs.size();
+    visit_effect(effect.id, [&](auto type) {
+      using E = decltype(type);
+      if constexpr (HasChange<E, ChangedMachine>::value)
+        E::change(machine_, effect.joint, amplitudes_of(effect), shape_of(effect));
+    });
+    for (std::size_t k = 0; k < springs && machine_.springs.size() > springs; ++k) {
+      if (machine_.springs[k].first == effect.joint)
+        refuse(effect, "this drive has a spring or play already", "give one of them a drive");
+    }
+  }
+
+  void add_laws(const std::vector<Effect>& effects) {
+    const int n = machine_.description.drives(), telescope = parts_.mechanism->telescope_joint();
+    for (int j = 0; j < parts_.mechanism->joints(); ++j) {
+      const std::string joint = j < n ? fmt::format("drive{}", j + 1) : "telescope";
+      if (j < n || j == telescope) {
+        parts_.laws.emplace_back(values_[joint + ".viscous"], values_[joint + ".coulomb"],
+                                 j < n ? values_[joint + ".offset"] : 0.0);
+      } else {
+        parts_.laws.emplace_back(0.0, 0.0);
+      }
+    }
+    for (const Effect& effect : effects) {
+      if (!FrictionLaw::takes(effect.id)) continue;
+      for (int j = 0; j < parts_.mechanism->joints(); ++j) {
+        const bool passive = j >= n && j != telescope;
+        const bool here = effect_kind(effect.id).place == EffectPlace::passive_joints ? passive
+                          : effect.joint >= 0                                         ? j == effect.joint
+                                                                                      : j == telescope;
+        if (here) parts_.laws[static_cast<std::size_t>(j)].add(effect, parts_.mechanism->multiplicity(j));
+      }
     }
   }
 
   /// Inertia of one drive with everything behind it held by the other drives, in the middle of the workspace.
   double drive_inertia(int drive) {
-    DriveVector q = DriveVector::Zero(description_.drives());
-    for (int j = 0; j < description_.drives(); ++j) {
-      const DriveLimits& limits = description_.limits[static_cast<std::size_t>(j)];
+    const RobotDescription& robot = machine_.description;
+    DriveVector q = DriveVector::Zero(robot.drives());
+    for (int j = 0; j < robot.drives(); ++j) {
+      const DriveLimits& limits = robot.limits[static_cast<std::size_t>(j)];
       if (std::isfinite(limits.lower + limits.upper)) q(j) = 0.5 * (limits.lower + limits.upper);
     }
     MechanismTerms terms;
     if (parts_.mechanism->evaluate(q, DriveVector::Zero(q.size()), terms) != Status::ok) {
       q.setZero();
-      if (parts_.mechanism->evaluate(q, q, terms) != Status::ok) return 0;
+      if (parts_.mechanism->evaluate(q, q, terms) != Status::ok) {
+        throw Error("the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
+                    robot.name, "mend the limits of the drives in the robot file", ExitCode::usage);
+      }
     }
     return terms.M(drive, drive);
   }
 
-  SoftDrive& new_soft_drive(const Effect& effect) {
-    for (const SoftDrive& other : parts_.soft) {
-      if (other.drive == effect.joint) refuse(effect, "this drive has a spring or play already", "give one of them a drive");
+  void add_spring(int drive, const SpringInDrive& spring) {
+    const double inertia = drive_inertia(drive), motor = spring.motor_share * inertia;
+    const double reduced = motor * (inertia - motor) / inertia;
+    if (!(reduced > 0)) {
+      throw Error(fmt::format("a motor with {} of the inertia of drive {} leaves no load behind its spring or play",
+                              spring.motor_share, drive + 1),
+                  "--effect", "give the motor (or the play) a share between 0 and 1", ExitCode::usage);
     }
-    parts_.soft.emplace_back();
-    parts_.soft.back().drive = effect.joint;
-    return parts_.soft.back();
-  }
-
-  /// Amplitude [s^2]: J_motor/k with the encoder on the arm, J_arm/k with the encoder on the motor.
-  void add_spring(const Effect& effect) {
-    const double c = effect.amplitude(0);
-    if (c == 0) return;
-    const double inertia = drive_inertia(effect.joint);
-    SoftDrive& soft = new_soft_drive(effect);
-    const double share = effect.shape.size() > 1 ? effect.shape(1) : kMotorShare;
-    if (!(c > 0 && share > 0 && share < 1)) {
-      refuse(effect, "the inertia over the stiffness must be above 0, and the motor's share of the inertia between 0 and 1",
-             "say by encoder=0 or 1 whether the encoder sits on the arm or on the motor");
-    }
-    soft.motor_inertia = share * inertia;
-    soft.encoder_on_motor = effect.shape.size() > 0 && effect.shape(0) > 0;
-    soft.stiffness = (soft.encoder_on_motor ? inertia - soft.motor_inertia : soft.motor_inertia) / c;
+    SoftDrive soft;
+    soft.drive = drive;
+    soft.motor_inertia = motor;
+    soft.gap = spring.gap;
+    soft.encoder_on_motor = spring.encoder_on_motor;
+    soft.stiffness = spring.inertia_over_stiffness > 0
+                         ? (spring.encoder_on_motor ? inertia - motor : motor) / spring.inertia_over_stiffness
+                         : reduced * std::pow(2 * std::numbers::pi * spring.flank_hz, 2);
     set_damping(soft, inertia);
-  }
-
-  /// Amplitude: share of the load that hangs behind the gap.
-  void add_play(const Effect& effect) {
-    const double share = effect.amplitude(0);
-    if (!(share > 0 && share <= 1)) refuse(effect, fmt::format("a share of {} is not between 0 and 1", share), "");
-    const double inertia = drive_inertia(effect.joint);
-    SoftDrive& soft = new_soft_drive(effect);
-    soft.motor_inertia = std::max(kLeastMotorShare, 1 - share) * inertia;
-    soft.gap = effect.shape(0);
-    const double reduced = soft.motor_inertia * (inertia - soft.motor_inertia) / inertia;
-    soft.stiffness = reduced * std::pow(2 * std::numbers::pi * kFlankFrequencyHz, 2);
-    if (!(reduced > 0)) refuse(effect, "no load would be left behind the gap", "give a smaller share");
-    set_damping(soft, inertia);
+    parts_.soft.push_back(soft);
   }
 
   static void set_damping(SoftDrive& soft, double inertia) {
@@ -196,11 +171,9 @@ class Builder {
     soft.damping = 2 * kDampingRatio * std::sqrt(soft.stiffness * reduced);
   }
 
-  RobotDescription description_;
+  ChangedMachine machine_;
   Values values_;
-  MechanismOptions options_;
   PlantParts parts_;
-  double passive_friction_ = 0;
 };
 
 }  // namespace
@@ -221,13 +194,9 @@ double SoftDrive::energy(double lead) const {
 }
 
 bool plant_takes(EffectId id) {
-  switch (id) {
-    case EffectId::torque_constant_error:
-    case EffectId::time_skew:
-    case EffectId::current_lag:
-    case EffectId::saturation: return false;  // of the log, see log_effects.hpp
-    default: return true;
-  }
+  bool takes = true;
+  visit_effect(id, [&takes](auto effect) { takes = !kIs<decltype(effect), RecordedChange>; });
+  return takes;
 }
 
 PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,

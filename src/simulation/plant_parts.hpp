@@ -31,18 +31,14 @@ struct PlantParts {
   std::vector<FrictionLaw> laws;  ///< one a joint of the mechanism
   std::vector<SoftDrive> soft;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  Eigen::Vector3d hose_force = Eigen::Vector3d::Zero();      ///< at the reference [N]
-  Eigen::Vector3d hose_stiffness = Eigen::Vector3d::Zero();  ///< [N/m]
-  Eigen::Vector3d hose_reference = Eigen::Vector3d::Zero();  ///< [m]
-  bool hose = false;
-  double drag = 0;  ///< of the plate [N s^2/m^2]
+  std::vector<Effect> plate_forces;  ///< effects that are forces on the plate, by their law
 };
 
 /// Throws deltadyn::Error for parameters that are not physically consistent and effects that the plant cannot have.
 [[nodiscard]] PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names,
                                      const Eigen::VectorXd& p, const std::vector<Effect>& effects);
 
-/// True if build_plant() has a place for the effect.
+/// True if build_plant() has a place for the effect: it is not one of the log alone (sensors.hpp).
 [[nodiscard]] bool plant_takes(EffectId id);
 
 }  // namespace deltadyn::detail

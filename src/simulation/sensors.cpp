@@ -4,9 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/effects/current_lag.hpp"
-#include "deltadyn/effects/saturation.hpp"
-#include "deltadyn/effects/torque_constant_error.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -17,16 +14,25 @@ Eigen::VectorXd one_a_drive(const std::vector<double>& values, int drives) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), drives);
 }
 
-/// Value of evenly sampled y at k + shift samples, held at the ends.
-double shifted(const Eigen::VectorXd& y, Eigen::Index k, double shift) {
-  const double at = std::clamp(static_cast<double>(k) + shift, 0.0, static_cast<double>(y.size() - 1));
-  const auto low = std::min(static_cast<Eigen::Index>(at), y.size() - 2);
-  const double s = at - static_cast<double>(low);
-  // Cubic through four neighbours: a line would damp the highest frequencies, which a dead time does not.
-  if (low < 1 || low + 2 >= y.size()) return (1 - s) * y(low) + s * y(low + 1);
-  const double a = y(low - 1), b = y(low), c = y(low + 1), d = y(low + 2);
-  return a * (-s * (s - 1) * (s - 2) / 6) + b * ((s + 1) * (s - 1) * (s - 2) / 2) + c * (-(s + 1) * s * (s - 2) / 2) +
-         d * ((s + 1) * s * (s - 1) / 6);
+/// Place of an effect on the recorded torque in the order in which a drive spoils its signal; -1 for all others.
+int stage_of(EffectId id) {
+  int stage = -1;
+  visit_effect(id, [&stage](auto effect) {
+    using E = decltype(effect);
+    if constexpr (kIs<E, RecordedChange>) stage = E::kStage;
+  });
+  return stage;
+}
+
+void record(const Effect& effect, double period, Eigen::MatrixXd& torque) {
+  for (int j = 0; j < torque.cols(); ++j) {
+    if (effect.joint >= 0 && effect.joint != j) continue;
+    visit_effect(effect.id, [&](auto type) {
+      using E = decltype(type);
+      const Eigen::VectorXd before = torque.col(j);
+      if constexpr (kIs<E, RecordedChange>) torque.col(j) = E::record(before, period, effect.amplitude(0), shape_of(effect));
+    });
+  }
 }
 
 }  // namespace
@@ -64,8 +70,7 @@ Eigen::VectorXd Encoders::read(const Eigen::Ref<const Eigen::VectorXd>& q) {
 }
 
 bool is_log_effect(EffectId id) {
-  return id == EffectId::saturation || id == EffectId::torque_constant_error || id == EffectId::current_lag ||
-         id == EffectId::time_skew;
+  return stage_of(id) >= 0;
 }
 
 Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& tau, const std::vector<Effect>& effects,
@@ -75,38 +80,11 @@ Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixX
   Eigen::MatrixXd recorded = tau;
   const Eigen::Index n = tau.rows();
   const double period = n > 1 ? (t_s(n - 1) - t_s(0)) / static_cast<double>(n - 1) : 1.0;
-  for (const EffectId stage :
-       {EffectId::saturation, EffectId::torque_constant_error, EffectId::current_lag, EffectId::time_skew}) {
-    for (const Effect& effect : effects) {
-      if (effect.id != stage) continue;
-      for (int j = 0; j < drives; ++j) {
-        if (effect.joint >= 0 && effect.joint != j) continue;
-        const double a = effect.amplitude(0);
-        const Eigen::VectorXd before = recorded.col(j);
-        CurrentLag<double> lag(std::max(a, 1e-12), n > 0 ? before(0) : 0.0);
-        for (Eigen::Index k = 0; k < n; ++k) {
-          double& y = recorded(k, j);
-          switch (stage) {
-            case EffectId::saturation: y += a * saturation(before(k), effect.shape(0)); break;
-            case EffectId::torque_constant_error: y += a * torque_constant_error(before(k)); break;
-            case EffectId::current_lag:
-              if (effect.shape.size() > 1 && effect.shape(1) > 0) {  // the log holds the command, before the lag
-                const Eigen::Index low = std::max<Eigen::Index>(k - 1, 0), high = std::min(k + 1, n - 1);
-                if (high > low) y += a * current_lead((before(high) - before(low)) / (static_cast<double>(high - low) * period));
-                break;
-              }
-              // The torque's mean over each half of a sample, so that the lag adds no delay of its own.
-              if (k > 0 && a > 0) {
-                lag.step(before(k - 1), 0.5 * period);
-                y = lag.step(before(k), 0.5 * period);
-              }
-              break;
-            default: y = shifted(before, k, -a / period); break;
-          }
-        }
-      }
-    }
-  }
+  std::vector<Effect> in_order;
+  std::copy_if(effects.begin(), effects.end(), std::back_inserter(in_order), [](const Effect& e) { return is_log_effect(e.id); });
+  std::stable_sort(in_order.begin(), in_order.end(),
+                   [](const Effect& a, const Effect& b) { return stage_of(a.id) < stage_of(b.id); });
+  for (const Effect& effect : in_order) record(effect, period, recorded);
   const Eigen::VectorXd noise = one_a_drive(options.torque_noise, drives);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -73,7 +73,7 @@ TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
   EXPECT_GE(number(first, "gap_shrink"), 0.9);
   const auto effects = read_effects(path("effects.csv"), read_robot_file(path("robot.urdf")));
   ASSERT_EQ(effects.size(), 1U);
-  EXPECT_EQ(effects[0].id, EffectId::shear_thinning);
+  EXPECT_EQ(effects[0].id, effect_id<effects::ShearThinning>);
 
   const ToolResult again = succeed(diagnose("improved.csv", {"--effects", path("effects.csv")}));
   EXPECT_EQ(summary().at("verdict"), "nothing-missing") << again.out << read_text(path("diagnosis.csv")).substr(0, 1500);

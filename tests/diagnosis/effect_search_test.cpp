@@ -53,8 +53,8 @@ TEST(EffectSearch, DoesNotLookForBristlesThatTheRowsHold) {
   const Searched one(0.5);
   const EffectSearch without(one.model, one.logs, one.basis, {});
   const EffectSearch with(one.model, one.logs, one.basis, {}, Eigen::VectorXd::Constant(1, 2e-3));
-  EXPECT_LT(Searched::find(without, EffectId::presliding), without.hypotheses().size());
-  EXPECT_EQ(Searched::find(with, EffectId::presliding), with.hypotheses().size());
+  EXPECT_LT(Searched::find(without, effect_id<effects::Presliding>), without.hypotheses().size());
+  EXPECT_EQ(Searched::find(with, effect_id<effects::Presliding>), with.hypotheses().size());
   EXPECT_EQ(with.hypotheses().size() + 1, without.hypotheses().size());
 }
 
@@ -63,7 +63,7 @@ TEST(EffectSearch, RefinesARippleToNoLessThanOneWaveOverTheRange) {
   const Searched one(0.7);
   const EffectSearch search(one.model, one.logs, one.basis, {});
   const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
-  const Fit& fit = search.refine(state, Searched::find(search, EffectId::torque_ripple));
+  const Fit& fit = search.refine(state, Searched::find(search, effect_id<effects::TorqueRipple>));
   ASSERT_GT(fit.gain, 100);
   EXPECT_GE(fit.effect.shape(0) * one.range, 0.99 * 2 * std::numbers::pi);
 }
@@ -73,7 +73,7 @@ TEST(EffectSearch, FindsFrictionThatVariesByLessThanOneWaveOverTheRange) {
   const Searched one(0.8, true);
   const EffectSearch search(one.model, one.logs, one.basis, {});
   const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
-  const Fit& fit = search.refine(state, Searched::find(search, EffectId::position_dependent_friction));
+  const Fit& fit = search.refine(state, Searched::find(search, effect_id<effects::PositionDependentFriction>));
   ASSERT_GT(fit.gain, 100);
   EXPECT_NEAR(fit.effect.shape(0) * one.range / (2 * std::numbers::pi), 0.8, 0.05);
 }
@@ -81,7 +81,7 @@ TEST(EffectSearch, FindsFrictionThatVariesByLessThanOneWaveOverTheRange) {
 TEST(Hypothesis, OfASaturationTakesOffNoMoreThanWhatIsAboveTheLevel) {
   const Searched one(0.5);
   const EffectSearch search(one.model, one.logs, one.basis, {});
-  EXPECT_LE(search.hypotheses()[Searched::find(search, EffectId::saturation)].largest(0), 1.0);
+  EXPECT_LE(search.hypotheses()[Searched::find(search, effect_id<effects::Saturation>)].largest(0), 1.0);
 }
 
 }  // namespace

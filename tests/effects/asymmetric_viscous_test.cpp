@@ -1,14 +1,14 @@
 #include "deltadyn/effects/asymmetric_viscous.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
+
+#include "sliding.hpp"
 
 namespace deltadyn {
 namespace {
 
 TEST(AsymmetricViscous, IsEvenInTheRate) {
-  EXPECT_EQ(asymmetric_viscous(-2.0), 2.0);
-  EXPECT_EQ(asymmetric_viscous(2.0), 2.0);
+  for (const double rate : {-2.0, 2.0}) EXPECT_EQ(effects::AsymmetricViscous::columns(sliding(rate), {})[0], 2.0);
 }
 
 }  // namespace

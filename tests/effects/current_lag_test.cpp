@@ -7,12 +7,16 @@ namespace deltadyn {
 namespace {
 
 TEST(CurrentLag, ReachesMostOfAStepAfterItsTime) {
-  CurrentLag<double> lag(0.003, 0.0);
-  double y = 0;
-  for (int k = 0; k < 300; ++k) y = lag.step(1.0, 1e-5);
-  EXPECT_NEAR(y, 1 - std::exp(-1.0), 1e-9);
-  EXPECT_EQ(current_lag(2.0, 10.0, 0.1), -1.0);
-  EXPECT_EQ(current_lead(2.0), 2.0);
+  Eigen::VectorXd torque = Eigen::VectorXd::Ones(301);
+  torque(0) = 0;
+  EXPECT_NEAR(effects::CurrentLag::record(torque, 1e-5, 0.003, {0.003, 0})(300), 1 - std::exp(-1.0), 2e-3);
+}
+
+TEST(CurrentLag, TrailsARampByItsTimeAndACommandLeadsIt) {
+  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(200, 0, 199e-3);
+  EXPECT_NEAR(effects::CurrentLag::record(ramp, 1e-3, 0.004, {0.004, 0})(199), ramp(199) - 0.004, 1e-12);
+  EXPECT_LT((effects::CurrentLag::record(ramp, 1e-3, 0.004, {0.004, 1}) - ramp.array().operator+(0.004).matrix()).norm(), 1e-12);
+  EXPECT_EQ(effects::CurrentLag::record(ramp, 1e-3, 0.0, {0, 0}), ramp);
 }
 
 }  // namespace

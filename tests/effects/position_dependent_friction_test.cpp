@@ -1,15 +1,16 @@
 #include "deltadyn/effects/position_dependent_friction.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
+
+#include "sliding.hpp"
 
 namespace deltadyn {
 namespace {
 
 TEST(PositionDependentFriction, FlipsWithTheDirection) {
-  const auto there = position_dependent_friction(0.3, 1.0, 4.0), back = position_dependent_friction(0.3, -1.0, 4.0);
-  EXPECT_EQ(there.cosine, -back.cosine);
-  EXPECT_EQ(there.sine, -back.sine);
+  const auto there = effects::PositionDependentFriction::columns(at_position(0.3), {4});
+  const auto back = effects::PositionDependentFriction::columns(at_position(0.3, -1.0), {4});
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(there[k], -back[k]);
 }
 
 }  // namespace

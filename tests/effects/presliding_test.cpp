@@ -1,29 +1,21 @@
 #include "deltadyn/effects/presliding.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
+
+#include "sliding.hpp"
 
 namespace deltadyn {
 namespace {
 
-TEST(Presliding, BuildsUpOverItsDisplacementWhateverTheStep) {
-  Presliding<double> coarse(0.01, -1.0), fine(0.01, -1.0);
-  coarse.move(0.02);
-  for (int k = 0; k < 1000; ++k) fine.move(2e-5);
-  EXPECT_NEAR(coarse.state(), 1 - 2 * std::exp(-2.0), 1e-12);
-  EXPECT_NEAR(fine.state(), coarse.state(), 1e-9);
-  EXPECT_EQ(presliding_rate(3.0, 1.0, 0.01), 0.0);
-}
-
-TEST(Presliding, DampingIsAheadOfTheStateUntilItHasBuiltUp) {
-  constexpr double kRate = 0.5, kDisplacement = 0.01, kDamping_s = 2e-3, kStep = 1e-7;
-  Presliding<double> now(kDisplacement, -1.0), later(kDisplacement, -1.0);
-  now.move(0.003);
-  later.move(0.003 + kRate * kStep);
-  const double rate = (later.state() - now.state()) / kStep;
-  EXPECT_NEAR(damped_presliding(kRate, now.state(), kDisplacement, kDamping_s), now.state() + kDamping_s * rate, 1e-5);
-  EXPECT_EQ(damped_presliding(kRate, 1.0, kDisplacement, kDamping_s), 1.0);
-  EXPECT_EQ(damped_presliding(0.0, 0.3, kDisplacement, kDamping_s), 0.3);
+TEST(Presliding, IsNothingInLongSlidingAndTakesCoulombsPlaceAfterAReversal) {
+  using effects::Presliding;
+  const Shape<double> shape{0.01, 0, 0};
+  const double settled = Presliding::start(1.0, shape);
+  EXPECT_EQ(Presliding::columns(settled, sliding(0.5), shape)[0], 0.0);
+  // Right after the reversal the friction is still the old one: twice Coulomb's above the new one.
+  EXPECT_EQ(Presliding::columns(settled, sliding(-1e-9), shape)[0], 2.0);
+  const double far = Presliding::moved(settled, -1.0, sliding(-0.5), shape);
+  EXPECT_NEAR(Presliding::columns(far, sliding(-0.5), shape)[0], 0.0, 1e-12);
 }
 
 }  // namespace

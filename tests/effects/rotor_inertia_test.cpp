@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "sliding.hpp"
+
 namespace deltadyn {
 namespace {
 
 TEST(RotorInertia, IsProportionalToTheAcceleration) {
-  EXPECT_EQ(rotor_inertia(-12.5), -12.5);
-  EXPECT_EQ(rotor_inertia(3.0F), 3.0F);
+  JointInput<double> in;
+  in.acceleration = -12.5;
+  EXPECT_EQ(effects::RotorInertia::columns(in, {})[0], -12.5);
 }
 
 }  // namespace

@@ -1,15 +1,16 @@
 #include "deltadyn/effects/telescope_side_load.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
+
+#include "sliding.hpp"
 
 namespace deltadyn {
 namespace {
 
-TEST(TelescopeSideLoad, LeavesOutWhatActsAlongTheBar) {
-  const Vector3<double> up(0, 0, 1), g(0, 0, -9.81);
-  EXPECT_NEAR(telescope_side_load<double>(1.0, up, Vector3<double>(0, 0, 3), g), 0.0, 1e-12);
-  EXPECT_NEAR(telescope_side_load<double>(-1.0, up, Vector3<double>(4, 3, 0), g), -5.0, 1e-12);
+TEST(TelescopeSideLoad, ResistsInProportionToTheSideLoad) {
+  JointInput<double> in = sliding(-0.3);
+  in.side_load = 5;
+  EXPECT_EQ(effects::TelescopeSideLoad::columns(in, {})[0], -5.0);
 }
 
 }  // namespace

@@ -3,12 +3,16 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "sliding.hpp"
+
 namespace deltadyn {
 namespace {
 
 TEST(ThermalDrift, FadesWithItsTimeConstant) {
-  EXPECT_EQ(thermal_drift(2.0, 0.0, 5.0), 2.0);
-  EXPECT_NEAR(thermal_drift(2.0, 5.0, 5.0), 2.0 * std::exp(-1.0), 1e-12);
+  JointInput<double> in = sliding(2.0);
+  EXPECT_EQ(effects::ThermalDrift::columns(in, {5})[0], 2.0);
+  in.time = 5;
+  EXPECT_NEAR(effects::ThermalDrift::columns(in, {5})[0], 2.0 * std::exp(-1.0), 1e-12);
 }
 
 }  // namespace

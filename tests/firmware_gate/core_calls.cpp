@@ -55,7 +55,7 @@ double largest(const Eigen::MatrixBase<Derived>& values) {
 
 template <class Layout, class T, class Robot>
 T friction_torque_of_drive(const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p, int drive) {
-  return p(Layout::viscous(drive)) * motion.qd(drive) + p(Layout::coulomb(drive)) * coulomb_friction(motion.qd(drive));
+  return p(Layout::viscous(drive)) * motion.qd(drive) + p(Layout::coulomb(drive)) * sign_of(motion.qd(drive));
 }
 
 template <class T, class Robot, Limbs kSharing>

@@ -52,7 +52,7 @@ TEST_P(SpringColumn, IsWhatTheArmsLagTakesFromTheRigidModel) {
   const double dt = s.sample_time_s;
   const int n = robot_->drives(), joint = 1;
   const double share = 0.3, c = 1e-7;  // so stiff that first order is exact
-  const MatrixXd column = model.columns(s, EffectId::joint_elasticity, joint, Vector2d(1, share), 1).front().values;
+  const MatrixXd column = model.columns(s, effect_id<effects::JointElasticity>, joint, Vector2d(1, share), 1).front().values;
   ASSERT_EQ(column.cols(), n);
   const double motor = share * s.inertia(joint), arm = s.inertia(joint) - motor;
   // The lag of the arm, k = arm/c, and its differences.
@@ -92,8 +92,8 @@ TEST_P(SpringColumn, CarriesEncoderNoiseAsTheWholeComputationDoes) {
   for (const double encoder : {0.0, 1.0}) {
     const auto change = [&](const EffectSignals& s) {
       const Vector2d shape(encoder, 0.4);
-      const MatrixXd column = model.columns(s, EffectId::joint_elasticity, 0, shape, 1).front().values -
-                              model.columns(still, EffectId::joint_elasticity, 0, shape, 1).front().values;
+      const MatrixXd column = model.columns(s, effect_id<effects::JointElasticity>, 0, shape, 1).front().values -
+                              model.columns(still, effect_id<effects::JointElasticity>, 0, shape, 1).front().values;
       return MatrixXd(column.middleRows(50, column.rows() - 100));
     };
     EXPECT_LT((change(near) - change(whole)).norm(), 0.05 * change(whole).norm()) << "encoder " << encoder;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "deltadyn/effects/presliding.hpp"
+#include "deltadyn/effects/bristle.hpp"
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
@@ -35,10 +35,10 @@ Log bristly_log(const Robot& robot, const Eigen::VectorXd& truth, std::uint64_t 
   Log log = synthetic_log(robot, truth, options);
   for (Eigen::Index j = 0; j < log.drives(); ++j) {
     const double coulomb = truth(column(robot, "drive" + std::to_string(j + 1) + ".coulomb"));
-    Presliding<double> bristle(kDisplacement, log.qd(0, j) > 0 ? 1.0 : -1.0);
+    Bristle<double> bristle(kDisplacement, log.qd(0, j) > 0 ? 1.0 : -1.0);
     for (Eigen::Index k = 0; k < log.samples(); ++k) {
       const double rate = log.qd(k, j), state = bristle.move(k > 0 ? log.q(k, j) - log.q(k - 1, j) : 0.0);
-      log.tau(k, j) += coulomb * (damped_presliding(rate, state, kDisplacement, damping_s) - (rate > 0 ? 1.0 : -1.0));
+      log.tau(k, j) += coulomb * (damped_bristle(rate, state, kDisplacement, damping_s) - (rate > 0 ? 1.0 : -1.0));
     }
     if (only_drive < 0 || only_drive == j) log.tau.col(j) = mend_timing(log.tau.col(j), log.sample_time_s(), -delay_s, 0.0);
   }

@@ -62,16 +62,17 @@ TEST(ValidateWritten, TakesASmallDelayOutUnlessItIsToStayOrEffectsAreKnown) {
   EXPECT_NEAR(mended.fine_delay->delay_s, 0.8e-3, 0.1e-3);
   EXPECT_FALSE(validate_written(*fitted.robot, {late}, fitted.model, {}, true, true).fine_delay.has_value());
   WrittenModel timed = fitted.model;
-  timed.effects = {effect(EffectId::time_skew, {-0.8e-3}, -0.8e-3)};
+  timed.effects = {effect(effect_id<effects::TimeSkew>, {-0.8e-3}, -0.8e-3)};
   const WrittenValidation with = validate_written(*fitted.robot, {late}, timed, {}, true, false);
   EXPECT_FALSE(with.fine_delay.has_value());
 }
 
 TEST(HoldsTiming, OfEffectsThatShiftTheTorqueInTime) {
   EXPECT_FALSE(holds_timing({}));
-  EXPECT_FALSE(holds_timing({effect(EffectId::stribeck, {0.1, 2}, 0.5)}));
-  EXPECT_TRUE(holds_timing({effect(EffectId::stribeck, {0.1, 2}, 0.5), effect(EffectId::time_skew, {1e-3}, 1e-3)}));
-  EXPECT_TRUE(holds_timing({effect(EffectId::current_lag, {1e-3, 1}, 1e-3)}));
+  EXPECT_FALSE(holds_timing({effect(effect_id<effects::Stribeck>, {0.1, 2}, 0.5)}));
+  EXPECT_TRUE(
+      holds_timing({effect(effect_id<effects::Stribeck>, {0.1, 2}, 0.5), effect(effect_id<effects::TimeSkew>, {1e-3}, 1e-3)}));
+  EXPECT_TRUE(holds_timing({effect(effect_id<effects::CurrentLag>, {1e-3, 1}, 1e-3)}));
 }
 
 // "Of the torque" means what the drives gave, whatever part of it is that of effects.
@@ -80,7 +81,7 @@ TEST(ValidateWritten, CountsTheTorqueOfEffects) {
   const Log fresh = Fitted::log(7);
   const auto without = validate_written(*fitted.robot, {fresh}, fitted.model, {}, true, true).validation.drives[0];
   WrittenModel model = fitted.model;
-  model.effects = {effect(EffectId::asymmetric_coulomb, {}, 6)};
+  model.effects = {effect(effect_id<effects::AsymmetricCoulomb>, {}, 6)};
   Log shifted = fresh;
   shifted.tau.array() += 6;
   const auto with = validate_written(*fitted.robot, {shifted}, model, {}, true, true).validation;

@@ -27,13 +27,13 @@ class EffectFile : public ::testing::Test {
 
 TEST_F(EffectFile, ReadsBackWhatItWrote) {
   Effect stribeck;
-  stribeck.id = EffectId::stribeck;
+  stribeck.id = effect_id<effects::Stribeck>;
   stribeck.joint = 1;
   stribeck.shape = Eigen::Vector2d(0.25, 2);
   stribeck.amplitude = Eigen::VectorXd::Constant(1, 2.0 / 3.0);
   stribeck.amplitude_std = Eigen::VectorXd::Constant(1, 0.01);
   Effect lag;
-  lag.id = EffectId::current_lag;
+  lag.id = effect_id<effects::CurrentLag>;
   lag.joint = -1;
   lag.shape = Eigen::Vector2d(0.003, 1);
   lag.amplitude = Eigen::VectorXd::Constant(1, 0.003);
@@ -41,7 +41,7 @@ TEST_F(EffectFile, ReadsBackWhatItWrote) {
   write_effects(path, {stribeck, lag}, robot_);
   const std::vector<Effect> read = read_effects(path, robot_);
   ASSERT_EQ(read.size(), 2u);
-  EXPECT_EQ(read[0].id, EffectId::stribeck);
+  EXPECT_EQ(read[0].id, effect_id<effects::Stribeck>);
   EXPECT_EQ(read[0].joint, 1);
   EXPECT_EQ(read[0].amplitude(0), 2.0 / 3.0);
   EXPECT_EQ(read[0].amplitude_std(0), 0.01);
@@ -52,7 +52,7 @@ TEST_F(EffectFile, ReadsBackWhatItWrote) {
 TEST_F(EffectFile, TakesTheAliasAndTheBareNumberOfADrive) {
   const auto effects = read_effects(write("effect,joint,parameter,value,unit\ntorque_offset,3,offset,0.5,N*m\n"), robot_);
   ASSERT_EQ(effects.size(), 1u);
-  EXPECT_EQ(effects[0].id, EffectId::asymmetric_coulomb);
+  EXPECT_EQ(effects[0].id, effect_id<effects::AsymmetricCoulomb>);
   EXPECT_EQ(effects[0].joint, 2);
 }
 

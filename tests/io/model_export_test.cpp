@@ -91,12 +91,12 @@ TEST(ModelExport, ListsWhatItLeavesOut) {
   Sample sample;
   sample.at("drive2.offset") = 0.75;
   Effect stribeck;
-  stribeck.id = EffectId::stribeck;
+  stribeck.id = effect_id<effects::Stribeck>;
   stribeck.joint = 1;
   stribeck.amplitude = Eigen::VectorXd::Constant(1, 2.0);
   stribeck.shape = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(effect_kind(stribeck.id).shapes.size()), 0.5);
   Effect rotor;
-  rotor.id = EffectId::rotor_inertia;
+  rotor.id = effect_id<effects::RotorInertia>;
   rotor.joint = 0;
   rotor.amplitude = Eigen::VectorXd::Constant(1, 1.0);
   const ExportedModel mjcf = export_mjcf(*sample.robot, sample.p, {stribeck, rotor});

@@ -88,7 +88,7 @@ TEST(Plant, ReversalsUnderASwingingTorqueDoNotChatter) {
 
 TEST(Plant, PreslidingIsASpringThatYields) {
   constexpr double kBristle = 0.01;
-  Plant plant = carriage(0, kCoulomb, {effect_of(EffectId::presliding, 0, {kCoulomb}, {kBristle})});
+  Plant plant = carriage(0, kCoulomb, {effect_of(effect_id<effects::Presliding>, 0, {kCoulomb}, {kBristle})});
   plant.start(one(0), one(0));
   // Friction c (1 - exp(-x/D)) takes the work of a push c/2 up where x/2 = x - D (1 - exp(-x/D)): x = 1.59362426 D.
   plant.command(one(0.5 * kCoulomb));
@@ -166,17 +166,17 @@ Plant pushed(const std::vector<Effect>& effects, const PlantOptions& options, do
 }
 
 const std::vector<Effect>& many_effects() {
-  static const std::vector<Effect> effects = {effect_of(EffectId::stribeck, 0, {2}, {0.3, 2}),
-                                              effect_of(EffectId::load_dependent_friction, 1, {0.1}, {}),
-                                              effect_of(EffectId::torque_ripple, 1, {0.4, 0.1}, {15}),
-                                              effect_of(EffectId::aerodynamic_drag, -1, {2}, {}),
-                                              effect_of(EffectId::rotor_inertia, 2, {0.02}, {}),
-                                              effect_of(EffectId::telescope_side_load, -1, {0.2}, {}),
-                                              effect_of(EffectId::thermal_drift, 3, {0.02}, {0.5}),
-                                              effect_of(EffectId::hysteresis, 2, {1}, {0.1, 2}),
-                                              effect_of(EffectId::base_tilt, -1, {0.03, -0.02}, {}),
-                                              effect_of(EffectId::payload, -1, {0.5}, {1}),
-                                              effect_of(EffectId::hose_force, -1, {1, 2, 3, 20, 10, 5}, {})};
+  static const std::vector<Effect> effects = {effect_of(effect_id<effects::Stribeck>, 0, {2}, {0.3, 2}),
+                                              effect_of(effect_id<effects::LoadDependentFriction>, 1, {0.1}, {}),
+                                              effect_of(effect_id<effects::TorqueRipple>, 1, {0.4, 0.1}, {15}),
+                                              effect_of(effect_id<effects::AerodynamicDrag>, -1, {2}, {}),
+                                              effect_of(effect_id<effects::RotorInertia>, 2, {0.02}, {}),
+                                              effect_of(effect_id<effects::TelescopeSideLoad>, -1, {0.2}, {}),
+                                              effect_of(effect_id<effects::ThermalDrift>, 3, {0.02}, {0.5}),
+                                              effect_of(effect_id<effects::Hysteresis>, 2, {1}, {0.1, 2}),
+                                              effect_of(effect_id<effects::BaseTilt>, -1, {0.03, -0.02}, {}),
+                                              effect_of(effect_id<effects::Payload>, -1, {0.5}, {1}),
+                                              effect_of(effect_id<effects::HoseForce>, -1, {1, 2, 3, 20, 10, 5}, {})};
   return effects;
 }
 
@@ -190,10 +190,11 @@ TEST(Plant, EnergyIsAccountedFor) {
     (void)pushed({effect}, {}, &imbalance);
     EXPECT_LT(imbalance, 1e-7) << effect_kind(effect.id).name;
   }
-  (void)pushed({effect_of(EffectId::joint_elasticity, 0, {2e-5}, {}), effect_of(EffectId::backlash, 1, {0.5}, {0.01})}, {},
-               &imbalance);
+  (void)pushed(
+      {effect_of(effect_id<effects::JointElasticity>, 0, {2e-5}, {}), effect_of(effect_id<effects::Backlash>, 1, {0.5}, {0.01})},
+      {}, &imbalance);
   EXPECT_LT(imbalance, 1e-6);
-  (void)pushed({effect_of(EffectId::passive_joint_friction, -1, {0.2}, {})}, {}, &imbalance);
+  (void)pushed({effect_of(effect_id<effects::PassiveJointFriction>, -1, {0.2}, {})}, {}, &imbalance);
   EXPECT_LT(imbalance, 1e-7);
 }
 
@@ -217,13 +218,13 @@ TEST(Plant, MovesByTheTorqueThatItsOwnMotionTakes) {
   // Forward and backward are different code: one solves for accelerations with rest and events, the other only adds up.
   const auto robot = make_robot(delta_description("delta4"));
   std::vector<Effect> effects = many_effects();
-  effects.erase(
-      std::remove_if(effects.begin(), effects.end(),
-                     [](const Effect& e) { return e.id == EffectId::hysteresis; }),  // its state is integrated otherwise
-      effects.end());
-  effects.push_back(effect_of(EffectId::directional_efficiency, 0, {0.1, 0.05}, {}));
-  effects.push_back(effect_of(EffectId::passive_joint_friction, -1, {0.05}, {}));
-  effects.push_back(effect_of(EffectId::kinematic_offset, 1, {0.01}, {0}));
+  effects.erase(std::remove_if(
+                    effects.begin(), effects.end(),
+                    [](const Effect& e) { return e.id == effect_id<effects::Hysteresis>; }),  // its state is integrated otherwise
+                effects.end());
+  effects.push_back(effect_of(effect_id<effects::DirectionalEfficiency>, 0, {0.1, 0.05}, {}));
+  effects.push_back(effect_of(effect_id<effects::PassiveJointFriction>, -1, {0.05}, {}));
+  effects.push_back(effect_of(effect_id<effects::KinematicOffset>, 1, {0.01}, {0}));
   Plant plant(robot->description(), robot->parameter_names(), delta_truth(*robot), effects);
   plant.start(DriveVector::Constant(4, 0.25), DriveVector::Zero(4));
   DriveVector tau(4);
@@ -264,8 +265,8 @@ TEST(Plant, RefusesWhatCannotBe) {
   const auto robot = make_robot(delta_description("delta4"));
   const Eigen::VectorXd p = delta_truth(*robot);
   const auto make = [&](const Effect& effect) { return Plant(robot->description(), robot->parameter_names(), p, {effect}); };
-  EXPECT_THROW((void)make(effect_of(EffectId::shear_thinning, 0, {100}, {1, 0})), Error);
-  EXPECT_THROW((void)make(effect_of(EffectId::backlash, 0, {1.5}, {0.01})), Error);
+  EXPECT_THROW((void)make(effect_of(effect_id<effects::ShearThinning>, 0, {100}, {1, 0})), Error);
+  EXPECT_THROW((void)make(effect_of(effect_id<effects::Backlash>, 0, {1.5}, {0.01})), Error);
   Plant heavy(robot->description(), robot->parameter_names(), -p);
   EXPECT_THROW(heavy.start(DriveVector::Constant(4, 0.2), DriveVector::Zero(4)), Error);
   testing_support::Lengths short_struts;

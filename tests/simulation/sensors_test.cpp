@@ -53,33 +53,33 @@ TEST_F(Recorded, NoiseHasItsSizeAndItsCorrelation) {
 }
 
 TEST_F(Recorded, TimeSkewDelaysTheTorque) {
-  const Eigen::VectorXd late = with(effect_of(EffectId::time_skew, -1, {0.0024}, {0.0024}));
+  const Eigen::VectorXd late = with(effect_of(effect_id<effects::TimeSkew>, -1, {0.0024}, {0.0024}));
   const Eigen::VectorXd exact = 10 * (2 * std::numbers::pi * 3 * (t.array() - 0.0024)).sin();
   EXPECT_LT((late - exact).segment(10, kRows - 20).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST_F(Recorded, LagIsAFirstOrderLowPass) {
   constexpr double T = 0.005, w = 2 * std::numbers::pi * 3;
-  const Eigen::VectorXd lagged = with(effect_of(EffectId::current_lag, 0, {T}, {T}));
+  const Eigen::VectorXd lagged = with(effect_of(effect_id<effects::CurrentLag>, 0, {T}, {T}));
   const Eigen::VectorXd exact = 10 / std::sqrt(1 + w * w * T * T) * (w * t.array() - std::atan(w * T)).sin();
   EXPECT_LT((lagged - exact).tail(kRows - 100).cwiseAbs().maxCoeff(), 2e-3);
 }
 
 TEST_F(Recorded, CommandBeforeTheLagLeadsTheTorque) {
   constexpr double T = 0.005, w = 2 * std::numbers::pi * 3;
-  const Eigen::VectorXd command = with(effect_of(EffectId::current_lag, 0, {T}, {T, 1}));
+  const Eigen::VectorXd command = with(effect_of(effect_id<effects::CurrentLag>, 0, {T}, {T, 1}));
   const Eigen::VectorXd exact = 10 * ((w * t.array()).sin() + w * T * (w * t.array()).cos());
   EXPECT_LT((command - exact).segment(10, kRows - 20).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 TEST_F(Recorded, SaturationAndTorqueConstant) {
-  EXPECT_NEAR(with(effect_of(EffectId::saturation, 0, {1}, {6})).maxCoeff(), 6, 1e-12);
-  EXPECT_NEAR(with(effect_of(EffectId::saturation, 0, {0.5}, {6})).maxCoeff(), 8, 1e-3);
-  EXPECT_LT((with(effect_of(EffectId::torque_constant_error, 0, {0.05}, {})) - 1.05 * tau).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(with(effect_of(effect_id<effects::Saturation>, 0, {1}, {6})).maxCoeff(), 6, 1e-12);
+  EXPECT_NEAR(with(effect_of(effect_id<effects::Saturation>, 0, {0.5}, {6})).maxCoeff(), 8, 1e-3);
+  EXPECT_LT((with(effect_of(effect_id<effects::TorqueConstantError>, 0, {0.05}, {})) - 1.05 * tau).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST_F(Recorded, EffectsOfThePlantAreNoneOfTheLog) {
-  EXPECT_EQ(with(effect_of(EffectId::stribeck, 0, {2}, {0.3, 1})), tau);
+  EXPECT_EQ(with(effect_of(effect_id<effects::Stribeck>, 0, {2}, {0.3, 1})), tau);
 }
 
 TEST(SensorOptions, RefuseWhatCannotBe) {

@@ -30,7 +30,7 @@ struct Outcome {
 /// Size of an effect in one number: two amplitudes of a wave or an angle are a length.
 inline void size_of(const Effect& effect, double& size, double& std) {
   const auto has_std = effect.amplitude_std.size() == effect.amplitude.size();
-  const bool plane = effect.id == EffectId::torque_ripple || effect.id == EffectId::base_tilt;
+  const bool plane = effect.id == effect_id<effects::TorqueRipple> || effect.id == effect_id<effects::BaseTilt>;
   size = plane ? effect.amplitude.norm() : std::abs(effect.amplitude(0));
   std = !has_std ? 0.0 : plane ? effect.amplitude_std.dot(effect.amplitude.cwiseAbs()) / size : effect.amplitude_std(0);
 }
@@ -164,7 +164,7 @@ inline std::string effect_of(const std::string& text) {
 
 inline std::string class_of(const std::string& text) {
   const EffectKind* kind = find_effect_kind(effect_of(text));
-  return kind != nullptr ? kind->effect_class : "";
+  return kind != nullptr ? std::string(effect_class_name(kind->effect_class)) : "";
 }
 
 inline void print_summary(const Outcomes& all) {

@@ -36,22 +36,23 @@ inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
     key.name = kind.amplitudes[k].name;
     key.unit = kind.amplitudes[k].unit;
     key.index = static_cast<Eigen::Index>(k);
-    if (kind.amplitudes[k].positive) key.lower = 0;
+    if (kind.amplitudes[k].positive()) key.lower = 0;
     if (kind.amplitudes.size() > 1) key.otherwise = 0;
     keys.push_back(key);
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
-    const EffectShape& shape = kind.shapes[k];
+    const ShapeTraits& shape = kind.shapes[k];
     EffectKey key;
     key.name = shape.name;
     key.unit = shape.unit;
     key.amplitude = false;
     key.index = static_cast<Eigen::Index>(k);
-    if (!shape.grid.empty() && *std::min_element(shape.grid.begin(), shape.grid.end()) > 0) {
+    if (shape.positive) {
       key.lower = 0;
       key.above = true;
     }
-    if (shape.scale == ShapeScale::absolute && shape.grid.size() <= 4) key.usual = shape.grid;
+    const bool as_it_stands = shape.scale == ShapeScale::absolute || shape.scale == ShapeScale::choice;
+    if (as_it_stands && shape.count <= 4) key.usual = start_values(shape);
     key.otherwise = shape.otherwise;
     if (shape.scale == ShapeScale::logs) key.otherwise = 1;  // a simulation makes one log
     keys.push_back(key);
@@ -71,7 +72,7 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
   const EffectKind* kind = find_effect_kind(name);
   if (kind == nullptr) {
     std::string known;
-    for (const EffectKind& each : effect_catalogue()) known += (known.empty() ? "" : " ") + each.name;
+    for (const EffectKind& each : effect_catalogue()) known.append(known.empty() ? "" : " ").append(each.name);
     throw Error("there is no effect '" + name + "'", where, "use one of: " + known, ExitCode::usage);
   }
   Effect effect;
@@ -120,11 +121,12 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
       throw Error(key.name + " of the effect " + name + " is missing", where, "give all of " + known, ExitCode::usage);
   }
   if (kind->tied) effect.shape(0) = effect.amplitude(0);
+  check_sizes(effect, where, ExitCode::usage);
   return effect;
 }
 
 /// For any robot: a unit that depends on the drive stands for both kinds, "N*m | N".
-inline std::string unit_of_any_drive(const std::string& unit) {
+inline std::string unit_of_any_drive(std::string_view unit) {
   RobotDescription robot;
   robot.limbs.resize(1);
   robot.drive_kind = DriveKind::revolute;
@@ -140,6 +142,7 @@ inline void list_effects() {
   const auto place = [](EffectPlace where) {
     switch (where) {
       case EffectPlace::drive: return "@driveK";
+      case EffectPlace::arm: return "@driveK of a limb with a revolute drive";
       case EffectPlace::limb: return "@driveK of a limb";
       case EffectPlace::drive_or_robot: return "@driveK, or @robot for all drives";
       case EffectPlace::telescope: return "@telescope";
@@ -149,8 +152,8 @@ inline void list_effects() {
   };
   fmt::print("--effect NAME@JOINT:key=value,...   K counts from 1; [unit of revolute drives | of prismatic drives]\n");
   for (const EffectKind& kind : effect_catalogue()) {
-    fmt::print("\n{}{}  {}\n  {}\n", kind.name, kind.alias.empty() ? "" : " (also " + kind.alias + ")", place(kind.place),
-               kind.meaning);
+    fmt::print("\n{}{}  {}\n  {}\n", kind.name, kind.alias.empty() ? "" : fmt::format(" (also {})", kind.alias),
+               place(kind.place), kind.meaning);
     for (const EffectKey& key : effect_keys(kind)) {
       const std::string unit = unit_of_any_drive(key.unit);
       std::string text = fmt::format("    {:<24} {:<16}", key.name, unit.empty() ? "" : "[" + unit + "]");

@@ -21,11 +21,11 @@ struct Hypothesis {
   double largest_torque = 1e300;        ///< of its joint in the logs [N m | N]: no force amplitude is larger
 
   [[nodiscard]] const EffectKind& kind() const { return effect_kind(id); }
-  [[nodiscard]] std::string name() const { return kind().name; }
+  [[nodiscard]] std::string name() const { return std::string(kind().name); }
   [[nodiscard]] std::string joint_name() const { return effect_joint_name(id, joint); }
   /// Largest size of an amplitude that makes sense.
   [[nodiscard]] double largest(std::size_t amplitude) const {
-    const EffectAmplitude& one = kind().amplitudes[amplitude];
+    const AmplitudeTraits& one = kind().amplitudes[amplitude];
     return one.unit == "{F}" ? std::min(one.largest, largest_torque) : one.largest;
   }
   /// Parameters that a fit would spend on it.

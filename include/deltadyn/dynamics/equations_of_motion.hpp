@@ -28,7 +28,7 @@ EquationsOfMotion<T, Robot::kDrives> equations_of_motion(const Geometry<T, Robot
   terms.M.setZero();
   terms.C.setZero();
   terms.g.setZero();
-  terms.f = friction_torque<Layout>(motion, p) + p.template segment<N>(Layout::kOffset) * torque_offset<T>();
+  terms.f = friction_torque<Layout>(motion, p) + p.template segment<N>(Layout::kOffset);
   for_each_body(geometry, motion, jacobian_rates(geometry, motion),
                 [&](Body kind, int index, int count, const BodyState<T, N>& body) {
                   const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);

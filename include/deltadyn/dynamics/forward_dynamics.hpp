@@ -20,7 +20,7 @@ void mass_and_bias(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& 
   motion.posture = posture;
   set_drive_rates<T, Robot>(geometry, qd, Vector<T, N>::Zero(), motion);
   M.setZero();
-  bias = friction_torque<Layout>(motion, p) + p.template segment<N>(Layout::kOffset) * torque_offset<T>();
+  bias = friction_torque<Layout>(motion, p) + p.template segment<N>(Layout::kOffset);
   for_each_body(geometry, motion, [&](Body kind, int index, int count, const BodyMotion<T, N>& body) {
     const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);
     M += T(count) * inertia.mass_matrix(body);

@@ -14,8 +14,7 @@ Vector<T, Robot::kDrives> friction_torque(const Motion<T, Robot>& motion, const 
   Vector<T, Robot::kDrives> tau = Vector<T, Robot::kDrives>::Zero();
   for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
     const auto f = friction_joint(motion, joint);
-    tau += (p(Layout::viscous(joint)) * viscous_friction(f.rate) + p(Layout::coulomb(joint)) * coulomb_friction(f.rate)) *
-           f.J.transpose();
+    tau += (p(Layout::viscous(joint)) * f.rate + p(Layout::coulomb(joint)) * sign_of(f.rate)) * f.J.transpose();
   }
   return tau;
 }
@@ -30,8 +29,7 @@ Vector<T, Robot::kDrives> inverse_dynamics(const Geometry<T, Robot>& geometry, c
     tau += T(count) * (body.J_v.transpose() * inertia.force(body) + body.J_w.transpose() * inertia.moment(body));
   });
   for (int drive = 0; drive < Robot::kDrives; ++drive) {
-    tau(drive) +=
-        p(Layout::kRotorInertia + drive) * rotor_inertia(motion.qdd(drive)) + p(Layout::kOffset + drive) * torque_offset<T>();
+    tau(drive) += p(Layout::kRotorInertia + drive) * motion.qdd(drive) + p(Layout::kOffset + drive);
   }
   return tau;
 }

@@ -65,8 +65,7 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
   const T both = turning.dot(e) / n.dot(e);
   const Vector3<T> bending = turning - both * n;
   const T rate = motion.telescope.length_d;
-  const T friction =
-      p(Layout::viscous(Robot::kDrives)) * viscous_friction(rate) + p(Layout::coulomb(Robot::kDrives)) * coulomb_friction(rate);
+  const T friction = p(Layout::viscous(Robot::kDrives)) * rate + p(Layout::coulomb(Robot::kDrives)) * sign_of(rate);
   const Vector3<T> at_lower = bending.cross(-e) / bar.length + (lower.force.dot(e) - friction) * e;  // of the tool on the bar
   const T mu_lower = -tool.moment.z() / n.z();
 

@@ -3,10 +3,7 @@
 /// \file
 /// The complete regressor Y(q, qd, qdd) of paper (2)-(7): tau = Y p, linear in inertial and friction parameters.
 
-#include "deltadyn/effects/coulomb_friction.hpp"
-#include "deltadyn/effects/rotor_inertia.hpp"
-#include "deltadyn/effects/torque_offset.hpp"
-#include "deltadyn/effects/viscous_friction.hpp"
+#include "deltadyn/core/sign.hpp"
 #include "deltadyn/kinematics/body_motion.hpp"
 #include "deltadyn/model/parameter_layout.hpp"
 

@@ -56,12 +56,12 @@ void regressor(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motio
   });
   for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
     const auto f = friction_joint(motion, joint);
-    Y.col(Layout::viscous(joint)) = viscous_friction(f.rate) * f.J.transpose();
-    Y.col(Layout::coulomb(joint)) = coulomb_friction(f.rate) * f.J.transpose();
+    Y.col(Layout::viscous(joint)) = f.rate * f.J.transpose();
+    Y.col(Layout::coulomb(joint)) = sign_of(f.rate) * f.J.transpose();
   }
   for (int drive = 0; drive < Robot::kDrives; ++drive) {
-    Y(drive, Layout::kRotorInertia + drive) = rotor_inertia(motion.qdd(drive));
-    Y(drive, Layout::kOffset + drive) = torque_offset<T>();
+    Y(drive, Layout::kRotorInertia + drive) = motion.qdd(drive);
+    Y(drive, Layout::kOffset + drive) = T(1);
   }
 }
 

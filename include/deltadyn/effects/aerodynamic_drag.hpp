@@ -2,17 +2,29 @@
 
 #include <cmath>
 
-#include "deltadyn/core/types.hpp"
+#include "deltadyn/effects/kinds.hpp"
 
-namespace deltadyn {
+namespace deltadyn::effects {
 
-/// Drag of the plate and what it carries: the drives bear c J^T |v| v with the plate's velocity v [m/s] and its Jacobian J.
-/// Amplitude c [N s^2/m^2] > 0: half the density of air times drag coefficient times area. Valid above Re of about 1000 and for
-/// air at rest. \returns the force per unit c [m^2/s^2], in W.
-template <class T>
-Vector3<T> aerodynamic_drag(const Vector3<T>& velocity) {
-  using std::sqrt;
-  return sqrt(velocity.squaredNorm()) * velocity;
-}
+/// Drag of the plate and what it carries: force c |v| v with the plate's velocity v [m/s]. Amplitude c [N s^2/m^2] > 0: half the density
+/// of air times drag coefficient times area. Valid above Re of about 1000 and for air at rest.
+struct AerodynamicDrag : PlateForce {
+  static constexpr EffectTraits traits() {
+    EffectTraits t;
+    t.name = "aerodynamic_drag";
+    t.place = EffectPlace::platform;
+    t.amplitudes = {{"coefficient", "N*s^2/m^2", Sign::positive}};
+    t.meaning = "air drag on the plate";
+    t.shows = "grows with the plate's speed squared";
+    t.remedy = "keep the term";
+    return t;
+  }
 
-}  // namespace deltadyn
+  template <class T>
+  static std::array<Vector3<T>, 1> columns(const PlateInput<T>& in, const Shape<T>&) {
+    using std::sqrt;
+    return {sqrt(in.velocity.squaredNorm()) * in.velocity};
+  }
+};
+
+}  // namespace deltadyn::effects

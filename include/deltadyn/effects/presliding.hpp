@@ -1,47 +1,42 @@
 #pragma once
 
-#include <cmath>
+#include "deltadyn/effects/bristle.hpp"
+#include "deltadyn/effects/kinds.hpp"
 
-namespace deltadyn {
+namespace deltadyn::effects {
 
-/// Presliding friction (Dahl 1968; the bristle state of LuGre without its Stribeck curve): after a reversal the friction does not jump but
-/// builds up over a displacement. State z in [-1, 1], the friction as a share of Coulomb's:
-///   dz/dt = (v - |v| z) / x_s,   F = Fc z,   Fc > 0 [N m | N]
-/// with the bristle displacement x_s > 0 [rad | m], 1e-5 to 0.1 rad. For a joint that has a Coulomb column already the effect is
-/// Fc (z - sign v). With damping of the bristles F = Fc (z + T dz/dt), T = sigma_1 / sigma_0 of LuGre [s], 0 to 0.02 s: right after a
-/// reversal the friction is ahead of its state. Valid between breakaway and gross sliding, any speed. Source: Canudas de Wit et al., IEEE TAC 40(3), 1995.
-template <class T>
-class Presliding {
- public:
-  explicit Presliding(const T& displacement, const T& state = T(0)) : displacement_(displacement), state_(state) {}
-
-  /// Moves the joint by `step` [rad | m] (exact for any size of step) and returns z.
-  const T& move(const T& step) {
-    using std::abs;
-    using std::exp;
-    if (step == T(0)) return state_;
-    const T end = step > T(0) ? T(1) : T(-1);
-    state_ = end + (state_ - end) * exp(-abs(step) / displacement_);
-    return state_;
+/// Presliding friction: after a reversal the friction builds up over a displacement instead of jumping. For a joint that has a Coulomb
+/// column already the effect is Fc (z + T dz/dt - sign v), amplitude Fc > 0 [N m | N]; state z and damping T as bristle.hpp has them.
+/// Shape: displacement x_s > 0 [rad | m], damping T >= 0 [s].
+struct Presliding : JointMemory {
+  static constexpr EffectTraits traits() {
+    EffectTraits t;
+    t.name = "presliding";
+    t.effect_class = EffectClass::reversal_memory;
+    t.amplitudes = {{"friction", "{F}", Sign::positive}};
+    t.shapes = {ShapeTraits("displacement", "{x}", ShapeScale::displacement).from(3e-4, 0.08, 7),
+                ShapeTraits("damping", "s").among({0}).searched({ShapeSearch::fixed}).else_is(0)};
+    t.memory = true;
+    t.form = {0.03, 0.25, 0.06};
+    t.role = Role::bristle;
+    t.meaning = "after a reversal the drive's friction builds up over a displacement instead of jumping";
+    t.shows = "memory after a reversal";
+    t.remedy = "use a friction model with a state (LuGre) near reversals";
+    return t;
   }
-  const T& state() const { return state_; }
 
- private:
-  T displacement_, state_;
+  template <class T>
+  static T start(const T& sign, const Shape<T>&) {
+    return sign;
+  }
+  template <class T>
+  static T moved(const T& state, const T& step, const JointInput<T>&, const Shape<T>& shape) {
+    return Bristle<T>(shape[0], state).move(step);
+  }
+  template <class T>
+  static std::array<T, 1> columns(const T& state, const JointInput<T>& in, const Shape<T>& shape) {
+    return {T(damped_bristle(in.rate, state, shape[0], shape[1]) - in.sign)};
+  }
 };
 
-/// dz/dt, for integrators that carry the state themselves.
-template <class T>
-T presliding_rate(const T& rate, const T& state, const T& displacement) {
-  using std::abs;
-  return (rate - abs(rate) * state) / displacement;
-}
-
-/// What damped bristles hold of Coulomb's friction.
-/// \param damping  T [s], at least 0
-template <class T>
-T damped_presliding(const T& rate, const T& state, const T& displacement, const T& damping) {
-  return state + damping * presliding_rate(rate, state, displacement);
-}
-
-}  // namespace deltadyn
+}  // namespace deltadyn::effects

@@ -2,13 +2,28 @@
 
 #include "deltadyn/effects/stribeck.hpp"
 
-namespace deltadyn {
+namespace deltadyn::effects {
 
 /// Stribeck effect of the telescope bar's prismatic joint: `stribeck` of the bar's rate, borne by the drives through the Jacobian of
-/// its length. Amplitude dF [N] > 0, shape rate [m/s].
-template <class T>
-T telescope_stribeck(const T& bar_rate, const StribeckShape<T>& shape) {
-  return stribeck(bar_rate, shape);
-}
+/// its length. Amplitude dF [N] > 0, shape rate [m/s] and exponent.
+struct TelescopeStribeck : JointLaw {
+  static constexpr EffectTraits traits() {
+    EffectTraits t;
+    t.name = "telescope_stribeck";
+    t.place = EffectPlace::telescope;
+    t.amplitudes = {{"friction", "N", Sign::positive}};
+    t.shapes = {ShapeTraits("rate", "m/s", ShapeScale::largest_rate).from(0.004, 0.4, 7),
+                ShapeTraits("exponent", "").among({1, 2}).searched({ShapeSearch::fixed})};
+    t.meaning = "the telescope bar has more friction at low speed";
+    t.shows = "follows the sign of the bar's rate";
+    t.remedy = "lubricate the bar";
+    return t;
+  }
 
-}  // namespace deltadyn
+  template <class T>
+  static std::array<T, 1> columns(const JointInput<T>& in, const Shape<T>& shape) {
+    return Stribeck::columns(in, shape);
+  }
+};
+
+}  // namespace deltadyn::effects

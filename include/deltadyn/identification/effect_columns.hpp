@@ -31,9 +31,9 @@ struct EffectSignals {
   Eigen::VectorXd bar_rate;                          ///< N, of the telescope
   Eigen::MatrixXd J_bar;                             ///< N x n
   Eigen::MatrixXd bar;                               ///< N x 3
-  Eigen::MatrixXd passive;                           ///< N x n
-  Eigen::MatrixXd tilt_x, tilt_y;                    ///< N x n, torque per radian; empty if not asked for
-  std::vector<Eigen::MatrixXd> kinematic;            ///< N x n each: kind (home, arm, strut) x limb; empty if not asked for
+  Eigen::MatrixXd passive_rate;                      ///< N x m, of the different passive joints
+  Eigen::MatrixXd J_passive;                         ///< N x m n: d rate 1 / d qd, d rate 2 / d qd, ...
+  std::vector<Eigen::MatrixXd> changed;  ///< N x n each: torque per unit of each MachineDifference; empty if not asked for
   double sample_time_s = 0;
 };
 
@@ -43,6 +43,23 @@ struct EffectColumn {
   Eigen::MatrixXd values;
 };
 
+/// A change of the machine by one amplitude of an effect, seen by a central difference.
+struct MachineDifference {
+  EffectId id;
+  int joint;
+  Shape<double> shape;
+  std::size_t amplitude;
+  double step;
+  struct Side {
+    std::unique_ptr<Robot> robot;
+    Eigen::VectorXd home_offset;
+  };
+  Side plus, minus;
+};
+
+/// Do effects change the machine, so that their columns take differences of whole models?
+[[nodiscard]] bool needs_differences(const std::vector<Effect>& effects);
+
 /// Computes signals and columns for one robot. Safe to use from several threads.
 class EffectModel {
  public:
@@ -51,31 +68,35 @@ class EffectModel {
   EffectModel(const EffectModel&) = delete;
   EffectModel& operator=(const EffectModel&) = delete;
 
-  /// \param p            parameters in the robot's layout, for the effects that need the model's torque
-  /// \param with_errors  tilt and kinematic columns, too (these need the model some twenty times a sample)
-  /// \param near         of nearly the same motion (encoder noise apart): spares the derivatives along the lags of elastic joints
+  /// \param p                 parameters in the robot's layout, for the effects that need the model's torque
+  /// \param with_differences  of changed machines, too (these need the model some twenty times a sample)
+  /// \param near              of nearly the same motion (encoder noise apart): spares the derivatives along the lags of elastic joints
   /// Throws deltadyn::Error for poses that the robot cannot have.
-  [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_errors = true,
+  [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_differences = true,
                                       const EffectSignals* near = nullptr) const;
 
   /// One column an amplitude of the effect.
   /// \param shape       one value a shape parameter
-  /// \param log_number  of this log among those of the identification, from 1 (`payload`)
+  /// \param log_number  of this log among those of the identification, from 1, for effects of one log only
   [[nodiscard]] std::vector<EffectColumn> columns(const EffectSignals& signals, EffectId id, int joint,
                                                   const Eigen::VectorXd& shape, int log_number) const;
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
 
  private:
-  void add_errors(const PreparedLog& log, const Eigen::VectorXd& p, EffectSignals& out) const;
+  [[nodiscard]] std::vector<EffectColumn> columns_of_changes(const EffectSignals& signals, EffectId id, int joint,
+                                                             const Shape<double>& shape) const;
+  [[nodiscard]] std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& signals, EffectId id, int joint,
+                                                               const Shape<double>& shape) const;
+  void add_differences(const PreparedLog& log, const Eigen::VectorXd& p, EffectSignals& out) const;
   void add_lags(const Eigen::VectorXd& p, const EffectSignals* near, EffectSignals& out) const;
 
   const Robot& robot_;
   std::unique_ptr<EffectStates> states_;
-  std::vector<int> own_friction_;               ///< columns of p that load leaves out
-  std::vector<int> friction_;                   ///< columns of p of all friction
-  std::unique_ptr<Robot> tilted_[2];            ///< gravity turned about x, y
-  std::vector<std::unique_ptr<Robot>> longer_;  ///< (arm, strut) x limb x (plus, minus)
+  Eigen::MatrixXd gravity_;        ///< 2 x n: outwards and upwards in the frame of each drive's limb
+  std::vector<int> own_friction_;  ///< columns of p that load leaves out
+  std::vector<int> friction_;      ///< columns of p of all friction
+  std::vector<MachineDifference> differences_;
 };
 
 /// Low pass and decimation as read_rows does: rows of the log x columns of `values`.

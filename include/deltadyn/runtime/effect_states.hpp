@@ -20,7 +20,8 @@ struct EffectState {
   double bar_rate = 0;                                     ///< of the telescope [m/s]
   Eigen::RowVectorXd J_bar;                                ///< d length / dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
-  Eigen::VectorXd passive;                                 ///< torque of `passive_joint_friction` per N m
+  Eigen::VectorXd passive_rate;                            ///< of each different passive joint [rad/s]
+  Eigen::MatrixXd J_passive;                               ///< d rate / d qd, times the number of joints alike: joints x drives
 };
 
 /// Dispatches once on the type of the robot.

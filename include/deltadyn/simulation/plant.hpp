@@ -39,7 +39,7 @@ struct PlantCounts {
 class Plant {
  public:
   /// \param names, p   parameters as in a parameter file, e.g. Robot::parameter_names() and their values; shared limbs allowed
-  /// \param effects    of the catalogue; those that concern only the log are left to the sensors (log_effects.hpp)
+  /// \param effects    of the catalogue; those that concern only the log are left to the sensors (sensors.hpp)
   /// Throws deltadyn::Error for parameters that are not physically consistent and effects that the plant cannot have.
   Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
         const std::vector<Effect>& effects = {}, const PlantOptions& options = {});

@@ -34,11 +34,11 @@ class Encoders {
   std::normal_distribution<double> normal_;
 };
 
-/// True for `saturation`, `torque_constant_error`, `current_lag` and `time_skew`.
+/// True for effects on the recorded torque alone.
 [[nodiscard]] bool is_log_effect(EffectId id);
 
-/// The torque that is recorded of the torque that acted, in the order in which a drive spoils it: saturation, torque constant,
-/// lag, dead time, noise.
+/// The torque that is recorded of the torque that acted, in the order in which a drive spoils it (kStage of the effects),
+/// noise last.
 /// \param t_s    even times
 /// \param tau    samples x drives [N m | N]
 /// \param effects  those that are not log effects are passed over

@@ -1,0 +1,61 @@
+#pragma once
+
+/// \file
+/// From an effect's number to its type: one call that finds the type in the list and hands it to a function. No heap, no virtual calls.
+
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "deltadyn/effects/all.hpp"
+
+namespace deltadyn {
+
+/// Number of an effect in the list.
+enum class EffectId : int {};
+
+inline constexpr int kEffectCount = AllEffects::kCount;
+
+namespace detail {
+
+template <class Effect, class... Effects>
+constexpr int index_in(EffectList<Effects...>) {
+  int index = -1, k = 0;
+  ((index = std::is_same_v<Effect, Effects> ? k : index, ++k), ...);
+  return index;
+}
+
+template <class Function, class... Effects>
+constexpr void visit_in(EffectList<Effects...>, EffectId id, Function& function) {
+  int k = 0;
+  ((k++ == static_cast<int>(id) ? function(Effects()) : void()), ...);
+}
+
+}  // namespace detail
+
+template <class Effect>
+inline constexpr EffectId effect_id = EffectId{detail::index_in<Effect>(AllEffects())};
+
+/// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E = decltype(effect); ... }`.
+template <class Function>
+constexpr void visit_effect(EffectId id, Function function) {
+  detail::visit_in(AllEffects(), id, function);
+}
+
+[[nodiscard]] constexpr EffectTraits traits_of(EffectId id) {
+  EffectTraits traits;
+  visit_effect(id, [&traits](auto effect) { traits = decltype(effect)::traits(); });
+  return traits;
+}
+
+/// Has the effect a change() of the machine?
+template <class Effect, class Machine, class = void>
+struct HasChange : std::false_type {};
+template <class Effect, class Machine>
+struct HasChange<
+    Effect, Machine,
+    std::void_t<decltype(Effect::change(std::declval<Machine&>(), 0, std::declval<const std::array<double, kMostAmplitudes>&>(),
+                                        std::declval<const Shape<double>&>()))>> : std::true_type {};
+
+}  // namespace deltadyn

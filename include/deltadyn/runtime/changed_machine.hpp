@@ -1,0 +1,48 @@
+#pragma once
+
+/// \file
+/// A robot with the changes that effects make of a machine: the Machine of effects/kinds.hpp.
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deltadyn/core/rotation.hpp"
+#include "deltadyn/effects/kinds.hpp"
+#include "deltadyn/runtime/robot_description.hpp"
+
+namespace deltadyn {
+
+struct ChangedMachine {
+  RobotDescription description;
+  Eigen::VectorXd home_offset;                             ///< true drive coordinate minus the one that the encoder knows
+  std::vector<std::pair<std::string, double>> parameters;  ///< what is added to parameters, by name
+  std::vector<std::pair<int, SpringInDrive>> springs;      ///< by drive from 0
+
+  explicit ChangedMachine(const RobotDescription& robot)
+      : description(robot), home_offset(Eigen::VectorXd::Zero(robot.drives())) {}
+
+  void tilt(double x, double y) { description.gravity += skew(Vector3<double>(x, y, 0.0)) * description.gravity; }
+  void shift_home(int drive, double by) { home_offset(drive) += by; }
+  /// A carriage has no arm: its place along the axis is what a length would be.
+  void lengthen_arm(int limb, double by) {
+    LimbGeometry<double>& geometry = description.limbs.at(static_cast<std::size_t>(limb));
+    if (description.drive_kind == DriveKind::revolute) {
+      geometry.p_DE_0.x() += by;
+    } else {
+      geometry.p_DE_0 += by * geometry.axis_L;
+    }
+  }
+  void lengthen_strut(int limb, double by) { description.limbs.at(static_cast<std::size_t>(limb)).strut += by; }
+  void add_to_arm(int limb, double moment, double inertia) {
+    parameters.emplace_back(fmt::format("upper_arm{}.mcx", limb + 1), moment);
+    parameters.emplace_back(fmt::format("upper_arm{}.Iyy", limb + 1), inertia);
+  }
+  void add_rotor(int drive, double inertia) { parameters.emplace_back(fmt::format("drive{}.rotor_inertia", drive + 1), inertia); }
+  void add_to_plate(double mass) { parameters.emplace_back("platform.m", mass); }
+  void soften(int drive, const SpringInDrive& spring) { springs.emplace_back(drive, spring); }
+};
+
+}  // namespace deltadyn
