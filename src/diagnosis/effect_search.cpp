@@ -4,8 +4,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <numeric>
+
+#include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn {
 
@@ -77,17 +78,9 @@ EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>&
     return one.id == EffectId::presliding && one.joint < presliding.size() && presliding(one.joint) > 0;
   });
   rows_.resize(hypotheses_.size());
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    try {
-      for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(hypotheses_.size(), [&](std::size_t h) {
+    for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
+  });
   for (const LogRows& log : logs_) {
     known_rows_.emplace_back();
     for (std::size_t j = 0; j < log.usable.size(); ++j) known_rows_.back().push_back(MatrixXd(log.rows(), 0));
@@ -137,20 +130,19 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
   std::vector<char> held(hypotheses_.size(), 0);
   for (const AcceptedEffect& one : accepted) held[one.hypothesis] = 1;
   const VectorXd Q_r = out.problem->Q.transpose() * out.problem->r;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]);
+  in_parallel(hypotheses_.size(),
+              [&](std::size_t h) { out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]); });
   if (pilots != nullptr) {
     out.bias = pilots->bias(*out.problem, out.signatures);
     pilots->correct(*out.problem, out.signatures);
   }
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+  in_parallel(hypotheses_.size(), [&](std::size_t h) {
     out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
     const WhiteColumns& white = out.signatures[h].white;
-    if (held[h] || white.cols == 0) continue;
+    if (held[h] || white.cols == 0) return;
     VectorXd inner = white.inner(out.problem->r, Q_r, out.problem->segments, 0, white.cols);
     out.scores[h] = best_score(hypotheses_[h], out.signatures[h], freed_of_bias(inner, out.bias[h]));
-  }
+  });
   return out;
 }
 
@@ -169,17 +161,7 @@ void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>
     if (state.refined.count(h) == 0) missing.push_back(h);
   }
   std::vector<Fit> fits(missing.size());
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    try {
-      fits[k] = find_refined(state, missing[k]);
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(missing.size(), [&](std::size_t k) { fits[k] = find_refined(state, missing[k]); });
   for (std::size_t k = 0; k < missing.size(); ++k) state.refined.emplace(missing[k], std::move(fits[k]));
 }
 

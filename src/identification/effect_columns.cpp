@@ -31,6 +31,7 @@
 #include "deltadyn/effects/torque_constant_error.hpp"
 #include "deltadyn/effects/torque_ripple.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
 namespace deltadyn {
@@ -283,11 +284,10 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
   for (const int k : friction_) smooth(k) = 0;
   out.load_lag.assign(static_cast<std::size_t>(n), MatrixXd::Zero(N, n));
   out.inertia_lag = out.load_lag;
-#pragma omp parallel for schedule(static)
-  for (Index k = 0; k < N; ++k) {
+  in_parallel(N, [&](Index k) {
     VectorXd q = out.q.row(k), qd = out.qd.row(k), qdd = out.qdd.row(k), at(n), lagged(n);
     MatrixXd M(n, n);
-    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) continue;
+    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) return;
     for (Index j = 0; j < n; ++j) out.coupling.row(k).segment(n * j, n) = M.col(j).transpose();
     const auto along = [&](Index j, double step, double lag, double lag_d, double lag_dd, MatrixXd& to) {
       const double q_j = q(j), qd_j = qd(j), qdd_j = qdd(j);
@@ -305,7 +305,7 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
       along(j, load_step(j), out.load(k, j), load_d(k, j), out.load_dd(k, j), out.load_lag[drive]);
       along(j, inertia_step(j), J * out.qdd(k, j), J * jerk(k, j), J * out.snap(k, j), out.inertia_lag[drive]);
     }
-  }
+  });
 }
 
 void EffectModel::add_errors(const PreparedLog& log, const VectorXd& p, EffectSignals& out) const {
@@ -316,8 +316,7 @@ void EffectModel::add_errors(const PreparedLog& log, const VectorXd& p, EffectSi
   out.tilt_x.resize(N, n);
   out.tilt_y.resize(N, n);
   out.kinematic.assign(static_cast<std::size_t>(3 * limbs), MatrixXd(N, n));
-#pragma omp parallel for schedule(static)
-  for (Index k = 0; k < N; ++k) {
+  in_parallel(N, [&](Index k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
     VectorXd plus(n), minus(n), shifted = q;
     const auto torque = [&](const Robot& robot, const VectorXd& at, VectorXd& tau) {
@@ -345,7 +344,7 @@ void EffectModel::add_errors(const PreparedLog& log, const VectorXd& p, EffectSi
             kinematic_offset<Eigen::ArrayXd>(plus, minus, step).transpose();
       }
     }
-  }
+  });
 }
 
 std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId id, int joint, const VectorXd& shape,

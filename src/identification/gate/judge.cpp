@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "deltadyn/runtime/in_parallel.hpp"
+
 namespace deltadyn::gate {
 
 namespace {
@@ -122,10 +124,7 @@ class Judge {
     double least = std::numeric_limits<double>::infinity();
     for (const PositionFamily& family : families) {
       std::vector<double> residual(family.start.size());
-#pragma omp parallel for schedule(dynamic)
-      for (std::size_t k = 0; k < residual.size(); ++k) {
-        residual[k] = best_torques(family, start, family.start[k], few);
-      }
+      in_parallel(residual.size(), [&](std::size_t k) { residual[k] = best_torques(family, start, family.start[k], few); });
       std::vector<Start> own;
       for (std::size_t k = 0; k < residual.size(); ++k) {
         if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
@@ -382,9 +381,7 @@ class Judge {
            e.residual < kHeals * e.alone;
   }
 
-  static bool is_search(const std::string& key) {
-    return key == "position_scale" || key == "position_zero";
-  }
+  static bool is_search(const std::string& key) { return key == "position_scale" || key == "position_zero"; }
 
   const Robot& robot_;
   const BaseParameters& base_;
