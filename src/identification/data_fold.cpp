@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -72,7 +73,7 @@ double DriveFold::square_error(const Eigen::Ref<const Eigen::VectorXd>& p) const
 }
 
 double DriveFold::rms(const Eigen::Ref<const Eigen::VectorXd>& p) const {
-  return rows > 0 ? std::sqrt(square_error(p) / static_cast<double>(rows)) : 0.0;
+  return root_mean_square(square_error(p), static_cast<double>(rows));
 }
 
 void DataFold::add(const DataFold& other) {

@@ -7,6 +7,7 @@
 
 #include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -120,8 +121,7 @@ std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Lo
     covariance = scale.asDiagonal() * solver.pseudoInverse() * scale.asDiagonal();
     for (Index j = 0; j < n; ++j) {
       const auto drive = static_cast<std::size_t>(j);
-      const double rms =
-          std::sqrt((y[drive] - X[drive] * solution).squaredNorm() / std::max<double>(1.0, static_cast<double>(y[drive].size())));
+      const double rms = root_mean_square(y[drive] - X[drive] * solution);
       weight(j) = 1.0 / std::max(rms, 1e-9 * std::max(y[drive].cwiseAbs().maxCoeff(), 1e-9));
     }
   }

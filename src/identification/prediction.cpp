@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -13,15 +14,11 @@ Eigen::Array<bool, Eigen::Dynamic, 1> Prediction::usable(int drive, bool with_re
 }
 
 double Prediction::rms_residual(int drive, bool with_reversals) const {
-  const auto rows = usable(drive, with_reversals);
-  const auto count = static_cast<double>(rows.count());
-  return count > 0 ? std::sqrt(rows.select((tau.col(drive) - model.col(drive)).array(), 0.0).square().sum() / count) : 0.0;
+  return root_mean_square(tau.col(drive) - model.col(drive), usable(drive, with_reversals));
 }
 
 double Prediction::rms_torque(int drive, bool with_reversals) const {
-  const auto rows = usable(drive, with_reversals);
-  const auto count = static_cast<double>(rows.count());
-  return count > 0 ? std::sqrt(rows.select(tau.col(drive).array(), 0.0).square().sum() / count) : 0.0;
+  return root_mean_square(tau.col(drive), usable(drive, with_reversals));
 }
 
 Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::VectorXd& p, int threads) {

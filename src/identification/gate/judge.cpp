@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn::gate {
 
@@ -99,7 +100,7 @@ class Judge {
     out.factor.setOnes(n);
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
-    alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(n));
+    alone_ = root_mean_square(own_residuals(blocks));
     return out;
   }
 
@@ -159,7 +160,7 @@ class Judge {
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
     const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
-    reading_alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(blocks.size()));
+    reading_alone_ = root_mean_square(own_residuals(blocks));
     if (h.drives_moved) {
       add_signs_and_factors(h, reading, before, blocks, h.reading.source);
       return;
