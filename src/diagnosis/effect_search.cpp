@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn {
@@ -199,6 +200,7 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
     into.gain = score.gain;
     into.grid_gain = best.grid_gain;
   };
+  constexpr int kFirstSteps = 9, kLaterSteps = 5;
   const std::size_t parameters = hypothesis.kind().shapes.size();
   for (int sweep = 0; sweep < 2; ++sweep) {
     for (std::size_t parameter = 0; parameter < parameters && start.gain > 0; ++parameter) {
@@ -210,7 +212,6 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
       const auto from = [&](double x) { return reach.logarithmic ? sign * std::exp(x) : x; };
       double low = to(reach.low), high = to(reach.high);
       if (low > high) std::swap(low, high);
-      constexpr double kGolden = 0.381966;
       const auto gain_at = [&](double x) {
         VectorXd shape = best.effect.shape;
         shape(static_cast<Index>(parameter)) = from(x);
@@ -220,23 +221,7 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
         if (gain > best.gain) best = std::move(trial);
         return gain;
       };
-      double x1 = low + kGolden * (high - low), x2 = high - kGolden * (high - low);
-      double f1 = gain_at(x1), f2 = gain_at(x2);
-      for (int step = 0; step < (sweep == 0 ? 9 : 5); ++step) {
-        if (f1 > f2) {
-          high = x2;
-          x2 = x1;
-          f2 = f1;
-          x1 = low + kGolden * (high - low);
-          f1 = gain_at(x1);
-        } else {
-          low = x1;
-          x1 = x2;
-          f1 = f2;
-          x2 = high - kGolden * (high - low);
-          f2 = gain_at(x2);
-        }
-      }
+      (void)golden_section([&](double x) { return -gain_at(x); }, low, high, sweep == 0 ? kFirstSteps : kLaterSteps);
     }
   }
   best.white = state.problem->whiten(best.rows);
