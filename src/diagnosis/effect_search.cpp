@@ -4,8 +4,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <numeric>
+
+#include "deltadyn/runtime/golden_section.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn {
 
@@ -84,17 +86,9 @@ EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>&
     return one.kind().role == Role::bristle && one.joint < presliding.size() && presliding(one.joint) > 0;
   });
   rows_.resize(hypotheses_.size());
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    try {
-      for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(hypotheses_.size(), [&](std::size_t h) {
+    for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
+  });
   for (const LogRows& log : logs_) {
     known_rows_.emplace_back();
     for (std::size_t j = 0; j < log.usable.size(); ++j) known_rows_.back().push_back(MatrixXd(log.rows(), 0));
@@ -144,20 +138,19 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
   std::vector<char> held(hypotheses_.size(), 0);
   for (const AcceptedEffect& one : accepted) held[one.hypothesis] = 1;
   const VectorXd Q_r = out.problem->Q.transpose() * out.problem->r;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]);
+  in_parallel(hypotheses_.size(),
+              [&](std::size_t h) { out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]); });
   if (pilots != nullptr) {
     out.bias = pilots->bias(*out.problem, out.signatures);
     pilots->correct(*out.problem, out.signatures);
   }
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+  in_parallel(hypotheses_.size(), [&](std::size_t h) {
     out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
     const WhiteColumns& white = out.signatures[h].white;
-    if (held[h] || white.cols == 0) continue;
+    if (held[h] || white.cols == 0) return;
     VectorXd inner = white.inner(out.problem->r, Q_r, out.problem->segments, 0, white.cols);
     out.scores[h] = best_score(hypotheses_[h], out.signatures[h], freed_of_bias(inner, out.bias[h]));
-  }
+  });
   return out;
 }
 
@@ -176,17 +169,7 @@ void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>
     if (state.refined.count(h) == 0) missing.push_back(h);
   }
   std::vector<Fit> fits(missing.size());
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    try {
-      fits[k] = find_refined(state, missing[k]);
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(missing.size(), [&](std::size_t k) { fits[k] = find_refined(state, missing[k]); });
   for (std::size_t k = 0; k < missing.size(); ++k) state.refined.emplace(missing[k], std::move(fits[k]));
 }
 
@@ -224,6 +207,7 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
     into.gain = score.gain;
     into.grid_gain = best.grid_gain;
   };
+  constexpr int kFirstSteps = 9, kLaterSteps = 5;
   const std::size_t parameters = hypothesis.kind().shapes.size();
   for (int sweep = 0; sweep < 2; ++sweep) {
     for (std::size_t parameter = 0; parameter < parameters && start.gain > 0; ++parameter) {
@@ -235,7 +219,6 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
       const auto from = [&](double x) { return reach.logarithmic ? sign * std::exp(x) : x; };
       double low = to(reach.low), high = to(reach.high);
       if (low > high) std::swap(low, high);
-      constexpr double kGolden = 0.381966;
       const auto gain_at = [&](double x) {
         VectorXd shape = best.effect.shape;
         shape(static_cast<Index>(parameter)) = from(x);
@@ -245,23 +228,7 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
         if (gain > best.gain) best = std::move(trial);
         return gain;
       };
-      double x1 = low + kGolden * (high - low), x2 = high - kGolden * (high - low);
-      double f1 = gain_at(x1), f2 = gain_at(x2);
-      for (int step = 0; step < (sweep == 0 ? 9 : 5); ++step) {
-        if (f1 > f2) {
-          high = x2;
-          x2 = x1;
-          f2 = f1;
-          x1 = low + kGolden * (high - low);
-          f1 = gain_at(x1);
-        } else {
-          low = x1;
-          x1 = x2;
-          f1 = f2;
-          x2 = high - kGolden * (high - low);
-          f2 = gain_at(x2);
-        }
-      }
+      (void)golden_section([&](double x) { return -gain_at(x); }, low, high, sweep == 0 ? kFirstSteps : kLaterSteps);
     }
   }
   best.white = state.problem->whiten(best.rows);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn::detail {
 
 using Eigen::Index;
@@ -19,10 +21,6 @@ constexpr double kShows = 0.005;    // of the noise variance: less of an effect 
 constexpr double kAsksAgain = 0.4;  // of an effect's amplitude that the hold-out log must ask for
 
 }  // namespace
-
-double rms_of(const VectorXd& e, const RowMask& usable) {
-  return std::sqrt(usable.select(e.array(), 0.0).square().sum() / std::max<double>(1, static_cast<double>(usable.count())));
-}
 
 HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
                    const std::vector<Effect>& known) {
@@ -72,9 +70,10 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
                         extra[0][drive].leftCols(beta0.size() - b) * beta0.tail(beta0.size() - b);
     out.after.col(j) = corrected.col(j) - held.Y[drive] * beta1.head(b) - extra[0][drive] * beta1.tail(beta1.size() - b);
     const MatrixXd Y_cov = held.Y[drive] * covariance;
-    out.unsure(j) = rms_of(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(), held.usable[drive]);
-    out.rms_before(j) = rms_of(out.before.col(j), held.usable[drive]);
-    out.rms_after(j) = rms_of(out.after.col(j), held.usable[drive]);
+    out.unsure(j) =
+        root_mean_square(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(), held.usable[drive]);
+    out.rms_before(j) = root_mean_square(out.before.col(j), held.usable[drive]);
+    out.rms_after(j) = root_mean_square(out.after.col(j), held.usable[drive]);
     // The same log fitted by everything: a model from other logs cannot be expected to do better.
     out.floor(j) = std::min({floor[0][drive], out.rms_before(j), out.rms_after(j)});
   }

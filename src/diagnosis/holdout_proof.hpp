@@ -20,9 +20,6 @@ struct HoldoutProof {
   Eigen::VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
 };
 
-/// Root mean square over the usable rows.
-[[nodiscard]] double rms_of(const Eigen::VectorXd& e, const RowMask& usable);
-
 /// \param known  effects that the model held before
 [[nodiscard]] HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
                                  const std::vector<Effect>& known);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 #include "diagnosis_steps.hpp"
 #include "written_proof.hpp"
@@ -213,9 +214,9 @@ void take(Trial trial, bool identify, Diagnosis& out) {
       before += figure.rms_given * figure.rms_given;
       after += figure.rms_written * figure.rms_written;
     }
-    const auto count = static_cast<double>(std::max<std::size_t>(1, one.drives.size()));
-    one.rms_before = std::sqrt(before / count);
-    one.rms_after = std::sqrt(after / count);
+    const auto count = static_cast<double>(one.drives.size());
+    one.rms_before = root_mean_square(before, count);
+    one.rms_after = root_mean_square(after, count);
     one.rms_floor = std::min(one.rms_floor, one.rms_after);
   }
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
 #include "confusable_set.hpp"
@@ -259,7 +260,8 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
                              holdout->Y[drive] * structure.beta.head(context.base.count()) -
                              proof->effects[drive] * structure.beta.tail(structure.beta.size() - context.base.count());
       const VectorXd e = proof->after.col(j);
-      const double before = rms_of(e, holdout->usable[drive]), after = rms_of(e - there, holdout->usable[drive]);
+      const double before = root_mean_square(e, holdout->usable[drive]),
+                   after = root_mean_square(e - there, holdout->usable[drive]);
       repeated = 1 - after * after / std::max(before * before, 1e-300);
     }
     if (share > worst) {
@@ -353,10 +355,10 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
         floor += proof->floor(j) * proof->floor(j);
         if (std::count(touched.begin(), touched.end(), j) == 0) touched.push_back(j);
       }
-      const auto count = static_cast<double>(std::max<std::size_t>(1, one.drives.size()));
-      one.rms_before = std::sqrt(before / count);
-      one.rms_after = std::sqrt(after / count);
-      one.rms_floor = std::sqrt(floor / count);
+      const auto count = static_cast<double>(one.drives.size());
+      one.rms_before = root_mean_square(before, count);
+      one.rms_after = root_mean_square(after, count);
+      one.rms_floor = root_mean_square(floor, count);
     }
     if (!touched.empty()) {
       shrink_of(*proof, *holdout, touched, context.options.seed, out);

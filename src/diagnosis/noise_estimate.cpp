@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn {
 
 using Eigen::Index;
@@ -174,7 +176,7 @@ NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasi
     for (std::size_t l = 0; l < logs.size(); ++l) {
       for (std::size_t j = 0; j < n; ++j) {
         const auto tau = logs[l].tau.col(static_cast<Index>(j));
-        out.noise[l][j].std = std::max(1e-2 * std::sqrt(tau.squaredNorm() / static_cast<double>(tau.size())), 1e-9);
+        out.noise[l][j].std = std::max(1e-2 * root_mean_square(tau), 1e-9);
       }
     }
   }

@@ -4,12 +4,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
+#include <mutex>
 #include <numbers>
-#include <omp.h>
 #include <random>
 
+#include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
@@ -254,11 +254,10 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
     if (hypotheses[h].kind().effect_class != EffectClass::pose_force) sensitive_.push_back(h);
   }
   still_ = rows_of(own, sensitive_);
-  const int team = threads > 0 ? threads : omp_get_max_threads();
   const auto draws = [&](int count, std::uint64_t from) {
     std::vector<Run> runs(static_cast<std::size_t>(count));
-#pragma omp parallel for schedule(dynamic) num_threads(team)
-    for (int k = 0; k < count; ++k) runs[static_cast<std::size_t>(k)] = draw(from + static_cast<std::uint64_t>(k));
+    in_parallel(
+        count, [&](int k) { runs[static_cast<std::size_t>(k)] = draw(from + static_cast<std::uint64_t>(k)); }, threads);
     return runs;
   };
   // Which scores feel the change of their own columns, beside the torque noise of unit size?
@@ -324,8 +323,7 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
   std::vector<VectorXd> out(hypotheses_.size());
   const VectorXd y = clean(problem);
   std::vector<std::vector<VectorXd>> whole(runs_.size());
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t run = 0; run < runs_.size(); ++run) {
+  in_parallel(runs_.size(), [&](std::size_t run) {
     VectorXd r;
     const std::vector<VectorXd> inner = products(problem, runs_[run], y, r);
     const VectorXd Q_r = problem.Q.transpose() * r;
@@ -336,7 +334,7 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
       whole[run][k] = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
       if (inner[k].size() > 0) whole[run][k] += inner[k];
     }
-  }
+  });
   for (const auto& run : whole) {
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
       VectorXd& sum = out[sensitive_[k]];
@@ -349,11 +347,10 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
 }
 
 void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>& signatures) const {
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t k = 0; k < sensitive_.size(); ++k) {
+  in_parallel(sensitive_.size(), [&](std::size_t k) {
     const std::size_t h = sensitive_[k];
     Signature& signature = signatures[h];
-    if (signature.white.cols == 0) continue;
+    if (signature.white.cols == 0) return;
     const Index amplitudes = hypotheses_[h].amplitudes;
     std::vector<MatrixXd> noise(signature.gram.size(), MatrixXd::Zero(amplitudes, amplitudes));
     const std::size_t runs = std::min(kGramRuns, runs_.size());
@@ -370,7 +367,7 @@ void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>&
       // A column that is mostly encoder noise says nothing about the effect.
       if (share > kMostNoise) signature.kept[s] = 0;
     }
-  }
+  });
 }
 
 VectorXd freed_of_bias(const VectorXd& inner, const VectorXd& bias) {
@@ -432,49 +429,42 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
   MatrixXd scores = MatrixXd::Zero(options.runs, static_cast<Index>(hypotheses.size()));
   MatrixXd generic = MatrixXd::Zero(options.runs, drives);
   int done = 0;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(options.threads > 0 ? options.threads : omp_get_max_threads())
-  for (int k = 0; k < options.runs; ++k) {
-    try {
-      const std::uint64_t seed = options.seed * 104729U + 15485863U * static_cast<std::uint64_t>(k + 1);
-      std::mt19937_64 random(seed);
-      std::normal_distribution<double> normal;
-      VectorXd y = clean;
-      for (std::size_t s = 0; s < problem.segments.size(); ++s) {
-        const Index rows = problem.segments[s].rows();
-        VectorXd white(rows + taps[s].size() - 1);
-        for (double& w : white) w = normal(random);
-        VectorXd noise(rows);
-        for (Index row = 0; row < rows; ++row) noise(row) = taps[s].dot(white.segment(row, taps[s].size()));
-        y.segment(problem.segments[s].offset, rows) += problem.segments[s].whitener.known_part(noise);
-      }
-      VectorXd r;
-      const std::vector<VectorXd> sensitive = pilots.products(problem, pilots.draw(seed + 1), y, r);
-      const VectorXd Q_r = problem.Q.transpose() * r;
-      std::vector<VectorXd> inner(hypotheses.size());
-
-      std::vector<const VectorXd*> changed(hypotheses.size(), nullptr);
-      for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
-      for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-        if (signatures[h].white.cols == 0) continue;
-        inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
-        if (changed[h] != nullptr) {
-          // The column itself, not only its part beside the base model, moves with the regressor.
-          inner[h] += signatures[h].white.base.transpose() * Q_r;
-          if (changed[h]->size() > 0) inner[h] += *changed[h];
-        }
-        inner[h] = freed_of_bias(inner[h], bias[h]);
-        scores(k, static_cast<Index>(h)) = best_score(hypotheses[h], signatures[h], inner[h]).gain;
-      }
-      generic.row(k) = omnibus.gains(problem, r).transpose();
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
+  std::mutex counting;
+  const auto run = [&](int k) {
+    const std::uint64_t seed = options.seed * 104729U + 15485863U * static_cast<std::uint64_t>(k + 1);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    VectorXd y = clean;
+    for (std::size_t s = 0; s < problem.segments.size(); ++s) {
+      const Index rows = problem.segments[s].rows();
+      VectorXd white(rows + taps[s].size() - 1);
+      for (double& w : white) w = normal(random);
+      VectorXd noise(rows);
+      for (Index row = 0; row < rows; ++row) noise(row) = taps[s].dot(white.segment(row, taps[s].size()));
+      y.segment(problem.segments[s].offset, rows) += problem.segments[s].whitener.known_part(noise);
     }
-#pragma omp critical
+    VectorXd r;
+    const std::vector<VectorXd> sensitive = pilots.products(problem, pilots.draw(seed + 1), y, r);
+    const VectorXd Q_r = problem.Q.transpose() * r;
+    std::vector<VectorXd> inner(hypotheses.size());
+    std::vector<const VectorXd*> changed(hypotheses.size(), nullptr);
+    for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
+    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+      if (signatures[h].white.cols == 0) continue;
+      inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
+      if (changed[h] != nullptr) {
+        // The column itself, not only its part beside the base model, moves with the regressor.
+        inner[h] += signatures[h].white.base.transpose() * Q_r;
+        if (changed[h]->size() > 0) inner[h] += *changed[h];
+      }
+      inner[h] = freed_of_bias(inner[h], bias[h]);
+      scores(k, static_cast<Index>(h)) = best_score(hypotheses[h], signatures[h], inner[h]).gain;
+    }
+    generic.row(k) = omnibus.gains(problem, r).transpose();
+    const std::lock_guard<std::mutex> lock(counting);
     if (options.progress) options.progress(static_cast<double>(++done) / options.runs);
-  }
-  if (failure) std::rethrow_exception(failure);
+  };
+  in_parallel(options.runs, run, options.threads);
 
   const auto column = [](const MatrixXd& m, Index c) { return std::vector<double>(m.col(c).begin(), m.col(c).end()); };
   for (Index h = 0; h < scores.cols(); ++h) out.hypothesis.emplace_back(column(scores, h));

@@ -9,6 +9,7 @@
 #include "deltadyn/diagnosis/whitener.hpp"
 #include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn::detail {
 
@@ -197,7 +198,7 @@ KnownRows fewest_rows(const std::vector<LogRows>& logs) {
     for (const LogRows& log : logs) {
       const auto tau = log.tau.col(static_cast<Index>(j));
       NoiseModel noise;
-      noise.std = std::max(kUsualNoise * std::sqrt(tau.squaredNorm() / static_cast<double>(tau.size())), 1e-12);
+      noise.std = std::max(kUsualNoise * root_mean_square(tau), 1e-12);
       known += static_cast<double>(Whitener(noise, log.present[j], log.unknown[j]).freedom());
       all += static_cast<double>(log.rows());
     }

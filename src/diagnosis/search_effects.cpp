@@ -2,6 +2,8 @@
 #include <cmath>
 #include <memory>
 
+#include "deltadyn/runtime/in_parallel.hpp"
+
 #include "confusable_set.hpp"
 #include "form_error.hpp"
 #include "ranking.hpp"
@@ -50,13 +52,12 @@ std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots
   // All start from the same noise and take one pass, the model without a further effect, too.
   const double reference = search.noise_beside(provisional, &estimate.noise).log_likelihood;
   std::vector<double> gain(candidates.size(), 0.0);
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
+  in_parallel(candidates.size(), [&](std::size_t k) {
     std::vector<AcceptedEffect> with = provisional;
     with.push_back(search.accept(candidates[k]));
     gain[k] = 2 * (search.noise_beside(with, &estimate.noise).log_likelihood - reference) -
               search.hypotheses()[candidates[k].hypothesis].freedom() * std::log(rows);
-  }
+  });
   std::optional<Fit> best;
   double most = kProvisional;
   for (std::size_t k = 0; k < candidates.size(); ++k) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn {
 
 using Eigen::Index;
@@ -51,7 +53,7 @@ std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Index drive, R
   const auto marked = log.reversal.col(drive);
   const Index samples = marked.size();
   const Index reach = log.low_pass ? log.low_pass->half_width() : 0;
-  const double size = std::sqrt(log.tau.col(drive).squaredNorm() / static_cast<double>(std::max<Index>(1, log.tau.rows())));
+  const double size = root_mean_square(log.tau.col(drive));
   const auto early_or_late = static_cast<Index>(std::lround(kEarlyOrLate_s * log.rate_hz));
   const auto add = [&](Index first, Index end) {
     UnknownTorque one = through_low_pass(log, first, end, size);

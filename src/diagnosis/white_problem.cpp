@@ -1,10 +1,10 @@
 #include "deltadyn/diagnosis/white_problem.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 
 namespace deltadyn {
 
@@ -17,12 +17,6 @@ namespace {
 constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding
 constexpr double kAbsorbed = 1e-5;  // of a signature's square: below, nothing of it is left beside the base model
 constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gram matrix: what its rounding can hold
-
-VectorXd pseudo_solve(const MatrixXd& A, const VectorXd& b) {
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(kSingular);
-  return decomposition.compute(A).solve(b);
-}
 
 }  // namespace
 
@@ -130,43 +124,8 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
 }
 
 Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
-  const Index k = inner.size();
-  std::vector<Index> free;
-  for (Index i = 0; i < k; ++i) {
-    if (gram(i, i) > 0) free.push_back(i);
-  }
-  Gain best;
-  best.amplitude = VectorXd::Zero(k);
-  while (!free.empty()) {
-    const auto m = static_cast<Index>(free.size());
-    MatrixXd G(m, m);
-    VectorXd u(m);
-    for (Index a = 0; a < m; ++a) {
-      u(a) = inner(free[static_cast<std::size_t>(a)]);
-      for (Index c = 0; c < m; ++c) G(a, c) = gram(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(c)]);
-    }
-    const VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
-    const VectorXd a = scale.asDiagonal() * pseudo_solve(scaled, scale.asDiagonal() * u);
-    // Columns whose amplitude has the wrong sign leave, the worst first.
-    Index worst = -1;
-    double least = 0;
-    for (Index i = 0; i < m; ++i) {
-      const double size = a(i) / scale(i);
-      if (positive[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])] && size < least) {
-        least = size;
-        worst = i;
-      }
-    }
-    if (worst >= 0) {
-      free.erase(free.begin() + worst);
-      continue;
-    }
-    for (Index i = 0; i < m; ++i) best.amplitude(free[static_cast<std::size_t>(i)]) = a(i);
-    best.gain = std::max(0.0, u.dot(a));
-    break;
-  }
-  return best;
+  const NonNegativeSolution best = non_negative_least_squares(gram, inner, positive, kSingular);
+  return {best.gain, best.x};
 }
 
 Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis, const PerLogAndDrive<MatrixXd>& rows) {

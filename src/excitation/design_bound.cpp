@@ -8,6 +8,7 @@
 
 #include "deltadyn/excitation/criterion.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn {
 namespace {
@@ -27,12 +28,12 @@ VectorXd sensitivities(const std::vector<MatrixXd>& blocks, const std::vector<In
                 ExitCode::no_convergence);
   const auto count = static_cast<Index>(which.size());
   VectorXd d(count);
-  // Small sets are faster on one thread than the threads are to meet.
-#pragma omp parallel for schedule(static) if (count > 2000)
-  for (Index k = 0; k < count; ++k) {
+  const auto pass = [&](Index k) {
     const MatrixXd half = llt.matrixL().solve(blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])].transpose());
     d(k) = half.squaredNorm();
-  }
+  };
+  // Small sets are faster on one thread than the threads are to meet.
+  in_parallel(count, pass, count > 2000 ? 0 : 1);
   return d;
 }
 

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <exception>
 #include <fmt/format.h>
 #include <limits>
+#include <mutex>
 #include <numeric>
-#include <omp.h>
 #include <optional>
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
 #include "design_problem.hpp"
@@ -283,22 +283,6 @@ class SegmentSearch {
   double share_;
 };
 
-/// Runs work(k) for k = 0 .. count-1 on all threads; the first exception is passed on.
-template <class Work>
-void in_parallel(int count, Work work) {
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int k = 0; k < count; ++k) {
-    try {
-      work(k);
-    } catch (...) {
-#pragma omp critical(deltadyn_excitation_failure)
-      if (!failure) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-}
-
 /// Best first; ties by number, so that the order does not depend on the threads.
 std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& candidates) {
   std::vector<std::size_t> order;
@@ -389,19 +373,18 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
   std::vector<std::optional<Candidate>> found(static_cast<std::size_t>(starts + kPolished) + 1);
   if (incumbent) found.back() = Candidate{*incumbent, search.value(*incumbent)};
+  std::mutex counting;
   const auto count = [&](long evaluations, double deadline_s) {
-#pragma omp critical(deltadyn_excitation_count)
-    {
-      run.evaluations += evaluations;
-      ++run.done;
-      run.cut += clock.over(deadline_s) ? 1 : 0;
-      if (options.progress)
-        options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
-    }
+    const std::lock_guard<std::mutex> lock(counting);
+    run.evaluations += evaluations;
+    ++run.done;
+    run.cut += clock.over(deadline_s) ? 1 : 0;
+    if (options.progress)
+      options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
   };
   const auto no_time = [&](double deadline_s) {
     if (!clock.over(deadline_s)) return false;
-#pragma omp critical(deltadyn_excitation_count)
+    const std::lock_guard<std::mutex> lock(counting);
     ++run.left_out;
     return true;
   };

@@ -3,8 +3,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <omp.h>
+
+#include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -72,7 +73,7 @@ double DriveFold::square_error(const Eigen::Ref<const Eigen::VectorXd>& p) const
 }
 
 double DriveFold::rms(const Eigen::Ref<const Eigen::VectorXd>& p) const {
-  return rows > 0 ? std::sqrt(square_error(p) / static_cast<double>(rows)) : 0.0;
+  return root_mean_square(square_error(p), static_cast<double>(rows));
 }
 
 void DataFold::add(const DataFold& other) {
@@ -95,29 +96,21 @@ DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const
   fold.regular.assign(drives, DriveFold(robot.parameters()));
   fold.reversal.assign(drives, DriveFold(robot.parameters()));
   const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
-  std::exception_ptr failure;  // an exception must not leave an OpenMP region
-#pragma omp parallel for ordered schedule(static, 1) num_threads(threads > 0 ? threads : omp_get_max_threads())
-  for (Eigen::Index k = 0; k < blocks; ++k) {
+  const auto part_of = [&](Eigen::Index k) {
+    RowBlock block;
+    read_rows(robot, log, k * kRowsPerBlock, std::min(kRowsPerBlock, log.rows - k * kRowsPerBlock), block);
     DataFold part;
-    try {
-      RowBlock block;
-      read_rows(robot, log, k * kRowsPerBlock, std::min(kRowsPerBlock, log.rows - k * kRowsPerBlock), block);
-      part.regular.assign(drives, DriveFold(robot.parameters()));
-      part.reversal.assign(drives, DriveFold(robot.parameters()));
-      for (int j = 0; j < n; ++j) {
-        add_rows(block, j, RowUse::regular, p, weight, part.regular[static_cast<std::size_t>(j)]);
-        add_rows(block, j, RowUse::reversal, p, weight, part.reversal[static_cast<std::size_t>(j)]);
-      }
-      part.unusable_rows = (block.use == RowUse::unusable).count();
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
+    part.regular.assign(drives, DriveFold(robot.parameters()));
+    part.reversal.assign(drives, DriveFold(robot.parameters()));
+    for (int j = 0; j < n; ++j) {
+      add_rows(block, j, RowUse::regular, p, weight, part.regular[static_cast<std::size_t>(j)]);
+      add_rows(block, j, RowUse::reversal, p, weight, part.reversal[static_cast<std::size_t>(j)]);
     }
-    // Always the same order of additions, hence the same result with any number of threads.
-#pragma omp ordered
-    if (!failure && !part.regular.empty()) fold.add(part);
-  }
-  if (failure) std::rethrow_exception(failure);
+    part.unusable_rows = (block.use == RowUse::unusable).count();
+    return part;
+  };
+  in_parallel_in_order(
+      blocks, part_of, [&](Eigen::Index, const DataFold& part) { fold.add(part); }, threads);
   fold.samples = log.t_s.size();
   return fold;
 }

@@ -8,6 +8,7 @@
 #include "deltadyn/effects/side_load.hpp"
 #include "deltadyn/runtime/changed_machine.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
 namespace deltadyn {
@@ -305,11 +306,10 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
   for (const int k : friction_) smooth(k) = 0;
   out.load_lag.assign(static_cast<std::size_t>(n), MatrixXd::Zero(N, n));
   out.inertia_lag = out.load_lag;
-#pragma omp parallel for schedule(static)
-  for (Index k = 0; k < N; ++k) {
+  in_parallel(N, [&](Index k) {
     VectorXd q = out.q.row(k), qd = out.qd.row(k), qdd = out.qdd.row(k), at(n), lagged(n);
     MatrixXd M(n, n);
-    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) continue;
+    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) return;
     for (Index j = 0; j < n; ++j) out.coupling.row(k).segment(n * j, n) = M.col(j).transpose();
     const auto along = [&](Index j, double step, double lag, double lag_d, double lag_dd, MatrixXd& to) {
       const double q_j = q(j), qd_j = qd(j), qdd_j = qdd(j);
@@ -327,15 +327,14 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
       along(j, load_step(j), out.load(k, j), load_d(k, j), out.load_dd(k, j), out.load_lag[drive]);
       along(j, inertia_step(j), J * out.qdd(k, j), J * jerk(k, j), J * out.snap(k, j), out.inertia_lag[drive]);
     }
-  }
+  });
 }
 
 void EffectModel::add_differences(const PreparedLog& log, const VectorXd& p, EffectSignals& out) const {
   const Index N = log.t_s.size();
   const Index n = robot_.drives();
   out.changed.assign(differences_.size(), MatrixXd(N, n));
-#pragma omp parallel for schedule(static)
-  for (Index k = 0; k < N; ++k) {
+  in_parallel(N, [&](Index k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
     VectorXd plus(n), minus(n);
     const auto torque = [&](const MachineDifference::Side& side, VectorXd& tau) {
@@ -347,7 +346,7 @@ void EffectModel::add_differences(const PreparedLog& log, const VectorXd& p, Eff
       torque(differences_[d].minus, minus);
       out.changed[d].row(k) = (plus - minus).transpose() / (2 * differences_[d].step);
     }
-  }
+  });
 }
 
 std::vector<EffectColumn> EffectModel::columns_of_changes(const EffectSignals& s, EffectId id, int joint,

@@ -1,12 +1,14 @@
 #include "deltadyn/identification/effect_torque.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "deltadyn/identification/model_band.hpp"
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -16,10 +18,84 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kRounding = std::numeric_limits<double>::epsilon();  // of a direction of the columns, for each of them
+
 /// The motion of a log at every sample, not averaged over periods: effects with a memory need the motion as it was.
 PreparedLog motion_of(const Robot& robot, const Log& log, ProcessingOptions options) {
   options.periods = Periods::ignore;
   return prepare_log(robot, log, options);
+}
+
+/// Rows of base parameters and amplitudes, drive by drive.
+struct AmplitudeRows {
+  std::vector<MatrixXd> X;     ///< for each drive rows x (base + amplitudes)
+  std::vector<VectorXd> y;     ///< for each drive the torque without what is fixed
+  VectorXd fixed;              ///< for each amplitude: 1 stays as it is
+  std::vector<bool> positive;  ///< for each column
+};
+
+AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const VectorXd& p,
+                             const std::vector<Effect>& effects, const Identification& used) {
+  const EffectModel model(robot);
+  const Index b = base.count(), e = amplitude_count(effects), n = robot.drives();
+  AmplitudeRows out;
+  out.X.resize(static_cast<std::size_t>(n));
+  out.y.resize(static_cast<std::size_t>(n));
+  out.fixed.resize(e);
+  out.positive.assign(static_cast<std::size_t>(b), false);
+  Index at = 0;
+  for (const Effect& effect : effects) {
+    for (const AmplitudeTraits& amplitude : effect_kind(effect.id).amplitudes) {
+      out.fixed(at++) = effect_kind(effect.id).tied ? 1 : 0;
+      out.positive.push_back(amplitude.positive());
+    }
+  }
+  const VectorXd start = amplitudes_of(effects);
+  int number = 0;
+  for (const Log& log : logs) {
+    const PreparedLog prepared = motion_of(robot, log, used.processing);
+    RowBlock block;
+    read_rows(robot, prepared, 0, prepared.rows, block);
+    const std::vector<MatrixXd> extra = effect_rows(model, prepared, p, effects, ++number);
+    for (Index j = 0; j < n; ++j) {
+      const auto drive = static_cast<std::size_t>(j);
+      MatrixXd& X = out.X[drive];
+      VectorXd& y = out.y[drive];
+      const auto counts = [&](Index k) {
+        return block.use(k, j) == RowUse::regular || (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
+      };
+      Index count = 0;
+      for (Index k = 0; k < prepared.rows; ++k) count += counts(k) ? 1 : 0;
+      Index row = X.rows();
+      X.conservativeResize(row + count, b + e);
+      y.conservativeResize(row + count);
+      for (Index k = 0; k < prepared.rows; ++k) {
+        if (!counts(k)) continue;
+        for (Index c = 0; c < b; ++c) X(row, c) = block.Y[drive](k, base.independent[static_cast<std::size_t>(c)]);
+        X.row(row).tail(e) = extra[drive].row(k).cwiseProduct((1 - out.fixed.array()).matrix().transpose());
+        y(row) = block.tau(k, j) - extra[drive].row(k).dot(out.fixed.cwiseProduct(start));
+        ++row;
+      }
+    }
+  }
+  return out;
+}
+
+/// Variances of the solution over some columns of a Gram matrix of weighted rows; 0 elsewhere.
+VectorXd variances_over(const MatrixXd& information, const std::vector<bool>& columns) {
+  const VectorXd taken =
+      VectorXd::NullaryExpr(information.rows(), [&](Index c) { return columns[static_cast<std::size_t>(c)] ? 1.0 : 0.0; });
+  const VectorXd scale = taken.cwiseProduct(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse());
+  const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(scaled).pseudoInverse();
+  return (scale.asDiagonal() * inverse * scale.asDiagonal()).diagonal().cwiseMax(0.0);
+}
+
+/// Variance of each column. A column at its bound has that of the fit without bounds.
+VectorXd variances(const MatrixXd& information, const std::vector<bool>& free) {
+  const VectorXd all = variances_over(information, std::vector<bool>(free.size(), true)),
+                 inside = variances_over(information, free);
+  return VectorXd::NullaryExpr(all.size(), [&](Index c) { return free[static_cast<std::size_t>(c)] ? inside(c) : all(c); });
 }
 
 }  // namespace
@@ -59,74 +135,34 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
 
 std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Log>& logs, const VectorXd& p,
                                         const std::vector<Effect>& effects, const Identification& used) {
-  const EffectModel model(robot);
   const BaseParameters base = find_base_parameters(robot);
-  const Index b = base.count(), e = amplitude_count(effects), n = robot.drives();
-  VectorXd fixed = VectorXd::Zero(e);  // 1: stays as it is
-  Index at = 0;
-  for (const Effect& effect : effects) {
-    const auto count = static_cast<Index>(effect_kind(effect.id).amplitudes.size());
-    if (effect_kind(effect.id).tied) fixed.segment(at, count).setOnes();
-    at += count;
-  }
-  const VectorXd start = amplitudes_of(effects);
-  std::vector<MatrixXd> X(static_cast<std::size_t>(n));
-  std::vector<VectorXd> y(static_cast<std::size_t>(n));
-  int number = 0;
-  for (const Log& log : logs) {
-    const PreparedLog prepared = motion_of(robot, log, used.processing);
-    RowBlock block;
-    read_rows(robot, prepared, 0, prepared.rows, block);
-    const std::vector<MatrixXd> extra = effect_rows(model, prepared, p, effects, ++number);
-    for (Index j = 0; j < n; ++j) {
-      const auto drive = static_cast<std::size_t>(j);
-      const auto counts = [&](Index k) {
-        return block.use(k, j) == RowUse::regular || (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
-      };
-      Index count = 0;
-      for (Index k = 0; k < prepared.rows; ++k) count += counts(k) ? 1 : 0;
-      const Index first = X[drive].rows();
-      X[drive].conservativeResize(first + count, b + e);
-      y[drive].conservativeResize(first + count);
-      Index row = first;
-      for (Index k = 0; k < prepared.rows; ++k) {
-        if (!counts(k)) continue;
-        for (Index c = 0; c < b; ++c) X[drive](row, c) = block.Y[drive](k, base.independent[static_cast<std::size_t>(c)]);
-        X[drive].row(row).tail(e) = extra[drive].row(k).cwiseProduct((1 - fixed.array()).matrix().transpose());
-        y[drive](row) = block.tau(k, j) - extra[drive].row(k).dot(fixed.cwiseProduct(start));
-        ++row;
-      }
-    }
-  }
-  VectorXd weight = VectorXd::Ones(n), solution = VectorXd::Zero(b + e);
-  MatrixXd covariance = MatrixXd::Zero(b + e, b + e);
+  const AmplitudeRows rows = amplitude_rows(robot, base, logs, p, effects, used);
+  const Index columns = base.count() + amplitude_count(effects), e = amplitude_count(effects);
+  VectorXd weight = VectorXd::Ones(robot.drives());
+  NonNegativeSolution fit;
+  MatrixXd information;
   for (int pass = 0; pass < 4; ++pass) {
-    MatrixXd information = MatrixXd::Zero(b + e, b + e);
-    VectorXd right = VectorXd::Zero(b + e);
-    for (Index j = 0; j < n; ++j) {
-      const auto drive = static_cast<std::size_t>(j);
-      information += weight(j) * weight(j) * X[drive].transpose() * X[drive];
-      right += weight(j) * weight(j) * X[drive].transpose() * y[drive];
+    information = MatrixXd::Zero(columns, columns);
+    VectorXd right = VectorXd::Zero(columns);
+    for (std::size_t drive = 0; drive < rows.X.size(); ++drive) {
+      const double w = weight(static_cast<Index>(drive));
+      information += w * w * rows.X[drive].transpose() * rows.X[drive];
+      right += w * w * rows.X[drive].transpose() * rows.y[drive];
     }
-    const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(scaled);
-    solution = scale.asDiagonal() * solver.solve(VectorXd(scale.asDiagonal() * right));
-    covariance = scale.asDiagonal() * solver.pseudoInverse() * scale.asDiagonal();
-    for (Index j = 0; j < n; ++j) {
-      const auto drive = static_cast<std::size_t>(j);
-      const double rms =
-          std::sqrt((y[drive] - X[drive] * solution).squaredNorm() / std::max<double>(1.0, static_cast<double>(y[drive].size())));
-      weight(j) = 1.0 / std::max(rms, 1e-9 * std::max(y[drive].cwiseAbs().maxCoeff(), 1e-9));
+    fit = non_negative_least_squares(information, right, rows.positive, kRounding * static_cast<double>(columns));
+    for (std::size_t drive = 0; drive < rows.X.size(); ++drive) {
+      const VectorXd& y = rows.y[drive];
+      const double rms = root_mean_square(y - rows.X[drive] * fit.x);
+      weight(static_cast<Index>(drive)) = 1.0 / std::max(rms, 1e-9 * std::max(y.cwiseAbs().maxCoeff(), 1e-9));
     }
   }
   std::vector<Effect> out = effects;
-  VectorXd amplitude = solution.tail(e), std = covariance.diagonal().tail(e).cwiseMax(0.0).cwiseSqrt();
-  at = 0;
+  VectorXd amplitude = fit.x.tail(e), std = variances(information, fit.free).tail(e).cwiseSqrt();
+  Index at = 0;
   for (const Effect& effect : effects) {
     const auto count = static_cast<Index>(effect_kind(effect.id).amplitudes.size());
     for (Index c = 0; c < count; ++c) {
-      if (fixed(at + c) == 0) continue;
+      if (rows.fixed(at + c) == 0) continue;
       amplitude(at + c) = effect.amplitude(c);
       std(at + c) = effect.amplitude_std.size() == count ? effect.amplitude_std(c) : 0.0;
     }

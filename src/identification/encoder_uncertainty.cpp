@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/requantise.hpp"
@@ -27,7 +28,7 @@ constexpr double kFewSteps = 3;  // the same: their error lies about the turning
 bool coarse(const Log& log, const VectorXd& step, double steps) {
   for (Index j = 0; j < log.drives(); ++j) {
     const VectorXd moved = log.q.col(j).tail(log.samples() - 1) - log.q.col(j).head(log.samples() - 1);
-    const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
+    const double usual = root_mean_square(moved);
     if (step(j) > 0 && usual > 0 && usual < steps * step(j)) return true;
   }
   return false;

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/log_part.hpp"
 
 namespace deltadyn {
@@ -54,8 +55,7 @@ std::vector<Products> products_of(const Robot& robot, const BaseParameters& base
   const Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
   const std::vector<Products> none(keep.size(), Products(base.count()));
   std::vector<std::vector<Products>> parts(static_cast<std::size_t>(blocks), none);
-#pragma omp parallel for schedule(static, 1)
-  for (Index b = 0; b < blocks; ++b) {
+  in_parallel(blocks, [&](Index b) {
     const Index first = b * kRowsPerBlock, count = std::min(kRowsPerBlock, log.rows - first);
     RowBlock wide, instruments;
     read_rows(robot, log, first, count, wide);
@@ -76,7 +76,7 @@ std::vector<Products> products_of(const Robot& robot, const BaseParameters& base
       part.Yt_tau = Y.transpose() * tau;
       part.Zt_tau = Z.transpose() * tau;
     }
-  }
+  });
   std::vector<Products> sum = none;
   for (const std::vector<Products>& part : parts) {
     for (std::size_t j = 0; j < sum.size(); ++j) sum[j].add(part[j]);

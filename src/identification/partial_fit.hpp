@@ -57,28 +57,4 @@ class PartialFit {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
 };
 
-/// Where a function is least between low and high, both above 0, by golden section in the logarithm.
-/// \param ratio  of the interval's ends at which it stops
-template <class Function>
-double least_in_logarithm(const Function& f, double low, double high, double ratio = 1.01) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1);
-  double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden), f_a = f(a), f_b = f(b);
-  while (high > ratio * low) {
-    if (f_a < f_b) {
-      high = b;
-      b = a;
-      f_b = f_a;
-      a = high * std::pow(low / high, golden);
-      f_a = f(a);
-    } else {
-      low = a;
-      a = b;
-      f_a = f_b;
-      b = low * std::pow(high / low, golden);
-      f_b = f(b);
-    }
-  }
-  return std::sqrt(low * high);
-}
-
 }  // namespace deltadyn

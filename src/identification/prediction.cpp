@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <omp.h>
+
+#include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
 
@@ -13,15 +14,11 @@ Eigen::Array<bool, Eigen::Dynamic, 1> Prediction::usable(int drive, bool with_re
 }
 
 double Prediction::rms_residual(int drive, bool with_reversals) const {
-  const auto rows = usable(drive, with_reversals);
-  const auto count = static_cast<double>(rows.count());
-  return count > 0 ? std::sqrt(rows.select((tau.col(drive) - model.col(drive)).array(), 0.0).square().sum() / count) : 0.0;
+  return root_mean_square(tau.col(drive) - model.col(drive), usable(drive, with_reversals));
 }
 
 double Prediction::rms_torque(int drive, bool with_reversals) const {
-  const auto rows = usable(drive, with_reversals);
-  const auto count = static_cast<double>(rows.count());
-  return count > 0 ? std::sqrt(rows.select(tau.col(drive).array(), 0.0).square().sum() / count) : 0.0;
+  return root_mean_square(tau.col(drive), usable(drive, with_reversals));
 }
 
 Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::VectorXd& p, int threads) {
@@ -32,34 +29,27 @@ Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::Vect
   for (Eigen::MatrixXd* m : {&out.tau, &out.model, &out.q, &out.qd, &out.qdd}) m->resize(log.rows, n);
   out.use.resize(log.rows, n);
   const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(threads > 0 ? threads : omp_get_max_threads())
-  for (Eigen::Index k = 0; k < blocks; ++k) {
-    try {
-      RowBlock block;
-      const Eigen::Index first = k * kRowsPerBlock;
-      const Eigen::Index count = std::min(kRowsPerBlock, log.rows - first);
-      read_rows(robot, log, first, count, block);
-      out.tau.middleRows(first, count) = block.tau;
-      out.use.middleRows(first, count) = block.use;
-      for (int j = 0; j < n; ++j) out.model.col(j).segment(first, count) = block.Y[static_cast<std::size_t>(j)] * p;
-      if (block.ripple.size() > 0) {
-        out.tau.middleRows(first, count) += block.ripple;
-        out.model.middleRows(first, count) += block.ripple;
-      }
-      for (Eigen::Index row = first; row < first + count; ++row) {
-        const Eigen::Index sample = sample_of_row(log, row);
-        out.t_s(row) = log.t_s(sample);
-        out.q.row(row) = log.q.row(sample);
-        out.qd.row(row) = log.qd.row(sample);
-        out.qdd.row(row) = log.qdd.row(sample);
-      }
-    } catch (...) {
-#pragma omp critical
-      failure = std::current_exception();
+  const auto predict_block = [&](Eigen::Index k) {
+    RowBlock block;
+    const Eigen::Index first = k * kRowsPerBlock;
+    const Eigen::Index count = std::min(kRowsPerBlock, log.rows - first);
+    read_rows(robot, log, first, count, block);
+    out.tau.middleRows(first, count) = block.tau;
+    out.use.middleRows(first, count) = block.use;
+    for (int j = 0; j < n; ++j) out.model.col(j).segment(first, count) = block.Y[static_cast<std::size_t>(j)] * p;
+    if (block.ripple.size() > 0) {
+      out.tau.middleRows(first, count) += block.ripple;
+      out.model.middleRows(first, count) += block.ripple;
     }
-  }
-  if (failure) std::rethrow_exception(failure);
+    for (Eigen::Index row = first; row < first + count; ++row) {
+      const Eigen::Index sample = sample_of_row(log, row);
+      out.t_s(row) = log.t_s(sample);
+      out.q.row(row) = log.q.row(sample);
+      out.qd.row(row) = log.qd.row(sample);
+      out.qdd.row(row) = log.qdd.row(sample);
+    }
+  };
+  in_parallel(blocks, predict_block, threads);
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/requantise.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
@@ -209,8 +210,8 @@ class Search {
     const auto at = std::min_element(costs.begin(), costs.end()) - costs.begin();
     const double without = cost(0);
     if (at == 0 || without - costs[static_cast<std::size_t>(at)] < kClearGain) return out;
-    out.displacement = least_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
-                                          tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
+    out.displacement = golden_section_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
+                                                   tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
     const double found = cost(out.displacement);
     out.gain = without - found;
     out.std = deviation(cost, out.displacement);
@@ -229,7 +230,7 @@ class Search {
   /// Damping of the bristles where that explains clearly more. Without it their displacement comes out too small.
   void add_damping(const PartialFit& fit, Index joint, double undamped, PreslidingJoint& found) const {
     const auto cost = [&](double displacement) { return result(fit, joint, displacement, true).cost; };
-    const double displacement = least_in_logarithm(cost, found.displacement / kWider, found.displacement * kWider);
+    const double displacement = golden_section_in_logarithm(cost, found.displacement / kWider, found.displacement * kWider);
     const PartialFit::Result best = result(fit, joint, displacement, true);
     if (undamped - best.cost < kClearGain || !(best.amplitude(0) > 0)) return;
     const double damping_s = best.amplitude(1) / best.amplitude(0);

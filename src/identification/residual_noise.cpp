@@ -6,6 +6,7 @@
 
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/prediction.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
 namespace deltadyn {
@@ -22,7 +23,7 @@ double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double nois
   constexpr double kFine = 0.05, kCoarse = 0.25;
   const double step = std::sqrt(12.0) * noise_std;
   const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
-  const double usual = std::sqrt(moved.squaredNorm() / static_cast<double>(moved.size()));
+  const double usual = root_mean_square(moved);
   return usual > kCountsPerSample * step ? kFine : kCoarse;
 }
 
@@ -53,7 +54,6 @@ std::vector<double> correlations(const Robot& robot, const std::vector<Log>& rec
 
 std::vector<double> robust_scales(const Robot& robot, const std::vector<PreparedLog>& logs, const Eigen::VectorXd& p,
                                   const std::vector<bool>& keep, int threads) {
-  constexpr double kMedianToSigma = 1.4826;  // for normal noise
   std::vector<std::vector<double>> sizes(keep.size());
   for (const PreparedLog& log : logs) {
     const Prediction prediction = predict(robot, log, p, threads);
@@ -66,12 +66,7 @@ std::vector<double> robust_scales(const Robot& robot, const std::vector<Prepared
     }
   }
   std::vector<double> scales;
-  for (std::vector<double>& size : sizes) {
-    if (size.empty()) size.push_back(0);
-    const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-    std::nth_element(size.begin(), middle, size.end());
-    scales.push_back(std::max(kMedianToSigma * *middle, 1e-12));
-  }
+  for (std::vector<double>& size : sizes) scales.push_back(std::max(kMedianToSigma * upper_median(std::move(size)), 1e-12));
   return scales;
 }
 

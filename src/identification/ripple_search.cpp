@@ -10,6 +10,7 @@
 #include "deltadyn/effects/wave.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/least_squares.hpp"
+#include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/signal/log_part.hpp"
 
 #include "partial_fit.hpp"
@@ -256,8 +257,8 @@ class RippleSearch {
 
   [[nodiscard]] double refine(const PartialFit& fit, int drive, double n) const {
     const double width = peak_width(drive);
-    return least_in_logarithm([&](double at) { return fit.with(columns(drive, at)).cost; }, std::max(n - width, 0.5 * n),
-                              n + width, 1 + 0.01 * width / n);
+    return golden_section_in_logarithm([&](double at) { return fit.with(columns(drive, at)).cost; }, std::max(n - width, 0.5 * n),
+                                       n + width, 1 + 0.01 * width / n);
   }
 
   /// Does the amplitude of either half of the log serve the other one?

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
 namespace deltadyn {
@@ -25,9 +26,7 @@ Eigen::VectorXd torque_noise(const PreparedLog& log) {
       if (std::abs(log.low_pass->gain(band.frequency_hz(k))) < kBeyond) beyond.push_back(band.density(k));
     }
     if (beyond.empty()) continue;
-    const auto middle = beyond.begin() + static_cast<std::ptrdiff_t>(beyond.size() / 2);
-    std::nth_element(beyond.begin(), middle, beyond.end());
-    noise(j) = std::sqrt(*middle * log.rate_hz / 2 * log.low_pass->taps().squaredNorm());
+    noise(j) = std::sqrt(upper_median(std::move(beyond)) * log.rate_hz / 2 * log.low_pass->taps().squaredNorm());
   }
   return noise;
 }
@@ -58,7 +57,7 @@ void use_predicted_reversals(Index drive, const ValidatedDrive& figures, std::ve
 
 std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives) {
   std::vector<ValidatedDrive> out(drives);
-  const auto root_mean = [](double sum, Index count) { return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0; };
+  const auto root_mean = [](double sum, Index count) { return root_mean_square(sum, static_cast<double>(count)); };
   for (std::size_t j = 0; j < drives; ++j) {
     const auto drive = static_cast<Index>(j);
     ValidatedDrive& figures = out[j];

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/resample.hpp"
 
@@ -39,10 +40,7 @@ double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   for (Index i = 0; i + 1 < t_s.size(); ++i) {
     if (t_s(i + 1) > t_s(i)) steps.push_back(t_s(i + 1) - t_s(i));
   }
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(std::move(steps));
 }
 
 double mean_rate_hz(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
@@ -113,9 +111,8 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
   }
   if (steps.size() < 10) return 0.0;
   const double largest = *std::max_element(steps.begin(), steps.end());
-  const auto most = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 98 / 100);
-  std::nth_element(steps.begin(), most, steps.end());
-  const double usual = *most;
+  const std::size_t most = steps.size() * 98 / 100;
+  const double usual = order_statistic(std::move(steps), most);
   // A number that begins again jumps by nearly its whole range, far more than it ever moves in a step.
   if (!(largest > 20.0 * usual)) return 0.0;
   std::vector<double> periods = {2.0 * std::numbers::pi, 360.0};

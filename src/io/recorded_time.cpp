@@ -8,6 +8,7 @@
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/runtime/error.hpp"
 
+#include "common_grid.hpp"
 #include "header_words.hpp"
 
 namespace deltadyn {
@@ -64,13 +65,8 @@ bool goes_on(const Eigen::VectorXd& values) {
 }
 
 double usual_step(const Eigen::VectorXd& values) {
-  std::vector<double> steps;
-  for (Eigen::Index i = 0; i + 1 < std::min<Eigen::Index>(values.size(), 20000); ++i) {
-    if (values(i + 1) > values(i)) steps.push_back(values(i + 1) - values(i));
-  }
-  if (steps.empty()) return 0.0;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
+  constexpr Eigen::Index kEnough = 20000;
+  return usual_step_s(values.head(std::min(values.size(), kEnough)));
 }
 
 /// Seconds since 1970 are about 1.7e9 now; the same in ms, us and ns, and the ticks of 1601, have their own decades.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
 namespace deltadyn {
@@ -55,12 +56,6 @@ Eigen::Vector3d bound(const RobotDescription& robot, const Eigen::Vector3d& home
     reach = std::max(reach, length);
   }
   return Eigen::Vector3d::Constant(reach);
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
 }
 
 }  // namespace

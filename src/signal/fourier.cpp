@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/resample.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
@@ -62,7 +63,7 @@ Mismatch mismatch(const Log& log, Index lag, const Eigen::VectorXd& allowed) {
   }
   result.shift_s = square > 0 ? std::clamp(-along / square, -h, h) : 0.0;
   for (Index d = 0; d < log.drives(); ++d) {
-    const double rms = (difference(d) + result.shift_s * rate(d)).norm() / std::sqrt(static_cast<double>(count));
+    const double rms = root_mean_square(difference(d) + result.shift_s * rate(d));
     result.rms = std::max(result.rms, rms);
     result.rms_over_allowed = std::max(result.rms_over_allowed, rms / allowed(d));
   }
@@ -198,9 +199,7 @@ int choose_harmonics(const Log& log, double period_s, int max_harmonics) {
     const double white = position_noise(log.q.col(d)) * std::sqrt(2.0 / static_cast<double>(count));
     std::vector<double> amplitudes;
     for (int k = 1; k <= limit; ++k) amplitudes.push_back(std::hypot(fit.coefficients(2 * k - 1, d), fit.coefficients(2 * k, d)));
-    std::vector<double> sorted = amplitudes;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double floor = std::max(white, limit >= 20 ? sorted[sorted.size() / 2] : 0.0);
+    const double floor = std::max(white, limit >= 20 ? upper_median(amplitudes) : 0.0);
     for (int k = 1; k <= limit; ++k) {
       if (amplitudes[static_cast<std::size_t>(k - 1)] > 4.0 * floor) chosen = std::max(chosen, k);
     }

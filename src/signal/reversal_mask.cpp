@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/butterworth.hpp"
 
 namespace deltadyn {
@@ -46,13 +47,7 @@ double position_noise(const Eigen::Ref<const Eigen::VectorXd>& position) {
     // Smaller steps are rounding of the decimal numbers, not counts of the encoder.
     if (step > 1e-12 * largest && (resolution == 0.0 || step < resolution)) resolution = step;
   }
-  // Mean size without the largest hundredth: robust like a median, but not itself a multiple of the encoder's count.
-  constexpr double kKept = 0.99;
-  constexpr double kMeanOfKept = 0.7767;  // of a standard normal variable
-  const auto end = sizes.begin() + static_cast<std::ptrdiff_t>(std::ceil(kKept * static_cast<double>(sizes.size())));
-  std::nth_element(sizes.begin(), end - 1, sizes.end());
-  const double mean = std::accumulate(sizes.begin(), end, 0.0) / static_cast<double>(end - sizes.begin());
-  const double robust = mean / kMeanOfKept / std::sqrt(70.0);  // 1 + 16 + 36 + 16 + 1
+  const double robust = std_of_sizes(std::move(sizes)) / std::sqrt(70.0);  // 1 + 16 + 36 + 16 + 1
   return robust > 0 ? robust : resolution / std::sqrt(12.0);
 }
 

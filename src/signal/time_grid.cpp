@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -43,9 +45,7 @@ TimeGrid fit_time_grid(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
 
   std::vector<double> steps(static_cast<std::size_t>(n - 1));
   for (Eigen::Index i = 0; i + 1 < n; ++i) steps[static_cast<std::size_t>(i)] = t_s(i + 1) - t_s(i);
-  const auto middle = steps.begin() + (n - 1) / 2;
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double usual_step = *middle;
+  const double usual_step = upper_median(std::move(steps));
 
   TimeGrid gapped;
   gapped.index.resize(static_cast<std::size_t>(n));

@@ -210,6 +210,20 @@ inline Findings check_wrapped_libraries(const SourceFile& file) {
   return findings;
 }
 
+/// Loops on several threads stand in one file, which passes exceptions on; all others call its functions. Tests may do as they like.
+inline Findings check_threads(const SourceFile& file) {
+  if (file.path.compare(0, 6, "tests/") == 0 || file.path == "src/runtime/in_parallel.cpp") return {};
+  static const std::regex pattern(R"re(^\s*#\s*pragma\s+omp\b)re");
+  Findings findings;
+  const auto lines = lines_of(without_comments(file.text, Literals::blank));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (std::regex_search(lines[i], pattern)) {
+      findings.push_back({file.path, static_cast<int>(i) + 1, "use in_parallel() of deltadyn/runtime/in_parallel.hpp"});
+    }
+  }
+  return findings;
+}
+
 /// Headers up to 400 lines, all else up to 700; headers guard themselves.
 inline Findings check_shape(const SourceFile& file) {
   Findings findings;
@@ -228,7 +242,7 @@ inline Findings check_shape(const SourceFile& file) {
 /// All rules for one file.
 inline Findings check(const SourceFile& file) {
   Findings all;
-  for (const auto rule : {check_floor_includes, check_core, check_wrapped_libraries, check_shape}) {
+  for (const auto rule : {check_floor_includes, check_core, check_wrapped_libraries, check_threads, check_shape}) {
     for (Finding& finding : rule(file)) all.push_back(std::move(finding));
   }
   return all;

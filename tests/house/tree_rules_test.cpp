@@ -110,6 +110,15 @@ TEST(WrappedLibraries, EachHasOneHome) {
   }
 }
 
+TEST(Threads, LoopsOnSeveralThreadsHaveOneHome) {
+  const std::string loop = "void f() {\n#pragma omp parallel for\n  for (;;) {}\n}\n";
+  EXPECT_THAT(check_threads({"src/runtime/in_parallel.cpp", loop}), IsEmpty());
+  EXPECT_THAT(check_threads({"tests/runtime/a_test.cpp", loop}), IsEmpty());
+  EXPECT_THAT(check_threads({"src/io/a.cpp", "// #pragma omp parallel for\n"}), IsEmpty());
+  EXPECT_THAT(check_threads({"src/io/a.cpp", loop}), ElementsAre(Field(&Finding::line, 2)));
+  EXPECT_THAT(check_threads({"tools/a.cpp", loop}), SizeIs(1));
+}
+
 TEST(Shape, LongFilesAndUnguardedHeadersAreFound) {
   const auto lines = [](int n) {
     std::string text = "#pragma once\n";

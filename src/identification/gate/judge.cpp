@@ -7,6 +7,9 @@
 #include <numeric>
 #include <optional>
 
+#include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn::gate {
 
 namespace {
@@ -97,7 +100,7 @@ class Judge {
     out.factor.setOnes(n);
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
-    alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(n));
+    alone_ = root_mean_square(own_residuals(blocks));
     return out;
   }
 
@@ -122,10 +125,7 @@ class Judge {
     double least = std::numeric_limits<double>::infinity();
     for (const PositionFamily& family : families) {
       std::vector<double> residual(family.start.size());
-#pragma omp parallel for schedule(dynamic)
-      for (std::size_t k = 0; k < residual.size(); ++k) {
-        residual[k] = best_torques(family, start, family.start[k], few);
-      }
+      in_parallel(residual.size(), [&](std::size_t k) { residual[k] = best_torques(family, start, family.start[k], few); });
       std::vector<Start> own;
       for (std::size_t k = 0; k < residual.size(); ++k) {
         if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
@@ -160,7 +160,7 @@ class Judge {
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
     const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
-    reading_alone_ = own_residuals(blocks).norm() / std::sqrt(static_cast<double>(blocks.size()));
+    reading_alone_ = root_mean_square(own_residuals(blocks));
     if (h.drives_moved) {
       add_signs_and_factors(h, reading, before, blocks, h.reading.source);
       return;
@@ -382,9 +382,7 @@ class Judge {
            e.residual < kHeals * e.alone;
   }
 
-  static bool is_search(const std::string& key) {
-    return key == "position_scale" || key == "position_zero";
-  }
+  static bool is_search(const std::string& key) { return key == "position_scale" || key == "position_zero"; }
 
   const Robot& robot_;
   const BaseParameters& base_;

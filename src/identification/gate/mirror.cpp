@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 namespace deltadyn::gate {
 
 namespace {
@@ -79,7 +81,7 @@ std::vector<DriveFit> fit_of(const Robot& robot, const BaseParameters& base, con
     out.clear();
     for (std::size_t j = 0; j < tau.size(); ++j) {
       out.push_back(figures_of(tau[j] - rows.drives[j].Y * beta));
-      const double least = 1e-6 * std::sqrt(tau[j].squaredNorm() / static_cast<double>(tau[j].size()));  // logs without noise
+      const double least = 1e-6 * root_mean_square(tau[j]);  // logs without noise
       weight[j] = 1 / std::max(out[j].rms * out[j].rms, least * least + 1e-300);
     }
   }

@@ -10,6 +10,7 @@
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/fir_decimator.hpp"
 
 namespace deltadyn::gate {
@@ -29,7 +30,6 @@ constexpr double kEnd = 2.5;        // a stretch goes on as long as the residual
 constexpr double kMostOfMotion = 0.25;
 constexpr int kPasses = 12;       // of the robust fit
 constexpr double kTukey = 4.685;  // 95 % efficient for normal noise
-constexpr double kMedianToSigma = 1.4826;
 constexpr Index kFewestRows = 30;
 constexpr Index kRowsPerBlock = 256;
 
@@ -61,13 +61,6 @@ Log thinned(const Log& log) {
     if (std::find(begin, begin + width, Log::kLeftOut) != begin + width) thin.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
   }
   return thin;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// One log under the low pass.
@@ -158,7 +151,7 @@ class RobustFit {
       }
     }
     scale_.clear();
-    for (const std::vector<double>& one : size) scale_.push_back(std::max(kMedianToSigma * median(one), 1e-12));
+    for (const std::vector<double>& one : size) scale_.push_back(std::max(kMedianToSigma * upper_median(one), 1e-12));
   }
 
   const Robot& robot_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "readings.hpp"
 
 namespace deltadyn::gate {
@@ -181,10 +183,7 @@ double usual_rate(const Log& log, int drive) {
   std::vector<double> rates;
   for (Index k = 1; k < log.samples(); k += stride)
     rates.push_back(std::abs(log.q(k, drive) - log.q(k - 1, drive)) / std::max(log.t_s(k) - log.t_s(k - 1), 1e-12));
-  if (rates.empty()) return 0.0;
-  const auto place = rates.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(rates.size() - 1));
-  std::nth_element(rates.begin(), place, rates.end());
-  return *place;
+  return quantile(std::move(rates), 0.95);
 }
 
 /// A rate that no drive of this limit has: positions or time in another unit.

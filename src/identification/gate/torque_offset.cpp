@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "readings.hpp"
 
 namespace deltadyn::gate {
@@ -44,7 +46,7 @@ struct Rest {
       const DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
       VectorXd tau(drive.count());
       for (Index k = 0; k < tau.size(); ++k) tau(k) = points.tau(drive.at[static_cast<std::size_t>(k)].point, j);
-      rms(j) = std::max(tau.norm() / std::sqrt(static_cast<double>(tau.size())), 1e-12);
+      rms(j) = std::max(root_mean_square(tau), 1e-12);
       A.middleRows(row, tau.size()) = drive.Y / rms(j);
       offset.col(j).segment(row, tau.size()).setConstant(1 / rms(j));
       torque.segment(row, tau.size()) = tau / rms(j);
@@ -73,7 +75,7 @@ Offsets fit(const Rest& rest, const std::vector<int>& drives) {
   Offsets out;
   out.drives = drives;
   out.value = inverse * (A.transpose() * rest.torque);
-  out.residual = (rest.torque - A * out.value).norm() / std::sqrt(static_cast<double>(rest.torque.size()));
+  out.residual = root_mean_square(rest.torque - A * out.value);
   out.std = out.residual * inverse.diagonal().cwiseMax(0.0).cwiseSqrt();
   return out;
 }
@@ -112,7 +114,7 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(".offset"); })) return {};
   Rest rest;
   if (!rest.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
-  const double as_given = rest.torque.norm() / std::sqrt(static_cast<double>(rest.torque.size()));
+  const double as_given = root_mean_square(rest.torque);
   const Offsets best = best_offsets(rest, robot.drives());
   if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
   TorqueOffset out{{}, VectorXd::Zero(robot.drives())};

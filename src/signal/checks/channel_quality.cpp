@@ -5,7 +5,9 @@
 #include <numeric>
 #include <vector>
 
-#include "statistics.hpp"
+#include "deltadyn/runtime/statistics.hpp"
+
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -23,12 +25,7 @@ double white_noise(const Eigen::Ref<const Eigen::VectorXd>& x, const std::vector
       if (std::isfinite(size)) sizes.push_back(size);
     }
   }
-  if (sizes.empty()) return 0.0;
-  constexpr double kKept = 0.99;
-  constexpr double kMeanOfKept = 0.7767;  // of a standard normal variable
-  const auto kept = sizes.begin() + static_cast<std::ptrdiff_t>(std::ceil(kKept * static_cast<double>(sizes.size())));
-  std::nth_element(sizes.begin(), kept - 1, sizes.end());
-  return std::accumulate(sizes.begin(), kept, 0.0) / static_cast<double>(kept - sizes.begin()) / kMeanOfKept / std::sqrt(70.0);
+  return std_of_sizes(std::move(sizes)) / std::sqrt(70.0);  // 1 + 16 + 36 + 16 + 1
 }
 
 /// Share of the changes that are whole multiples of the smallest one.

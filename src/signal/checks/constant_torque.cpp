@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -65,7 +65,7 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
     begin = end;
   }
   if (runs.empty()) return runs;
-  const double usual_change = median(std::move(changes));
+  const double usual_change = lower_median(std::move(changes));
   const double usual_run = rows > repeats ? rows / (rows - repeats) : 1.0;
   const bool coarse = repeats > kCoarseShare * rows;
   const ChannelQuality quality = measure_channel(tau);

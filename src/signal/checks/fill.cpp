@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "checks.hpp"
-#include "statistics.hpp"
 
 namespace deltadyn::checks {
 namespace {

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -87,7 +89,7 @@ void tell_blind_rows(const CheckRoom& room, const std::vector<Tally>& tallies) {
 void drop_blind_rows(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
-  const double usual = median(steps_of(room));
+  const double usual = lower_median(steps_of(room));
   std::vector<char> blind(static_cast<std::size_t>(n), 0);
   std::vector<Tally> tallies(static_cast<std::size_t>(log.drives()));
   for (Index d = 0; d < log.drives(); ++d) {
@@ -126,7 +128,7 @@ void drop_blind_rows(CheckRoom& room) {
 std::vector<Log> split(CheckRoom& room) {
   const Log& log = room.log;
   const std::vector<double> steps = steps_of(room);
-  const double usual = median(steps);
+  const double usual = lower_median(steps);
   if (usual > kLargestSampleTime) {
     throw Error(fmt::format("the samples are {:.4g} s apart", usual), room.where(0, "t_s"),
                 "give the time in seconds; record with at least 100 samples a second");

@@ -7,10 +7,11 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/resample.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -40,8 +41,8 @@ double roughness_over_stamps(const Log& log, const TimeGrid& grid) {
         stamped.push_back(std::abs(q(i) - interpolate_cubic(t, v, log.t_s(i))));
       }
     }
-    const double by_rows = median(std::move(even));
-    const double by_stamps = median(std::move(stamped));
+    const double by_rows = lower_median(std::move(even));
+    const double by_stamps = lower_median(std::move(stamped));
     if (by_rows <= 0 || by_stamps <= 0) continue;
     sum += std::log(by_stamps / by_rows);
     count += 1.0;

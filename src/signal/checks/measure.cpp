@@ -7,7 +7,6 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
 
 namespace deltadyn::checks {
 namespace {

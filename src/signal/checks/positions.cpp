@@ -4,10 +4,11 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {

@@ -14,7 +14,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -42,7 +44,7 @@ class SpikeSearch {
         if (s > kRounding * largest_) moving.push_back(s);
       }
     }
-    usual_ = median(std::move(moving));
+    usual_ = lower_median(std::move(moving));
   }
 
   void run() {

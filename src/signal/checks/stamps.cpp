@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -58,7 +60,7 @@ double usual_step(const Eigen::VectorXd& t_s) {
       if (t_s(i) > t_s(i - 1)) steps.push_back(t_s(i) - t_s(i - 1));
     }
   }
-  return median(std::move(steps));
+  return lower_median(std::move(steps));
 }
 
 /// Size of the change of all positions over the rows that `counts`, for one row.

@@ -6,10 +6,11 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
-#include "statistics.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {

@@ -7,8 +7,9 @@
 #include <numbers>
 #include <optional>
 
+#include "deltadyn/runtime/statistics.hpp"
+
 #include "checks.hpp"
-#include "statistics.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -72,7 +73,7 @@ std::optional<Jumps> find_jumps(const Eigen::Ref<const Eigen::VectorXd>& x, cons
     (change > 0 ? up : down) = true;
   }
   if (jumps.rows.empty() || usual > 0.4 * least) return std::nullopt;
-  const double size = median(sizes);
+  const double size = lower_median(sizes);
   const auto modulus = known_modulus(size, quality.step, usual, turns);
   // Several jumps there and back of one size, wider than all else: the size itself is the modulus, to the change of one sample.
   const bool switched = std::any_of(jumps.rows.begin(), jumps.rows.end(), [&](Index row) { return is_switched(x, row); });
@@ -96,9 +97,7 @@ std::vector<int> turns_of(const Eigen::Ref<const Eigen::VectorXd>& x, const Jump
     }
     turns[static_cast<std::size_t>(i)] = now;
   }
-  std::vector<int> sorted = turns;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const int most = sorted[sorted.size() / 2];
+  const int most = upper_median(turns);
   for (int& turn : turns) turn -= most;
   return turns;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Order statistics of channels of any length, from evenly spread stretches of rows.
+/// Which rows of a channel of any length its statistics are taken from: evenly spread stretches.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -9,18 +9,6 @@
 #include <vector>
 
 namespace deltadyn::checks {
-
-/// Value below which the share lies; 0 for no values.
-inline double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-inline double median(std::vector<double> values) {
-  return quantile(values, 0.5);
-}
 
 /// A stretch of consecutive rows [first, second).
 using Stretch = std::pair<Eigen::Index, Eigen::Index>;
