@@ -38,9 +38,8 @@ class Simulate {
         ->required()
         ->type_name("FILE");
     app.add_option("-o,--output", output_, "log t_s, q1_rad.., tau1_Nm.. (CSV)")->required()->type_name("FILE");
-    app.add_option(
-           "--effect", effects_,
-           "effect NAME@JOINT:key=value,... e.g. stribeck@drive2:friction=2,rate=0.25,exponent=2; may be given several times")
+    app.add_option("--effect", effects_,
+                   "effect NAME@JOINT:key=value,... e.g. " + tools::example_effect() + "; may be given several times")
         ->type_name("TEXT")
         ->take_all();
     app.add_flag_callback(
@@ -221,7 +220,8 @@ int main(int argc, char** argv) {
       {"delta-simulate",
        "The log of a virtual robot that follows a trajectory in closed loop: friction that sticks, sampled control, encoders, "
        "noise, and any effect of the catalogue.",
-       "delta-simulate robot.urdf --params params.csv --trajectory trajectory.csv --encoder-bits 19 --torque-noise-n-m 0.1 \\\n"
-       "    --effect stribeck@drive2:friction=2,rate=0.25,exponent=2 -o log.csv"},
+       "delta-simulate robot.urdf --params params.csv --trajectory trajectory.csv --encoder-bits 19 --torque-noise-n-m 0.1 \\\n  "
+       "  --effect " +
+           tools::example_effect() + " -o log.csv"},
       [&](CLI::App& app, ToolRun& run) { simulate.add_to(app, run); });
 }

@@ -126,10 +126,13 @@ std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<Log
       const bool is_known =
           std::any_of(known.begin(), known.end(), [&](const Effect& e) { return e.id == kind.id && e.joint == joint; });
       if (is_known || base_holds(robot, hypothesis)) continue;
-      if (joint >= 0) hypothesis.largest_torque = scales[static_cast<std::size_t>(joint + 1)].largest_torque;
+      // Limbs that are alike move alike: the first one stands for all.
+      const int typical = joint < 0 && kind.place == EffectPlace::limb_or_all ? 0 : joint;
+      const MotionScale& scale = scales[static_cast<std::size_t>(typical + 1)];
+      if (typical >= 0) hypothesis.largest_torque = scale.largest_torque;
       // Every combination of the shapes' start values.
       for (const ShapeTraits& shape : kind.shapes) {
-        const std::vector<double> grid = grid_of(shape, hypothesis, scales[static_cast<std::size_t>(joint + 1)], logs, robot);
+        const std::vector<double> grid = grid_of(shape, hypothesis, scale, logs, robot);
         std::vector<VectorXd> combined;
         for (const VectorXd& so_far : hypothesis.shapes) {
           for (std::size_t g = 0; g < grid.size(); ++g) {

@@ -371,6 +371,11 @@ std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals&
         return;
       }
       out = empty_columns(kAmplitudesOf<E>, -1, N, n);
+      for (Index j = 0; j < n; ++j) {
+        if (!acts_on_all(id, static_cast<int>(j), robot_.description())) continue;
+        const auto one = columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_drive(s, gravity_, j, k); });
+        for (std::size_t c = 0; c < one.size(); ++c) out[c].values.col(j) = one[c].values;
+      }
       if (E::traits().place == EffectPlace::telescope) {
         const Eigen::Vector3d gravity = robot_.description().gravity;
         spread(
@@ -378,6 +383,7 @@ std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals&
             [&](Index k) { return s.J_bar.row(k); }, out);
         return;
       }
+      if (E::traits().place != EffectPlace::passive_joints) return;
       for (Index m = 0; m < s.passive_rate.cols(); ++m) {
         const auto input = [&](Index k) {
           JointInput<double> in;

@@ -59,7 +59,7 @@ double value_or_none(const Eigen::VectorXd& of_joints, Index joint) {
   return joint < of_joints.size() ? of_joints(joint) : 0.0;
 }
 
-/// The bristles' share of Coulomb's friction along a log, for the joints that have presliding (effects/presliding.hpp).
+/// The bristles' share of Coulomb's friction along a log, for the joints that have presliding (effects/bristle.hpp).
 /// \param rates  N x joints with friction
 void add_presliding(const ProcessingOptions& options, const Eigen::MatrixXd& rates, PreparedLog& log) {
   if (!(options.presliding.array() > 0).any()) return;

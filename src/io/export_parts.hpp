@@ -25,7 +25,7 @@ struct Parts {
 /// Throws Error if `p` has not the robot's size, a number is not finite, or a body has inertia without mass.
 [[nodiscard]] Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects);
 
-/// "effect stribeck at drive2 (...)".
+/// "effect NAME at drive2 (...)".
 [[nodiscard]] std::string describe(const Effect& effect, const RobotDescription& robot);
 
 /// The number of a text that reads back exactly; no "-0" in a file that people read.

@@ -128,6 +128,10 @@ std::vector<int> effect_joints(EffectId id, const RobotDescription& robot) {
       if (place == EffectPlace::arm && robot.drive_kind != DriveKind::revolute) break;
       if (plate) add_drives(static_cast<int>(robot.limbs.size()));
       break;
+    case EffectPlace::limb_or_all:
+      add_drives(plate ? static_cast<int>(robot.limbs.size()) : robot.drives());
+      if (joints.size() > 1) joints.push_back(-1);
+      break;
     case EffectPlace::drive_or_robot:
       if (robot.drives() > 1) joints.push_back(-1);
       add_drives(robot.drives());
@@ -144,6 +148,14 @@ std::vector<int> effect_joints(EffectId id, const RobotDescription& robot) {
   return joints;
 }
 
+bool acts_on_all(EffectId id, int drive, const RobotDescription& robot) {
+  switch (effect_kind(id).place) {
+    case EffectPlace::limb_or_all: return drive >= 0 && drive < static_cast<int>(robot.limbs.size());
+    case EffectPlace::drive_or_robot: return drive >= 0 && drive < robot.drives();
+    default: return false;
+  }
+}
+
 int effect_joint(EffectId id, std::string_view name, const RobotDescription& robot, const std::string& where) {
   std::string choice;
   const std::vector<int> joints = effect_joints(id, robot);
@@ -156,7 +168,7 @@ int effect_joint(EffectId id, std::string_view name, const RobotDescription& rob
 }
 
 std::string effect_unit(std::string_view unit, int joint, const RobotDescription& robot) {
-  const bool turns = joint < 0 || robot.kind_of_drive(joint) == DriveKind::revolute;
+  const bool turns = robot.kind_of_drive(std::max(joint, 0)) == DriveKind::revolute;
   std::string text(unit);
   const auto replace = [&text](const std::string& mark, const std::string& word) {
     for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark)) text.replace(at, mark.size(), word);

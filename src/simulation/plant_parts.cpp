@@ -119,9 +119,11 @@ class Builder {
       if (!FrictionLaw::takes(effect.id)) continue;
       for (int j = 0; j < parts_.mechanism->joints(); ++j) {
         const bool passive = j >= n && j != telescope;
-        const bool here = effect_kind(effect.id).place == EffectPlace::passive_joints ? passive
-                          : effect.joint >= 0                                         ? j == effect.joint
-                                                                                      : j == telescope;
+        const EffectPlace place = effect_kind(effect.id).place;
+        const bool here = effect.joint >= 0                      ? j == effect.joint
+                          : place == EffectPlace::passive_joints ? passive
+                          : place == EffectPlace::telescope      ? j == telescope
+                                                                 : acts_on_all(effect.id, j, machine_.description);
         if (here) parts_.laws[static_cast<std::size_t>(j)].add(effect, parts_.mechanism->multiplicity(j));
       }
     }

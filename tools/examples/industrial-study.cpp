@@ -213,8 +213,7 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
   law.y_range = PlotRange{0.3, 2.0};
   figures.add("friction_of_the_spindle", {law},
               "Why no straight line will do: the change by hand fits below 3 rad/s and is useless above. delta-diagnose names "
-              "the missing "
-              "effect (shear_thinning) and adds it instead.");
+              "the missing effect and adds it instead.");
   add_tables(report, folder);
 
   report.heading("Targets");

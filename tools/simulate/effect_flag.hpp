@@ -60,13 +60,24 @@ inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
   return keys;
 }
 
-/// "stribeck@drive2:friction=2,rate=0.25,exponent=2". Throws Error(usage) that says what is known.
+/// The first effect of the list as the flag takes it, with round numbers.
+inline std::string example_effect() {
+  const EffectKind& kind = effect_catalogue().front();
+  std::string text;
+  for (const EffectKey& key : effect_keys(kind)) {
+    const double value = !key.usual.empty() ? key.usual.back() : (key.amplitude ? 2.0 : 0.25);
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", key.name, value);
+  }
+  return fmt::format("{}@drive2:{}", kind.name, text);
+}
+
+/// Of the form of example_effect(). Throws Error(usage) that says what is known.
 inline Effect parse_effect(const std::string& text, const RobotDescription& robot) {
   const auto at = text.find('@'), colon = text.find(':');
   const std::string where = "--effect " + text;
   if (at == std::string::npos || (colon != std::string::npos && colon < at)) {
     throw Error("an effect is written NAME@JOINT:key=value,...", where,
-                "e.g. --effect stribeck@drive2:friction=2,rate=0.25,exponent=2; --list-effects shows them all", ExitCode::usage);
+                "e.g. --effect " + example_effect() + "; --list-effects shows them all", ExitCode::usage);
   }
   const std::string name = text.substr(0, at), joint = text.substr(at + 1, colon == std::string::npos ? colon : colon - at - 1);
   const EffectKind* kind = find_effect_kind(name);
@@ -144,6 +155,7 @@ inline void list_effects() {
       case EffectPlace::drive: return "@driveK";
       case EffectPlace::arm: return "@driveK of a limb with a revolute drive";
       case EffectPlace::limb: return "@driveK of a limb";
+      case EffectPlace::limb_or_all: return "@driveK of a limb, or @robot for all limbs";
       case EffectPlace::drive_or_robot: return "@driveK, or @robot for all drives";
       case EffectPlace::telescope: return "@telescope";
       case EffectPlace::platform: return "@platform";
@@ -171,7 +183,7 @@ inline void list_effects() {
       fmt::print("{}\n", text);
     }
   }
-  fmt::print("\nExample:\n  --effect stribeck@drive2:friction=2,rate=0.25,exponent=2\n");
+  fmt::print("\nExample:\n  --effect {}\n", example_effect());
 }
 
 }  // namespace deltadyn::tools

@@ -67,6 +67,23 @@ struct Dual {
     using std::sin;
     return Dual(cos(a.value), -sin(a.value) * a.slope);
   }
+  friend Dual exp(const Dual& a) {
+    using std::exp;
+    const T power = exp(a.value);
+    return Dual(power, power * a.slope);
+  }
+  friend Dual tanh(const Dual& a) {
+    using std::tanh;
+    const T value = tanh(a.value);
+    return Dual(value, (T(1) - value * value) * a.slope);
+  }
+  /// a^b for a > 0.
+  friend Dual pow(const Dual& a, const Dual& b) {
+    using std::log;
+    using std::pow;
+    const T power = pow(a.value, b.value);
+    return Dual(power, power * (b.value / a.value * a.slope + log(a.value) * b.slope));
+  }
 };
 
 }  // namespace deltadyn

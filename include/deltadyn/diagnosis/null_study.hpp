@@ -54,7 +54,7 @@ class Omnibus {
 };
 
 /// Encoder noise through the pipeline, some times: which columns it moves, and what it fakes on average. A column and the residual feel
-/// the same noise, so that their product has a mean: joint_elasticity is the plainest case. All scores are freed of it.
+/// the same noise, so that their product has a mean: a column of second derivatives is the plainest case. All scores are freed of it.
 class EncoderPilots {
  public:
   /// \param position_noise  [log][drive], standard deviation of the recorded positions

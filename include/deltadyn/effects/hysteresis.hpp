@@ -64,7 +64,8 @@ struct Hysteresis : JointMemory {
     }
     // Runge-Kutta of order 4 in steps of at most a twentieth, to an error below 1e-7; what is 20 away has arrived.
     const T way = x < T(20) ? x : T(20);
-    const int parts = 1 + static_cast<int>(T(20) * way);
+    int parts = 1;
+    while (T(parts) < T(20) * way) ++parts;
     const T h = way / T(parts);
     const auto slope = [&n](const T& at) { return at < T(1) ? T(1) - pow(at, n) : T(0); };
     for (int k = 0; k < parts; ++k) {

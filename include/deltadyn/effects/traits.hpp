@@ -45,6 +45,7 @@ enum class EffectPlace {
   drive,           ///< on one drive
   arm,             ///< on one revolute drive that moves a limb (not the telescope's)
   limb,            ///< on one drive that moves a limb
+  limb_or_all,     ///< on one drive that moves a limb (of an axis: its drive), or on all of them alike
   drive_or_robot,  ///< on one drive, or on all drives alike
   telescope,       ///< on the telescope bar's prismatic joint
   passive_joints,  ///< on all ball and universal joints alike

@@ -38,7 +38,7 @@ struct ProcessingOptions {
   double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
   double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
   /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after a reversal
-  /// [rad | m] (effects/presliding.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
+  /// [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p

@@ -2,7 +2,7 @@
 
 /// \file
 /// How friction builds up after a reversal: displacement and damping of each joint's bristles, found from the rows near reversals. With
-/// them these rows take part in the fit instead of being left out (effects/presliding.hpp holds the law and its source).
+/// them these rows take part in the fit instead of being left out (effects/bristle.hpp holds the law and its source).
 
 #include <Eigen/Core>
 #include <vector>

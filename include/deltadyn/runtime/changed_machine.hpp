@@ -26,13 +26,12 @@ struct ChangedMachine {
 
   void tilt(double x, double y) { description.gravity += skew(Vector3<double>(x, y, 0.0)) * description.gravity; }
   void shift_home(int drive, double by) { home_offset(drive) += by; }
-  /// A carriage has no arm: its place along the axis is what a length would be.
+  /// A carriage has no arm: an error of its place along the axis, which a length would be, is one of its home position.
   void lengthen_arm(int limb, double by) {
-    LimbGeometry<double>& geometry = description.limbs.at(static_cast<std::size_t>(limb));
     if (description.drive_kind == DriveKind::revolute) {
-      geometry.p_DE_0.x() += by;
+      description.limbs.at(static_cast<std::size_t>(limb)).p_DE_0.x() += by;
     } else {
-      geometry.p_DE_0 += by * geometry.axis_L;
+      shift_home(limb, by);
     }
   }
   void lengthen_strut(int limb, double by) { description.limbs.at(static_cast<std::size_t>(limb)).strut += by; }

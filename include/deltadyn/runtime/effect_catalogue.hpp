@@ -50,6 +50,8 @@ void check_sizes(const Effect& effect, const std::string& where, ExitCode code);
 [[nodiscard]] std::string effect_joint_name(EffectId id, int joint);
 /// The joint of a name, as Effect::joint. Accepts "2" for "drive2". Throws deltadyn::Error if the effect cannot act there on this robot.
 [[nodiscard]] int effect_joint(EffectId id, std::string_view name, const RobotDescription& robot, const std::string& where);
+/// Does an effect with joint -1 act on this drive (from 0), as one of all that are alike?
+[[nodiscard]] bool acts_on_all(EffectId id, int drive, const RobotDescription& robot);
 /// Every place of a robot where the effect can act, as Effect::joint; empty if the robot has none.
 [[nodiscard]] std::vector<int> effect_joints(EffectId id, const RobotDescription& robot);
 /// A unit with its placeholders filled in for the joint's kind.
