@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn::detail {
@@ -115,7 +116,7 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
   }
   out.gap_shrink = shrink(before, after, rows);
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, blocks.size() - 1);
+  const UniformIndex pick(blocks.size());
   std::vector<double> samples;
   int losses = 0;
   for (int k = 0; k < kResamples; ++k) {

@@ -9,6 +9,7 @@
 
 #include "deltadyn/diagnosis/hypothesis.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
 namespace deltadyn {
@@ -155,8 +156,8 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   envelope.qd *= kRoom;
   envelope.qdd *= kRoom;
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(0.4, 1.0);
+  NormalDistribution normal;
+  UniformDistribution uniform(0.4, 1.0);
   std::optional<FourierSeries> best;
   double best_value = -1;
   std::vector<double> values;

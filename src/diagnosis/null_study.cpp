@@ -10,6 +10,7 @@
 #include <random>
 
 #include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
@@ -183,7 +184,7 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
 
 std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   std::vector<PreparedLog> out;
   for (std::size_t l = 0; l < logs_.size(); ++l) {
     PreparedLog log = logs_[l].log;
@@ -433,7 +434,7 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
   const auto run = [&](int k) {
     const std::uint64_t seed = options.seed * 104729U + 15485863U * static_cast<std::uint64_t>(k + 1);
     std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    NormalDistribution normal;
     VectorXd y = clean;
     for (std::size_t s = 0; s < problem.segments.size(); ++s) {
       const Index rows = problem.segments[s].rows();

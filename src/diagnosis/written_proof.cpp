@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
 namespace deltadyn::detail {
@@ -52,7 +53,7 @@ std::vector<Block> blocks_of(const Prediction& before, const Prediction& after, 
 
 double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, blocks.size() - 1);
+  const UniformIndex pick(blocks.size());
   int losses = 0;
   for (int k = 0; k < kResamples; ++k) {
     double gain = 0;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 namespace {
@@ -70,10 +71,7 @@ class StateDraw {
   }
 
  private:
-  double uniform(double lower, double upper) {
-    // 53 random bits: the same number with every standard library.
-    return lower + (upper - lower) * (static_cast<double>(random_() >> 11U) * 0x1.0p-53);
-  }
+  double uniform(double lower, double upper) { return lower + (upper - lower) * unit_of_53_bits(random_); }
   double draw(double limit) {
     const double share = uniform(-1, 1);
     return std::isfinite(limit) ? share * limit : 0.0;

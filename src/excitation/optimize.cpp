@@ -13,6 +13,7 @@
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
 #include "design_problem.hpp"
@@ -66,11 +67,11 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Numbers that are the same with every standard library.
+/// Numbers of which each takes two draws, whatever was drawn before (Box, Muller 1958).
 class Normal {
  public:
   explicit Normal(std::uint64_t seed) : random_(seed) {}
-  double uniform() { return (static_cast<double>(random_() >> 11U) + 0.5) * 0x1.0p-53; }
+  double uniform() { return unit_of_53_bits(random_) + 0x1.0p-54; }  // in (0, 1)
   double normal() { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform()); }
 
  private:

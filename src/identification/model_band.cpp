@@ -9,6 +9,7 @@
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/log_part.hpp"
 
 namespace deltadyn {
@@ -112,7 +113,7 @@ struct BandRows {
 
 /// The log with as much noise on its positions again as they have.
 Log noisier(const Log& log, std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   Log out = log;
   const VectorXd std = position_noise_std(log);
   out.q += MatrixXd::NullaryExpr(log.samples(), log.drives(), [&]() { return normal(random); }) * std.asDiagonal();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 
@@ -49,9 +50,7 @@ WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : rob
 }
 
 double WorkspaceSampler::uniform(double lower, double upper) {
-  // 53 random bits: the same number with every standard library.
-  const double unit = static_cast<double>(random_() >> 11U) * 0x1.0p-53;
-  return lower + (upper - lower) * unit;
+  return lower + (upper - lower) * unit_of_53_bits(random_);
 }
 
 bool WorkspaceSampler::regular(const Eigen::VectorXd& q) const {

@@ -1,5 +1,7 @@
 #include "deltadyn/signal/requantise.hpp"
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "checks/channel_quality.hpp"
 
 namespace deltadyn {
@@ -13,10 +15,9 @@ Eigen::VectorXd position_steps(const Log& log) {
 }
 
 Log requantised(const Log& log, const Eigen::MatrixXd& smooth, const Eigen::VectorXd& step, std::mt19937_64& random) {
-  constexpr double kRange = 18446744073709551616.0;  // 2^64
   Log out = log;
   for (Index j = 0; j < log.drives(); ++j) {
-    const double phase = static_cast<double>(random()) / kRange;
+    const double phase = canonical(random);
     out.q.col(j) = smooth.col(j);
     if (step(j) > 0) out.q.col(j) = step(j) * ((smooth.col(j) / step(j)).array() + phase).round() - step(j) * phase;
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 namespace {
@@ -87,7 +88,7 @@ Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixX
   for (const Effect& effect : in_order) record(effect, period, recorded);
   const Eigen::VectorXd noise = one_a_drive(options.torque_noise, drives);
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const double rho = options.torque_noise_correlation, fresh = std::sqrt(1 - rho * rho);
   Eigen::VectorXd state(drives);
   for (int j = 0; j < drives; ++j) state(j) = noise(j) > 0 ? normal(random) : 0.0;

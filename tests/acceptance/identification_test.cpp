@@ -15,6 +15,7 @@
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 #include "acceptance/tool_run.hpp"
@@ -115,7 +116,7 @@ class HalfBall {
   }
 
  private:
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
+  double uniform(double low, double high) { return low + (high - low) * unit_of_53_bits(engine_); }
   const Robot& robot_;
   std::mt19937_64 engine_;
 };
@@ -307,8 +308,8 @@ TEST(Identification, AVeryShortLogGivesAConsistentModelThatIsNotTrusted) {
   std::size_t end = 0;
   for (int line = 0; line < 700; ++line) end = text.find('\n', end) + 1;
   const std::string part = folder.write("short.csv", text.substr(0, end));
-  const ToolResult result = run({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz", "50", "-o",
-                                 folder.path("params.csv"), "--summary", folder.path("summary.csv")});
+  const ToolResult result = run({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz", "50",
+                                 "-o", folder.path("params.csv"), "--summary", folder.path("summary.csv")});
   ASSERT_TRUE(result.code == 0 || result.code == 5) << result.err;
   const auto summary = read_summary(folder.path("summary.csv"));
   EXPECT_NE(summary.at("verdict"), "trusted") << "0.7 s do not make a trusted model";

@@ -5,6 +5,8 @@
 #include <random>
 #include <regex>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "acceptance/workshop.hpp"
 
 namespace deltadyn::acceptance {
@@ -21,7 +23,7 @@ struct Fault {
 };
 
 bool chance(std::mt19937_64& random, double share) {
-  return std::generate_canonical<double, 30>(random) < share;
+  return canonical(random) < share;
 }
 
 void copy_fields(Table& rows, std::size_t to, std::size_t from, std::size_t first, std::size_t last) {
@@ -96,7 +98,7 @@ std::vector<Fault> faults() {
        "the servo is off"},
       {"StampsOfAnOperatingSystem",
        [](Table& rows, auto& random) {
-         std::normal_distribution<double> jitter(0.0, 5e-5);
+         NormalDistribution jitter(0.0, 5e-5);
          for (std::size_t k = 0; k < rows.size(); ++k) {
            rows[k][0] = time(0.001 * static_cast<double>(k) + std::clamp(jitter(random), -1.5e-4, 1.5e-4) + 2e-4);
          }

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -46,7 +48,7 @@ GenericBasis small_basis(const std::vector<LogRows>& logs) {
 
 VectorXd noise(double correlation, unsigned seed) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   VectorXd e(kRows);
   double last = normal(random);
   for (Index k = 0; k < kRows; ++k) e(k) = last = correlation * last + std::sqrt(1 - correlation * correlation) * normal(random);

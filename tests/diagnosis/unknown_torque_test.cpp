@@ -5,6 +5,7 @@
 #include <random>
 
 #include "deltadyn/identification/effect_columns.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 namespace {
@@ -59,7 +60,7 @@ TEST(UnknownTorque, SpansWhateverHappensInTheStretch) {
   ASSERT_EQ(unknown.size(), 2u);
   EXPECT_TRUE(present.all());
   std::mt19937 random(1);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   for (int trial = 0; trial < 20; ++trial) {
     MatrixXd tau = MatrixXd::Zero(kSamples, 1);
     for (Index k = 0; k < kSamples; ++k) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -16,7 +18,7 @@ TYPED_TEST_SUITE(JointElasticity, Scalars);
 TYPED_TEST(JointElasticity, IsTheFirstTermOfTheExactTorqueWithTheEncoderOnTheMotor) {
   using T = TypeParam;
   std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(0, 1);
+  UniformDistribution uniform(0, 1);
   for (int trial = 0; trial < 200; ++trial) {
     const double motor = 0.05 + 0.3 * uniform(random), arm = 0.1 + 0.5 * uniform(random), k = 1e3 + 1e4 * uniform(random);
     const double w = std::sqrt(k / arm) * (0.05 + 0.25 * uniform(random)), theta = uniform(random) - 0.5;

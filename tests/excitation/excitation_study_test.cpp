@@ -11,6 +11,7 @@
 #include "deltadyn/excitation/optimize.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
 #include "excitation/excitation_setup.hpp"
@@ -100,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, LimitStudy,
 double mean_relative_std(const Robot& robot, const BaseParameters& base, const Eigen::VectorXd& truth,
                          const TrajectorySamples& samples, const Eigen::VectorXd& noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const Eigen::Index n = robot.drives(), p = base.count(), rows = n * samples.samples();
   Eigen::MatrixXd A(rows, p), Y(n, robot.parameters());
   Eigen::VectorXd b(rows), tau(n);

@@ -7,6 +7,7 @@
 
 #include "deltadyn/excitation/optimize.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "excitation/excitation_setup.hpp"
 
@@ -44,7 +45,7 @@ TEST(PredictedUncertainty, IsTheScatterOfEstimates) {
   }
   const Eigen::MatrixXd pseudo = A.completeOrthogonalDecomposition().pseudoInverse();
   std::mt19937_64 random(1);
-  std::normal_distribution<double> normal(0, 0.3);
+  NormalDistribution normal(0, 0.3);
   constexpr int kLogs = 4000;
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(p);
   for (int log = 0; log < kLogs; ++log) {

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log.hpp"
 
@@ -25,7 +26,7 @@ struct AxisLog {
   /// The friction's state is integrated here in steps a tenth of a sample: it shares no code with the library.
   [[nodiscard]] Log make() const {
     std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    NormalDistribution normal;
     const testing::MultiSine motion{base_hz, amplitude};
     const double phase = 0.7 * static_cast<double>(seed);
     Log log;

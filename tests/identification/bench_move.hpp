@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/log.hpp"
 
 namespace deltadyn::testing_support {
@@ -38,8 +39,8 @@ struct BenchMove {
 
   [[nodiscard]] Log make() const {
     std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> uniform;
+    NormalDistribution normal;
+    UniformDistribution uniform;
     Log log;
     log.file = "bench";
     const auto N = static_cast<Eigen::Index>(duration_s * rate_hz);

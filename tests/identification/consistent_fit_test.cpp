@@ -10,6 +10,7 @@
 
 #include "deltadyn/model/log_cholesky.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "identification/fit_problems.hpp"
 
@@ -138,7 +139,7 @@ TEST(ConsistentFit, NoFeasiblePointIsLower) {
   const double best = cost(summary.p);
   EXPECT_NEAR(best, summary.data_cost + summary.lambda * summary.regularization_cost, 1e-8 * best);
   std::mt19937 random(31);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   for (int trial = 0; trial < 3000; ++trial) {
     const double spread = std::pow(10.0, -4.0 * (trial % 5) / 4.0);
     Eigen::VectorXd other = summary.p;
@@ -252,7 +253,7 @@ TEST(ConsistentFit, FrictionThatTheDataDenyGoesToZeroAndStaysPositive) {
 TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
   // a screw axis: F = m a + Fv v + Fc sign(v) + offset
   std::mt19937 random(45);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const int rows = 400;
   ConsistentFitProblem problem;
   for (const char* name : kInertialNames) problem.names.push_back(std::string("upper_arm.") + name);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -77,7 +79,7 @@ TEST_P(SpringColumn, CarriesEncoderNoiseAsTheWholeComputationDoes) {
   const EffectSignals still = model.signals(log_, p_, false);
   PreparedLog noisy = log_;
   std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const double dt = 1 / log_.rate_hz;
   for (Index j = 0; j < noisy.q.cols(); ++j) {
     const double phase = normal(random), w = 2 * 3.14159 * (12 + 3 * normal(random));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "../../src/identification/fit_convex.hpp"
 #include "identification/fit_problems.hpp"
 
@@ -15,7 +17,7 @@ using testing_support::random_problem;
 /// Fitted entries of a consistent body away from the anchor, by moving its variables.
 Eigen::VectorXd moved(const Block& block, double spread, unsigned seed) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   Eigen::VectorXd y(block.fitted());
   if (!block.is_body()) return Eigen::VectorXd::Constant(1, block.anchor(0) * std::exp(spread * normal(random)));
   LogCholeskyVector<double> pi = block.pi;

@@ -12,6 +12,7 @@
 
 #include "deltadyn/identification/consistent_fit.hpp"
 #include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn::testing_support {
 
@@ -85,7 +86,7 @@ inline ConsistentFitProblem random_problem(unsigned seed, int rank, double preci
   const Eigen::VectorXd p = values_of(truth);
   const auto P = p.size();
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   Eigen::MatrixXd rows(rank, P);
   for (int i = 0; i < rank; ++i) {
     const double strength = precision * std::pow(10.0, -3.0 * i / rank);

@@ -10,6 +10,7 @@
 #include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "identification/synthetic_log.hpp"
 
@@ -48,7 +49,7 @@ TEST(Intervals, CoverTheTruthAndMeetTheCramerRaoBound) {
   ASSERT_GT(bound.minCoeff(), 0);
 
   std::mt19937_64 random(2024);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   int covered = 0;
   Eigen::VectorXd square_error = Eigen::VectorXd::Zero(base.count()), stated = square_error;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "identification/synthetic_log.hpp"
 
@@ -84,7 +85,7 @@ TEST(LeastSquares, NamesWhatTheMotionDoesNotShow) {
 
 TEST(NoiseCorrelation, WhiteNoiseIsOneAndCorrelatedNoiseHasItsKnownValue) {
   std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const Eigen::Index N = 40000;
   const auto all = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(N, true).eval();
   Eigen::VectorXd white(N), correlated(N);

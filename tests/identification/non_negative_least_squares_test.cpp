@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -20,7 +22,7 @@ struct Problem {
 
 /// Columns that are much alike, as those of effects are, so that one that left often belongs back in.
 Problem random_problem(std::mt19937_64& random, Index columns) {
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const auto matrix = [&](Index rows, Index cols) {
     return MatrixXd(MatrixXd::NullaryExpr(rows, cols, [&] { return normal(random); }));
   };

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn::testing_support {
@@ -22,8 +24,8 @@ inline Log pick_and_place_log(const Robot& robot, const Eigen::VectorXd& p, cons
                               const PickAndPlace& work = {}) {
   const int n = robot.drives();
   std::mt19937_64 random(options.seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  NormalDistribution normal;
+  UniformDistribution uniform(-1, 1);
   const WorkspaceSampler sampler(robot);
   const auto point = [&] {
     Eigen::VectorXd z(n);

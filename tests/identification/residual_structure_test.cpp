@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr Eigen::Index kRows = 2000;
 
 Eigen::VectorXd noise(std::uint64_t seed, double memory = 0.0) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   Eigen::VectorXd e(kRows);
   double state = 0;
   for (Eigen::Index k = 0; k < kRows; ++k) e(k) = state = memory * state + std::sqrt(1 - memory * memory) * normal(random);

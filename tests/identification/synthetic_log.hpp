@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 #include "deltadyn/signal/log.hpp"
@@ -69,7 +70,7 @@ inline SyntheticOptions coarse_recording(std::uint64_t seed) {
 inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, const SyntheticOptions& options) {
   const int n = robot.drives();
   std::mt19937_64 random(options.seed);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const WorkspaceSampler sampler(robot);
   constexpr int kHarmonics = 5;
   Eigen::MatrixXd a(n, kHarmonics), b(n, kHarmonics);

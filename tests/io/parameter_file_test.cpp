@@ -5,6 +5,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "io/temporary_folder.hpp"
 #include "support/descriptions.hpp"
@@ -20,7 +21,7 @@ using ::testing::IsEmpty;
 TEST(ParameterFile, ReadsBackExactly) {
   const TemporaryFolder folder;
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> exponent(-12, 3);
+  UniformDistribution exponent(-12, 3);
   ParameterTable table;
   for (int i = 0; i < 200; ++i) {
     table.entries.push_back({"p" + std::to_string(i), std::pow(10.0, exponent(random)), "kg*m^2"});

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "support/descriptions.hpp"
 
@@ -75,7 +76,7 @@ class RandomRobot {
     return robot;
   }
 
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  double in(double low, double high) { return UniformDistribution(low, high)(generator_); }
   Vector3<double> vector(double size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
 
  private:

@@ -5,13 +5,15 @@
 #include <limits>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
 /// A cloud of point masses is a body by construction; sums over the points are an oracle without any matrix algebra.
 template <class T>
 InertialVector<T> cloud_body(std::mt19937& random, int points) {
-  std::uniform_real_distribution<double> place(-0.5, 1.0), mass(0.01, 0.5);
+  UniformDistribution place(-0.5, 1.0), mass(0.01, 0.5);
   InertialVector<double> p = InertialVector<double>::Zero();
   for (int i = 0; i < points; ++i) {
     const double m = mass(random), x = place(random), y = place(random), z = place(random);
@@ -31,7 +33,7 @@ TYPED_TEST_SUITE(InertialParametersTest, Scalars);
 TYPED_TEST(InertialParametersTest, PseudoInertiaIsTheSumOfOuterProductsOfThePoints) {
   using T = TypeParam;
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> place(-0.5, 1.0);
+  UniformDistribution place(-0.5, 1.0);
   for (int trial = 0; trial < 50; ++trial) {
     const Vector<T, 4> h(T(place(random)), T(place(random)), T(place(random)), T(1));
     const T m = T(0.7), x = h(0), y = h(1), z = h(2);

@@ -5,12 +5,14 @@
 #include <limits>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
 template <class T>
 LogCholeskyVector<T> random_variables(std::mt19937& random) {
-  std::normal_distribution<double> normal(0.0, 0.7);
+  NormalDistribution normal(0.0, 0.7);
   LogCholeskyVector<T> pi;
   for (int i = 0; i < 10; ++i) pi(i) = T(normal(random));
   return pi;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -49,7 +51,7 @@ TEST(Shapes, HollowCylinderIsTheLimitOfManyPoints) {
 
 TEST(Shapes, TurnedAndMovedCloudsAgree) {
   std::mt19937 generator(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  UniformDistribution uniform(-1, 1);
   const auto vector = [&] { return Vec(uniform(generator), uniform(generator), uniform(generator)); };
   for (int k = 0; k < 100; ++k) {
     const Eigen::Matrix3d R = Eigen::Quaterniond(uniform(generator), uniform(generator), uniform(generator), uniform(generator))

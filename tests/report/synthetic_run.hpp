@@ -16,6 +16,7 @@
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
@@ -37,8 +38,8 @@ inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, double no
   const bool axis = robot.description().parts.empty();
   const WorkspaceBall ball = WorkspaceSampler(robot).ball();
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> phase(0, 6.28);
-  std::normal_distribution<double> normal;
+  UniformDistribution phase(0, 6.28);
+  NormalDistribution normal;
   Eigen::MatrixXd phases(n, 5);
   for (Eigen::Index k = 0; k < phases.size(); ++k) phases(k) = phase(random);
   Log log;

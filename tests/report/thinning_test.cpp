@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -13,7 +15,7 @@ const double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Series noise(SeriesStyle style = SeriesStyle::line) {
   std::mt19937 generator(7);
-  std::normal_distribution<double> normal(0.0, 0.1);
+  NormalDistribution normal(0.0, 0.1);
   Series series{"noise", Eigen::VectorXd::LinSpaced(kMany, 0.0, 1.0), Eigen::VectorXd(kMany), style};
   for (double& y : series.y) y = normal(generator);
   return series;

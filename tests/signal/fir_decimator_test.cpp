@@ -5,6 +5,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "signal/multi_sine.hpp"
 
@@ -30,7 +31,7 @@ TEST(FirDecimator, IsSymmetricFlatAndQuietWhereItShould) {
 // Sums over long blocks of filtered white noise vary as much as the filter says.
 TEST(FirDecimator, KnowsHowItCorrelatesWhiteNoise) {
   std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   for (const int factor : {4, 8, 16}) {
     const FirDecimator filter(1000, 25.0, factor);
     const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(400000, 1, [&]() { return normal(random); });
@@ -61,7 +62,7 @@ TEST(FirDecimator, HasNoLag) {
 
 TEST(FirDecimator, BlocksGiveTheSameAsTheWhole) {
   std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const Eigen::MatrixXd in = Eigen::MatrixXd::NullaryExpr(5000, 3, [&] { return normal(random); });
   const FirDecimator filter(1000, 30.0, 9);
   const Eigen::Index n = filter.outputs(5000);

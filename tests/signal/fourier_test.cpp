@@ -4,6 +4,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "signal/multi_sine.hpp"
 
@@ -15,7 +16,7 @@ using namespace deltadyn::testing;
 /// Two drives with 19-bit encoders and noisy torque, `rate_hz` not necessarily a multiple of the base frequency.
 Log periodic_log(const MultiSine& motion, double rate_hz, Eigen::Index samples, double torque_noise) {
   std::mt19937_64 random(17);
-  std::normal_distribution<double> normal(0.0, torque_noise);
+  NormalDistribution normal(0.0, torque_noise);
   Log log;
   log.file = "log.csv";
   log.t_s = times(rate_hz, samples);

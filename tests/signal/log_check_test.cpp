@@ -9,6 +9,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "signal/multi_sine.hpp"
 
@@ -33,7 +34,7 @@ RobotDescription delta3() {
 /// Ten seconds of three drives; sample i stands in line i + 2.
 Log good_log() {
   std::mt19937_64 random(23);
-  std::normal_distribution<double> normal(0.0, 0.1);
+  NormalDistribution normal(0.0, 0.1);
   Log log;
   log.file = "log.csv";
   log.t_s = times(1000, 10000);
@@ -188,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"JitteredStamps",
              [](Log& log) {
                std::mt19937_64 random(5);
-               std::uniform_real_distribution<double> jitter(-0.0002, 0.0002);
+               UniformDistribution jitter(-0.0002, 0.0002);
                for (Eigen::Index i = 0; i < log.samples(); ++i) {
                  const double shift = jitter(random);
                  log.t_s(i) += shift;
@@ -323,7 +324,7 @@ TEST(LogCheck, BridgesLostRowsWithinTheNoise) {
     std::mt19937_64 random(3);
     std::vector<Eigen::Index> rows;
     for (Eigen::Index i = 9998; i > 0; --i) {
-      if (std::generate_canonical<double, 30>(random) < share) remove_rows(log, i, 1);
+      if (canonical(random) < share) remove_rows(log, i, 1);
     }
     const std::vector<Log> parts = parts_of(log);
     ASSERT_EQ(parts.size(), 1U);
@@ -346,7 +347,7 @@ TEST(LogCheck, TakesHeldRowsAsMissing) {
   std::mt19937_64 random(8);
   Eigen::Index held = 0;
   for (Eigen::Index i = 1; i < 10000; ++i) {
-    if (std::generate_canonical<double, 30>(random) > 0.01) continue;
+    if (canonical(random) > 0.01) continue;
     log.q.row(i) = log.q.row(i - 1);
     log.tau.row(i) = log.tau.row(i - 1);
     ++held;
@@ -427,7 +428,7 @@ TEST(LogCheck, TakesStampsOfAnOperatingSystemAsEven) {
   const Log truth = good_log();
   Log log = good_log();
   std::mt19937_64 random(5);
-  std::normal_distribution<double> jitter(0.0, 5e-5);
+  NormalDistribution jitter(0.0, 5e-5);
   for (Eigen::Index i = 0; i < 10000; ++i) log.t_s(i) += std::clamp(jitter(random), -1.5e-4, 1.5e-4);
   const Log mended = parts_of(log).front();
   EXPECT_EQ(mended.q, truth.q);  // not interpolated

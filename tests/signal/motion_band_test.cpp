@@ -4,6 +4,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 #include "signal/multi_sine.hpp"
 
@@ -17,7 +18,7 @@ constexpr double kRate = 1000;
 /// One drive of inertia 1: five harmonics of `base_hz`, an encoder of `bits`, a torque with white noise.
 Log drive_log(double base_hz, int bits, double torque_noise, double structure = 0) {
   std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   Log log;
   log.file = "drive";
   log.t_s = times(kRate, 10'000);

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
 TEST(Resample, IsExactForCubicsOnUnevenTimes) {
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> step(0.2, 1.8);
+  UniformDistribution step(0.2, 1.8);
   Eigen::VectorXd t(50);
   t(0) = 0;
   for (Eigen::Index i = 1; i < 50; ++i) t(i) = t(i - 1) + step(random);

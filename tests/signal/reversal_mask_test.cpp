@@ -4,6 +4,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 
@@ -26,7 +27,7 @@ TEST(ReversalMask, MarksSlowSamplesAndTheirNeighbours) {
 
 TEST(PositionNoise, MeetsGaussianNoiseAndQuantisation) {
   std::mt19937_64 random(1);
-  std::normal_distribution<double> normal(0.0, 2e-5);
+  NormalDistribution normal(0.0, 2e-5);
   const Eigen::VectorXd t = times(1000, 10000);
   const MultiSine motion;
   Eigen::VectorXd q = motion.at(t, 0);
@@ -39,7 +40,7 @@ TEST(PositionNoise, MeetsGaussianNoiseAndQuantisation) {
 
 TEST(DerivativeNoise, PredictsTheScatterBehindTheFilter) {
   std::mt19937_64 random(2);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(100000, 1, [&] { return normal(random); });
   for (const double cutoff : {10.0, 40.0, 100.0}) {
     const Eigen::MatrixXd filtered = zero_phase_filter(noise, 1000, cutoff, 4);

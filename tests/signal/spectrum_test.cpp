@@ -8,6 +8,7 @@
 #include <random>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kRate = 1000.0;
 
 Eigen::VectorXd white_noise(Eigen::Index n, double sigma, unsigned seed = 3) {
   std::mt19937 generator(seed);
-  std::normal_distribution<double> normal(0.0, sigma);
+  NormalDistribution normal(0.0, sigma);
   return Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index) { return normal(generator); });
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "signal/multi_sine.hpp"
 
 namespace deltadyn {
@@ -12,7 +14,7 @@ namespace {
 TEST(TimeGrid, FindsTheStepBehindRoundedAndJitteredStamps) {
   std::mt19937_64 random(11);
   for (const double jitter : {0.0, 0.1, 0.3, 0.44}) {
-    std::uniform_real_distribution<double> noise(-jitter, jitter);
+    UniformDistribution noise(-jitter, jitter);
     Eigen::VectorXd t = testing::times(8000, 5000);
     for (double& stamp : t) stamp += noise(random) / 8000;
     const TimeGrid grid = fit_time_grid(t);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "deltadyn/runtime/random.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -38,7 +40,7 @@ TEST(StickSlip, OneJointHoldsUpToItsFriction) {
 
 TEST(StickSlip, RandomProblemsMeetTheirConditions) {
   std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
+  NormalDistribution normal;
   for (int k = 0; k < 500; ++k) {
     const int joints = 1 + k % 7, coordinates = 1 + k % 4;  // often more joints than coordinates: A is singular then
     Eigen::MatrixXd J(joints, coordinates);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/runtime/random.hpp"
+
 #include "studies/blind_plant.hpp"
 
 namespace deltadyn::blind {
@@ -30,7 +32,7 @@ inline Hidden sized(Hidden hidden, double amplitude) {
 using Random = std::mt19937_64;
 
 inline double between(Random& random, double low, double high) {
-  return low + (high - low) * std::uniform_real_distribution<double>()(random);
+  return low + (high - low) * UniformDistribution()(random);
 }
 
 /// Resistance on one drive as a function of the moment.

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log.hpp"
 
@@ -82,8 +83,8 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
   const auto model = make_robot(blind.robot);
   const int n = machine.drives();
   std::mt19937_64 random(blind.seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::normal_distribution<double> normal;
+  UniformDistribution uniform(-1, 1);
+  NormalDistribution normal;
 
   // The plant's own parameters: those of the model, limb by limb, without friction, which acts in the loop below.
   Eigen::VectorXd p_own(plant->parameters());

@@ -14,6 +14,7 @@
 
 #include "deltadyn/identification/identify.hpp"
 #include "deltadyn/identification/log_gate.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
 #include "identification/synthetic_log.hpp"
@@ -70,8 +71,8 @@ int main(int argc, char** argv) {
   double largest = 0, friction = 0;
   for (int k = first; k < first + repetitions; ++k) {
     std::mt19937_64 random(static_cast<std::uint64_t>(k));
-    const double delay = std::uniform_real_distribution<double>(-5e-3, 10e-3)(random);
-    const double fast_hz = std::uniform_real_distribution<double>(0.35, 0.7)(random);
+    const double delay = UniformDistribution(-5e-3, 10e-3)(random);
+    const double fast_hz = UniformDistribution(0.35, 0.7)(random);
     std::vector<Log> logs = recorded(*robot, static_cast<std::uint64_t>(k), fast_hz);
     for (Log& log : logs)
       for (Eigen::Index j = 0; j < log.drives(); ++j) log.tau.col(j) = mend_timing(log.tau.col(j), 1e-3, -delay, 0);

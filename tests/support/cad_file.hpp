@@ -13,6 +13,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/model/body.hpp"
 #include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn::testing_support {
@@ -65,7 +66,7 @@ class CadFile {
   };
   using Ten = InertialVector<double>;
 
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double uniform(double low, double high) { return UniformDistribution(low, high)(random_); }
 
   Pose frame(const Vec& origin, bool offset = false) {
     Pose X = Pose::Identity();

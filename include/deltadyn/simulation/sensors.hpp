@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "deltadyn/runtime/effect_catalogue.hpp"
+#include "deltadyn/runtime/random.hpp"
 
 namespace deltadyn {
 
@@ -31,7 +32,7 @@ class Encoders {
  private:
   Eigen::VectorXd step_, noise_;
   std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
+  NormalDistribution normal_;
 };
 
 /// True for effects on the recorded torque alone.
