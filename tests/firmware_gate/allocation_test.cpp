@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core_calls.hpp"
+#include "effect_calls.hpp"
 
 extern "C" {
 // glibc's own allocator under its second name, so that the first one may be replaced.
@@ -153,6 +154,29 @@ TEST_P(CoreCalls, SinglePrecision) {
 
 TEST_P(CoreCalls, DoublePrecision) {
   expect_sound_and_free_of_heap(run_double, GetParam(), 1e-12);
+}
+
+/// A million set points for the robot with all parts, fewer for the others; no NaN reaches the drives, no call takes heap.
+void expect_finite_and_free_of_heap(EffectOutcome (*run)(int, long), int robot) {
+  const long set_points = std::string(kRobotNames[robot]) == "delta4" ? 1'000'000 : 200'000;
+  const AllocationCounter counter;
+  const EffectOutcome outcome = run(robot, set_points);
+  const int allocated = counter.allocated();
+  EXPECT_EQ(allocated, 0);
+  EXPECT_EQ(outcome.wrong, 0);
+  EXPECT_TRUE(outcome.settings);
+  EXPECT_GT(outcome.effects, 10);
+  EXPECT_GT(outcome.ok, set_points / 4);
+  EXPECT_GT(outcome.refused, set_points / 200);
+  EXPECT_GT(outcome.largest_torque, 1);
+}
+
+TEST_P(CoreCalls, EffectsInSinglePrecision) {
+  expect_finite_and_free_of_heap(run_effects_float, GetParam());
+}
+
+TEST_P(CoreCalls, EffectsInDoublePrecision) {
+  expect_finite_and_free_of_heap(run_effects_double, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, CoreCalls, testing::Range(0, kRobots),

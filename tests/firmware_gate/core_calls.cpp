@@ -16,30 +16,10 @@
 #include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/model/log_cholesky.hpp"
 
+#include "plausible_geometry.hpp"
+
 namespace deltadyn::firmware_gate {
 namespace {
-
-/// A robot about the size of the paper's, not its exact lengths.
-template <class T, class Robot>
-Geometry<T, Robot> plausible_geometry() {
-  Geometry<T, Robot> geometry;
-  for (int i = 0; i < Robot::kLimbs; ++i) {
-    LimbGeometry<T>& limb = geometry.limbs[i];
-    limb.azimuth = T(i) * T(2.0943951023931953);
-    const Matrix3<T> R_WL = rot_z(SinCos<T>(limb.azimuth));
-    limb.p_BA = R_WL * Vector3<T>(T(0.045), T(0), T(0));
-    limb.strut = T(0.8);
-    if (Robot::kDrive == DriveKind::revolute) {
-      limb.p_WD = R_WL * Vector3<T>(T(0.2), T(0), T(0));
-      limb.p_DE_0 = Vector3<T>(T(0.35), T(0), T(0));
-    } else {
-      limb.p_WD = R_WL * Vector3<T>(T(0.4), T(0), T(0));
-      limb.axis_L = -Vector3<T>::UnitZ();
-    }
-  }
-  geometry.telescope.p_BV = Vector3<T>(T(0), T(0), T(0.02));
-  return geometry;
-}
 
 template <class T, class Derived>
 double largest(const Eigen::MatrixBase<Derived>& values) {

@@ -19,15 +19,22 @@ Vector<T, Robot::kDrives> friction_torque(const Motion<T, Robot>& motion, const 
   return tau;
 }
 
+/// Adds the drive torques [N m | N] that the bodies take, gravity included.
+template <class Layout, class T, class Robot>
+void add_torque_of_bodies(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                          const Vector<T, Layout::kColumns>& p, Vector<T, Robot::kDrives>& tau) {
+  for_each_body(geometry, motion, [&](Body kind, int index, int count, const BodyMotion<T, Robot::kDrives>& body) {
+    const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);
+    tau += T(count) * (body.J_v.transpose() * inertia.force(body) + body.J_w.transpose() * inertia.moment(body));
+  });
+}
+
 /// Drive torques [N m | N] of a motion for parameters p (layout of the regressor). Paper (1), (2).
 template <class Layout, class T, class Robot>
 Vector<T, Robot::kDrives> inverse_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                                            const Vector<T, Layout::kColumns>& p) {
   Vector<T, Robot::kDrives> tau = friction_torque<Layout>(motion, p);
-  for_each_body(geometry, motion, [&](Body kind, int index, int count, const BodyMotion<T, Robot::kDrives>& body) {
-    const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);
-    tau += T(count) * (body.J_v.transpose() * inertia.force(body) + body.J_w.transpose() * inertia.moment(body));
-  });
+  add_torque_of_bodies<Layout>(geometry, motion, p, tau);
   for (int drive = 0; drive < Robot::kDrives; ++drive) {
     tau(drive) += p(Layout::kRotorInertia + drive) * motion.qdd(drive) + p(Layout::kOffset + drive);
   }

@@ -1,0 +1,212 @@
+#pragma once
+
+/// \file
+/// A few effects at their places on one robot, evaluated at one set point: fixed capacity, no heap, bounded time.
+
+#include "deltadyn/core/smooth_sign.hpp"
+#include "deltadyn/core/status.hpp"
+#include "deltadyn/effects/side_load.hpp"
+#include "deltadyn/effects/some_effects.hpp"
+#include "deltadyn/firmware/changed_geometry.hpp"
+#include "deltadyn/firmware/effect_refusal.hpp"
+#include "deltadyn/kinematics/passive_joints.hpp"
+
+namespace deltadyn {
+
+/// One effect with its numbers, in the order of its traits. A constant table of them is what a converted header holds.
+struct EffectRow {
+  EffectId id = EffectId{-1};
+  int joint = -1;  ///< drive from 0; -1: not on one drive (telescope, platform, robot)
+  Shape<double> shape{};
+  std::array<double, kMostAmplitudes> amplitude{};
+};
+
+/// One set point as effects see it.
+template <class T, class Robot>
+struct EffectScene {
+  static constexpr int kPassive = Robot::kDrives + 1;  ///< place of the passive joints in `width`, behind drives and telescope
+  using Drives = Vector<T, Robot::kDrives>;
+
+  const Motion<T, Robot>& motion;  ///< of the machine as it is
+  const Vector3<T>& gravity;
+  const Drives& q;                       ///< as the encoders have it [rad | m]
+  const Drives& load;                    ///< rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
+  const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, telescope, passive joints [rad/s | m/s]
+  T time;                                ///< [s]
+
+  [[nodiscard]] JointInput<T> at_drive(int drive) const {
+    JointInput<T> in = at_rate(motion.qd(drive), drive);
+    in.position = q(drive);
+    in.acceleration = motion.qdd(drive);
+    in.load = load(drive);
+    if (drive < Robot::kLimbs) {
+      const SinCos<T>& azimuth = motion.posture.limbs[drive].azimuth;
+      in.gravity_x = azimuth.cos * gravity.x() + azimuth.sin * gravity.y();
+      in.gravity_z = gravity.z();
+    }
+    return in;
+  }
+  [[nodiscard]] JointInput<T> at_telescope() const {
+    JointInput<T> in = at_rate(motion.telescope.length_d, Robot::kDrives);
+    in.side_load = side_load<T>(motion.posture.telescope.e, motion.zdd.template head<3>(), gravity);
+    return in;
+  }
+  [[nodiscard]] PlateInput<T> at_plate() const {
+    PlateInput<T> in;
+    in.position = motion.posture.z.template head<3>();
+    in.velocity = motion.zd.template head<3>();
+    in.acceleration = motion.zdd.template head<3>();
+    in.gravity = gravity;
+    return in;
+  }
+  [[nodiscard]] JointInput<T> at_rate(const T& rate, int joint) const {
+    JointInput<T> in;
+    in.rate = rate;
+    in.sign = smooth_sign(rate, width(joint));
+    in.time = time;
+    return in;
+  }
+};
+
+/// \tparam kCapacity  most effects
+/// \tparam List       EffectList of those that may be added; a program holds no code of the others
+template <class T, class Robot, int kCapacity, class List = AllEffects>
+class EffectSet {
+ public:
+  using Drives = Vector<T, Robot::kDrives>;
+
+  /// What the laws remember.
+  struct Memory {
+    bool started = false;
+    Drives q = Drives::Zero();  ///< of the last set point [rad | m]
+    T state[kCapacity > 0 ? kCapacity : 1] = {};
+  };
+
+  /// Adds an effect; one that changes the machine changes it here and now. On a refusal all stays as it was.
+  EffectRefusal add(const EffectRow& row, ChangedGeometry<T, Robot>& machine) {
+    EffectRefusal refusal = EffectRefusal::not_in_list;
+    visit_effect_in<List>(row.id, [&](auto effect) { refusal = add_as<decltype(effect)>(row, machine); });
+    return refusal;
+  }
+
+  /// Memory of drives that have slid long with these rates; a drive at rest remembers nothing.
+  [[nodiscard]] Memory start(const Drives& q, const Drives& qd) const {
+    Memory memory;
+    memory.started = true;
+    memory.q = q;
+    for (int k = 0; k < count_; ++k) {
+      const Term& term = terms_[k];
+      visit_effect_in<List>(term.id, [&](auto effect) {
+        using E = decltype(effect);
+        if constexpr (kIs<E, JointMemory>) memory.state[k] = E::start(sign_of(qd(term.joint)), term.shape);
+      });
+    }
+    return memory;
+  }
+
+  /// Moves the memory to the set point and adds the torque [N m | N] of all effects there.
+  void add_torque(const EffectScene<T, Robot>& scene, Memory& memory, Drives& tau) const {
+    if (!memory.started) memory = start(scene.q, scene.motion.qd);
+    for (int k = 0; k < count_; ++k) {
+      visit_effect_in<List>(
+          terms_[k].id, [&](auto effect) { add_torque_of<decltype(effect)>(terms_[k], scene, memory.q, memory.state[k], tau); });
+    }
+    memory.q = scene.q;
+  }
+
+  /// Scales the effects of this role at a drive, beside their sizes as they were added.
+  void scale(Role role, int drive, const T& gain) {
+    for (int k = 0; k < count_; ++k) {
+      if (terms_[k].role == role && terms_[k].joint == drive) terms_[k].gain = gain;
+    }
+  }
+
+  [[nodiscard]] int count() const { return count_; }
+
+ private:
+  struct Term {
+    EffectId id = EffectId{-1};
+    Role role = Role::none;
+    int joint = -1;
+    Shape<T> shape{};
+    std::array<T, kMostAmplitudes> amplitude{};
+    T gain = T(1);
+  };
+
+  /// Which shape parameters must be positive, known to the compiler.
+  template <class E>
+  static constexpr std::array<bool, kMostShapes> positive_shapes() {
+    const EffectTraits traits = E::traits();
+    std::array<bool, kMostShapes> positive{};
+    for (std::size_t k = 0; k < traits.shapes.size(); ++k) positive[k] = traits.shapes[k].positive;
+    return positive;
+  }
+
+  template <class E>
+  EffectRefusal add_as(const EffectRow& row, ChangedGeometry<T, Robot>& machine) {
+    const EffectRefusal refusal = refusal_of<E>(row.shape);
+    if (refusal != EffectRefusal::none) return refusal;
+    if (!has_place<Robot>(E::traits().place, row.joint)) return EffectRefusal::no_such_place;
+    if (count_ >= kCapacity) return EffectRefusal::no_room;
+    Term term;
+    term.id = row.id;
+    term.role = E::traits().role;
+    term.joint = row.joint;
+    constexpr std::array<bool, kMostShapes> positive = positive_shapes<E>();
+    for (std::size_t k = 0; k < kMostShapes; ++k) {
+      term.shape[k] = static_cast<T>(row.shape[k]);
+      if (!is_finite(term.shape[k]) || (positive[k] && !(term.shape[k] > T(0)))) return EffectRefusal::bad_number;
+    }
+    for (std::size_t k = 0; k < kMostAmplitudes; ++k) {
+      term.amplitude[k] = static_cast<T>(row.amplitude[k]);
+      if (!is_finite(term.amplitude[k])) return EffectRefusal::bad_number;
+    }
+    if constexpr (kIs<E, MachineChange> && has_any_place<Robot>(E::traits().place)) {
+      ChangedGeometry<T, Robot> changed = machine;
+      E::change(changed, row.joint, row.amplitude, row.shape);
+      if (!changed.complete) return EffectRefusal::spring;
+      machine = changed;
+    }
+    terms_[count_++] = term;
+    return EffectRefusal::none;
+  }
+
+  static bool is_finite(const T& number) { return number - number == T(0); }
+
+  template <class E>
+  static T sum(const ColumnsOf<T, E>& columns, const Term& term) {
+    T total = T(0);
+    for (std::size_t c = 0; c < columns.size(); ++c) total += term.amplitude[c] * columns[c];
+    return term.gain * total;
+  }
+
+  template <class E>
+  static void add_torque_of(const Term& term, const EffectScene<T, Robot>& scene, const Drives& q_before, T& state, Drives& tau) {
+    constexpr EffectPlace place = E::traits().place;
+    if constexpr (kIs<E, JointMemory> && detail::is_on_drive(place)) {
+      const JointInput<T> in = scene.at_drive(term.joint);
+      state = E::moved(state, T(in.position - q_before(term.joint)), in, term.shape);
+      tau(term.joint) += sum<E>(E::columns(state, in, term.shape), term);
+    } else if constexpr (kIs<E, JointLaw> && detail::is_on_drive(place)) {
+      tau(term.joint) += sum<E>(E::columns(scene.at_drive(term.joint), term.shape), term);
+    } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::telescope && Robot::kTelescope) {
+      tau += sum<E>(E::columns(scene.at_telescope(), term.shape), term) * scene.motion.posture.telescope.J_length.transpose();
+    } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::passive_joints) {
+      for_each_passive_joint(scene.motion, [&](int index, const PassiveJoint<T, Robot>& joint) {
+        JointInput<T> in = scene.at_rate(joint.rate, EffectScene<T, Robot>::kPassive);
+        in.acceleration = joint.acceleration;
+        tau += (T(passive_joints_alike<Robot>(index)) * sum<E>(E::columns(in, term.shape), term)) * joint.J.transpose();
+      });
+    } else if constexpr (kIs<E, PlateForce> && kHasPlate<Robot>) {
+      const auto forces = E::columns(scene.at_plate(), term.shape);
+      Vector3<T> force = Vector3<T>::Zero();
+      for (std::size_t c = 0; c < forces.size(); ++c) force += term.amplitude[c] * forces[c];
+      tau += scene.motion.posture.J_plate.template topRows<3>().transpose().lazyProduct(force);
+    }
+  }
+
+  Term terms_[kCapacity > 0 ? kCapacity : 1];
+  int count_ = 0;
+};
+
+}  // namespace deltadyn
