@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kHidden = 0.002;  // of a signature's square: less is left beside the base model than any noise allows to see
-constexpr double kAlike = 0.97;    // |cosine| of two signatures from which on their names should not be trusted
+constexpr double kAlikeSignatures = 0.97;  // |cosine| of two signatures from which on their names should not be trusted
 constexpr std::size_t kMostAlike = 4;
 
 /// A shape in the middle of the start values stands for the hypothesis.
@@ -59,7 +59,7 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
       const double size = std::sqrt(gram[a](0, 0) * gram[b](0, 0));
       if (!(size > 0)) continue;
       const double cosine = std::abs(cross_gram(one[a], one[b])(0, 0)) / size;
-      if (cosine > kAlike)
+      if (cosine > kAlikeSignatures)
         alike.emplace_back(cosine, fmt::format("{} at {} ({:.3f})", considered[b].name, considered[b].joint, cosine));
     }
     std::sort(alike.rbegin(), alike.rend());

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kBlock_s = 0.25;
-constexpr int kResamples = 1000;
+constexpr double kProofBlock_s = 0.25;
+constexpr int kProofResamples = 1000;
 constexpr double kShows = 0.005;    // of the noise variance: less of an effect cannot be seen in the hold-out log
 constexpr double kAsksAgain = 0.4;  // of an effect's amplitude that the hold-out log must ask for
 
@@ -87,7 +87,7 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
   std::vector<std::pair<double, double>> blocks;  // squares before and after
   double rows = 0;
   const double row_s = held.t_s(1) - held.t_s(0);
-  const auto per_block = std::max<Index>(1, static_cast<Index>(kBlock_s / row_s));
+  const auto per_block = std::max<Index>(1, static_cast<Index>(kProofBlock_s / row_s));
   std::vector<double> counts;
   for (Index first = 0; first < held.rows(); first += per_block) {
     double before = 0, after = 0, count = 0;
@@ -119,7 +119,7 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
   const UniformIndex pick(blocks.size());
   std::vector<double> samples;
   int losses = 0;
-  for (int k = 0; k < kResamples; ++k) {
+  for (int k = 0; k < kProofResamples; ++k) {
     double b = 0, a = 0, count = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const std::size_t at = pick(random);
@@ -131,9 +131,9 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
     losses += a >= b ? 1 : 0;
   }
   std::sort(samples.begin(), samples.end());
-  out.gap_low = samples[static_cast<std::size_t>(0.025 * kResamples)];
-  out.gap_high = samples[static_cast<std::size_t>(0.975 * kResamples)];
-  out.p_no_gain = (losses + 1.0) / (kResamples + 1.0);
+  out.gap_low = samples[static_cast<std::size_t>(0.025 * kProofResamples)];
+  out.gap_high = samples[static_cast<std::size_t>(0.975 * kProofResamples)];
+  out.p_no_gain = (losses + 1.0) / (kProofResamples + 1.0);
 }
 
 bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof, const Fit& fit) {

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kAsGood = 1.02;    // rms of a simpler name over that of another one from which it is worse
+constexpr double kWorseRms = 1.02;  // rms of a simpler name over that of another one from which it is worse
 constexpr double kSameWaves = 0.1;  // of a ripple's waves: two are the same
 constexpr double kSettled = 0.1;    // change of an amplitude that least squares without noise model may make
 
@@ -125,7 +125,7 @@ Trial try_set(const ImproveInput& input, const NamedEffect& named, double cutoff
     Trial other = try_names(input, {swapped(named, k)}, cutoff_hz);
     if (!other.proof.passed()) {
       refused.push_back(k);
-    } else if (!best.proof.passed() || other.proof.rms_ratio < kAsGood * best.proof.rms_ratio) {
+    } else if (!best.proof.passed() || other.proof.rms_ratio < kWorseRms * best.proof.rms_ratio) {
       best = std::move(other);
     }
   }

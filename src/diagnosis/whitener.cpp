@@ -12,9 +12,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kNegligible = 0.2;  // size of an unknown direction in white rows, in standard deviations of the noise
-constexpr double kRidge = 1e-10;     // on the Gram matrix of unit vectors, as neighbours may share a direction
-constexpr double kShared = 1e-6;     // pivot of a direction that its neighbours hold already
+constexpr double kNegligible = 0.2;   // size of an unknown direction in white rows, in standard deviations of the noise
+constexpr double kGramRidge = 1e-10;  // on the Gram matrix of unit vectors, as neighbours may share a direction
+constexpr double kShared = 1e-6;      // pivot of a direction that its neighbours hold already
 
 /// Innovations of rows of which all before are zero, as many more as the noise remembers.
 MatrixXd innovations_after(const NoiseModel& noise, const MatrixXd& x) {
@@ -97,7 +97,8 @@ void Whitener::factorise() {
           taken_[b].basis.topRows(end - first).transpose() * taken_[a].basis.middleRows(first - taken_[a].first, end - first);
       for (Index r = 0; r < block.rows(); ++r) {
         for (Index c = 0; c < block.cols(); ++c) {
-          if (a != b || r >= c) entries.emplace_back(start[b] + r, start[a] + c, block(r, c) + (a == b && r == c ? kRidge : 0.0));
+          if (a != b || r >= c)
+            entries.emplace_back(start[b] + r, start[a] + c, block(r, c) + (a == b && r == c ? kGramRidge : 0.0));
         }
       }
     }

@@ -20,9 +20,9 @@ constexpr double kClearlyBetter = 0.98;  // rms of the improved model over that 
 constexpr double kChance = 0.025;        // of a gain that is none
 constexpr double kWorse = 1.05;          // rms of a named drive over that of the given model from which the improved one is worse
 constexpr double kWorseElsewhere = 1.2;  // the same of any other drive, whose parameters are fitted along
-constexpr double kBlock_s = 0.25;        // longer than the memory of the noise
-constexpr Index kFewestRows = 5;         // of a drive, below which its rms says nothing
-constexpr int kResamples = 1000;
+constexpr double kWrittenBlock_s = 0.25;  // longer than the memory of the noise
+constexpr Index kFewestDriveRows = 5;     // of a drive, below which its rms says nothing
+constexpr int kWrittenResamples = 1000;
 constexpr std::size_t kFewestBlocks = 12;  // from which they say anything about the noise
 
 struct Block {
@@ -33,7 +33,7 @@ struct Block {
 std::vector<Block> blocks_of(const Prediction& before, const Prediction& after, const std::vector<int>& drives) {
   std::vector<Block> blocks;
   if (before.rows() != after.rows() || before.rows() < 2) return blocks;
-  const auto per_block = std::max<Index>(1, static_cast<Index>(kBlock_s / (before.t_s(1) - before.t_s(0))));
+  const auto per_block = std::max<Index>(1, static_cast<Index>(kWrittenBlock_s / (before.t_s(1) - before.t_s(0))));
   const MatrixXd e0 = before.residual(), e1 = after.residual();
   for (const int j : drives) {
     const auto rows = (before.usable(j, false) && after.usable(j, false)).eval();
@@ -55,7 +55,7 @@ double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const UniformIndex pick(blocks.size());
   int losses = 0;
-  for (int k = 0; k < kResamples; ++k) {
+  for (int k = 0; k < kWrittenResamples; ++k) {
     double gain = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const Block& one = blocks[pick(random)];
@@ -63,7 +63,7 @@ double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
     }
     losses += gain <= 0 ? 1 : 0;
   }
-  return (losses + 1.0) / (kResamples + 1.0);
+  return (losses + 1.0) / (kWrittenResamples + 1.0);
 }
 
 /// \param touched  drives that the names reach
@@ -72,7 +72,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
   for (std::size_t j = 0; j < before.drives.size(); ++j) {
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
     out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
-    if (std::min(b.rows, a.rows) < kFewestRows) continue;
+    if (std::min(b.rows, a.rows) < kFewestDriveRows) continue;
     const bool named = std::find(touched.begin(), touched.end(), static_cast<int>(j)) != touched.end();
     const double worse = named ? kWorse : kWorseElsewhere;
     // Rows near reversals count where the given model answers for them.

@@ -13,6 +13,7 @@
 #include "fit_blocks.hpp"
 #include "fit_convex.hpp"
 #include "fit_metric.hpp"
+#include "seconds_since.hpp"
 
 namespace deltadyn {
 namespace {
@@ -23,10 +24,6 @@ using fit::Layout;
 using fit::Shape;
 using Clock = std::chrono::steady_clock;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Fitted entries of a block from its variables, with dy/dpi when asked for.
 Eigen::VectorXd fitted_entries(const Block& block, const double* variables, Eigen::MatrixXd* jacobian) {

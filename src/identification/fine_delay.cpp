@@ -19,13 +19,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kSamples = 20'000;   // of each log, as for presliding
-constexpr int kSteps = 4;            // of Gauss and Newton; three suffice
-constexpr double kSigmas = 5;        // a delay within these is chance
-constexpr double kLeast = 0.05;      // of a sample: less is no matter
-constexpr double kMost = 3;          // samples; a larger one is for the gate
-constexpr double kCleanFit = 0.015;  // of the torque: above it what the model lacks can pass for a delay, as in the gate
-constexpr double kAlike = 4;         // standard deviations of the drives' own delays about the common one
+constexpr Index kDelaySamples = 20'000;   // of each log, as for presliding
+constexpr int kSteps = 4;                 // of Gauss and Newton; three suffice
+constexpr double kSigmas = 5;             // a delay within these is chance
+constexpr double kLeast = 0.05;           // of a sample: less is no matter
+constexpr double kMost = 3;               // samples; a larger one is for the gate
+constexpr double kCleanDelayFit = 0.015;  // of the torque: above it what the model lacks can pass for a delay, as in the gate
+constexpr double kAlike = 4;              // standard deviations of the drives' own delays about the common one
 constexpr double kDampingStep_s = 1e-3, kDisplacementStep = 0.02;  // for the slopes; the second is a share
 constexpr double kMemory_s = 0.2;                                  // of the residual, as in identify()
 
@@ -36,7 +36,7 @@ class DelaySearch {
       : robot_(robot), base_(base), processing_(processing), coulomb_(coulomb_columns(robot)), known_(known) {
     processing_.periods = Periods::ignore;
     if (processing_.presliding_damping_s.size() == 0) processing_.presliding_damping_s.setZero(processing_.presliding.size());
-    for (const Log& log : logs) logs_.push_back(middle_of(log, kSamples));
+    for (const Log& log : logs) logs_.push_back(middle_of(log, kDelaySamples));
     sample_s_ = logs.front().sample_time_s();
   }
 
@@ -99,7 +99,7 @@ class DelaySearch {
               static_cast<Index>(std::ceil(kMemory_s * prepared_[l].rate_hz / static_cast<double>(prepared_[l].stride)));
           memory = std::max(memory, noise_correlation(e, usable, std::min<Index>(lags, 50)));
         }
-        clean_ = clean_ && count > 0 && square < kCleanFit * kCleanFit * torque;
+        clean_ = clean_ && count > 0 && square < kCleanDelayFit * kCleanDelayFit * torque;
         const double weight = count > 0 ? count / std::max(square * memory, 1e-300) : 0.0;
         for (BaseRows& log : rows)
           log.weight.col(j) = (log.weight.col(j).array() > 0).select(weight, VectorXd::Zero(log.weight.rows()));

@@ -17,7 +17,7 @@ namespace {
 constexpr double kFinalBarrier = 1e-5;  // chi^2 an eigenvalue of a cone; far below what any statistic can see
 constexpr double kFirstBarrier = 1.0;
 constexpr double kBarrierCut = 0.03;
-constexpr double kRounding = 1e-10;
+constexpr double kObjectiveRounding = 1e-10;
 constexpr int kMaxNewton = 400;
 
 }  // namespace
@@ -174,7 +174,7 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
     if (decrement > (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier && accepted) continue;
     if (barrier <= kFinalBarrier) {
       // a line search that fails counts as converged only where no more than rounding is left to gain
-      result.converged = decrement <= std::max(barrier, kRounding * (1 + std::abs(value)));
+      result.converged = decrement <= std::max(barrier, kObjectiveRounding * (1 + std::abs(value)));
       break;
     }
     barrier = std::max(barrier * kBarrierCut, kFinalBarrier);

@@ -12,6 +12,7 @@
 
 #include "encoder_uncertainty.hpp"
 #include "residual_noise.hpp"
+#include "seconds_since.hpp"
 
 namespace deltadyn {
 
@@ -20,14 +21,10 @@ namespace {
 using Eigen::Index;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kReversalRatio = 3.0;  // above it, rows near reversals follow another law than the model's
-constexpr Index kFewestRows = 10;       // to judge them by
-constexpr double kHuber = 1.345;        // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 0.1;      // of the best known parameter's standard deviation: a smaller bias is no matter
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+constexpr double kReversalRatio = 3.0;     // above it, rows near reversals follow another law than the model's
+constexpr Index kFewestReversalRows = 10;  // to judge them by
+constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (Huber 1981)
+constexpr double kFeltNoise = 0.1;         // of the best known parameter's standard deviation: a smaller bias is no matter
 
 DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads, const Eigen::VectorXd* p = nullptr,
                   const RowWeight& weight = {}) {
@@ -48,13 +45,13 @@ std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fol
   if (choice == Reversals::keep) return keep;
   std::vector<DriveFold> folds = fold.regular;
   for (std::size_t j = 0; j < folds.size() && choice == Reversals::automatic; ++j) {
-    keep[j] = fold.regular[j].rows < kFewestRows;
+    keep[j] = fold.regular[j].rows < kFewestReversalRows;
     if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
   }
   const BaseEstimate estimate = estimate_base_parameters(base, folds);
   const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
   for (std::size_t j = 0; j < drives.size(); ++j) {
-    if (fold.reversal[j].rows < kFewestRows || fold.regular[j].rows < kFewestRows) continue;
+    if (fold.reversal[j].rows < kFewestReversalRows || fold.regular[j].rows < kFewestReversalRows) continue;
     drives[j].reversal_ratio = fold.reversal[j].rms(p) / std::max(fold.regular[j].rms(p), 1e-12);
     keep[j] = keep[j] || (choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio);
   }

@@ -19,18 +19,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kSamples = 20'000;                  // of each log
+constexpr Index kBandSamples = 20'000;              // of each log
 constexpr double kPartRatio = std::numbers::sqrt2;  // half an octave
-constexpr double kHalf =
+constexpr double kHalfBand =
     0.5;  // of the model's torque: with less of it in the record, leaving the part out explains more than the model
 constexpr double kNextToNothing = 0.25;
-constexpr double kSigmas = 3;              // within which the record does not hold the whole of the model's torque
+constexpr double kBandSigmas = 3;          // within which the record does not hold the whole of the model's torque
 constexpr double kLeastSignal = 2;         // the model's torque over what noise makes of it
 constexpr double kRowsPerIndependent = 4;  // rows of half an octave are taken so many times closer than they are independent
 constexpr double kLowest_hz = 2.5;         // machines that are built to move move faster than that
 constexpr double kLeastPeriods = 20;       // of the cut-off in a log, as for the motion's
-constexpr std::uint64_t kSeed = 1;
-constexpr Index kFewestRows = 20;  // of all drives in a part
+constexpr std::uint64_t kBandSeed = 1;
+constexpr Index kFewestRowsOfPart = 20;  // of all drives in a part
 
 ProcessingOptions at_cutoff(ProcessingOptions options, double cutoff_hz) {
   options.cutoff_hz = cutoff_hz;
@@ -160,13 +160,13 @@ void add_part(const Robot& robot, const BaseParameters& base, const Log& log, co
 std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                           const ProcessingOptions& options, double low_hz, const BaseEstimate& estimate) {
   std::vector<DriveSums> sums(static_cast<std::size_t>(robot.drives()));
-  std::mt19937_64 random(kSeed);
+  std::mt19937_64 random(kBandSeed);
   for (const Log& log : logs) add_part(robot, base, log, options, low_hz, estimate, random, sums);
   DriveSums total;
   for (const DriveSums& one : sums) {
     if (one.all > 0) total.add(one, static_cast<double>(one.rows) / one.all);  // a drive counts by its whole torque
   }
-  if (total.rows < kFewestRows || !(total.model > kLeastSignal * total.chance)) return std::nullopt;
+  if (total.rows < kFewestRowsOfPart || !(total.model > kLeastSignal * total.chance)) return std::nullopt;
   const double model = total.model - total.chance;
   ModelBandPart part{low_hz, options.cutoff_hz, total.torque_model / model, 0};
   const double left = total.torque - 2 * part.found * total.torque_model + part.found * part.found * total.model;
@@ -175,7 +175,7 @@ std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParamete
 }
 
 bool fails(const ModelBandPart& part) {
-  return part.found + part.std < kHalf && part.found + kSigmas * part.std < 1;
+  return part.found + part.std < kHalfBand && part.found + kBandSigmas * part.std < 1;
 }
 
 }  // namespace
@@ -191,7 +191,7 @@ ModelBand find_model_band(const Robot& robot, const BaseParameters& base, const 
   std::vector<Log> middles;
   double shortest_s = 1e300;
   for (const Log& log : logs) {
-    middles.push_back(middle_of(log, kSamples));
+    middles.push_back(middle_of(log, kBandSamples));
     shortest_s = std::min(shortest_s, static_cast<double>(log.samples()) * log.sample_time_s());
   }
   // Appends a part; false if too little is known of it.

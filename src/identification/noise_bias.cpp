@@ -13,10 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kSamples = 100'000;   // of each log, from its middle
-constexpr Index kRowsPerBlock = 256;  // as in fold_log
-constexpr double kMostNoise = 0.99;   // of a direction's information: beyond, nothing is known there
-constexpr double kNoise = 1e-10;      // of the largest eigenvalue: rounding
+constexpr Index kBiasSamples = 100'000;  // of each log, from its middle
+constexpr Index kBiasBlockRows = 256;    // as in fold_log
+constexpr double kMostNoise = 0.99;      // of a direction's information: beyond, nothing is known there
+constexpr double kNoise = 1e-10;         // of the largest eigenvalue: rounding
 
 /// Products of one drive's used rows in the base parameters: regressor Y, instruments Z, torque tau.
 struct Products {
@@ -52,11 +52,11 @@ void share_rows(PreparedLog& a, PreparedLog& b) {
 
 std::vector<Products> products_of(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
                                   const PreparedLog& narrow, const std::vector<bool>& keep) {
-  const Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
+  const Index blocks = (log.rows + kBiasBlockRows - 1) / kBiasBlockRows;
   const std::vector<Products> none(keep.size(), Products(base.count()));
   std::vector<std::vector<Products>> parts(static_cast<std::size_t>(blocks), none);
   in_parallel(blocks, [&](Index b) {
-    const Index first = b * kRowsPerBlock, count = std::min(kRowsPerBlock, log.rows - first);
+    const Index first = b * kBiasBlockRows, count = std::min(kBiasBlockRows, log.rows - first);
     RowBlock wide, instruments;
     read_rows(robot, log, first, count, wide);
     read_rows(robot, narrow, first, count, instruments);
@@ -110,7 +110,7 @@ NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::
   if (!(narrow.motion_over_pass < wide.motion_over_pass)) return bias;
   std::vector<Products> sum(bias.information.size(), Products(base.count()));
   for (const Log& log : logs) {
-    const Log part = middle_of(log, kSamples);
+    const Log part = middle_of(log, kBiasSamples);
     PreparedLog plain = prepare_log(robot, part, wide), smooth = prepare_log(robot, part, narrow);
     const auto all_rows =
         static_cast<double>(plain.rows) * static_cast<double>(log.samples()) / static_cast<double>(part.samples());

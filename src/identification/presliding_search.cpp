@@ -22,19 +22,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kSamples = 20'000;  // of each log; reversals enough, and a log of hours costs no more
-constexpr int kPasses = 4;          // displacements and base parameters settle in three
-constexpr double kSmallest = 2e-5;  // of the joint's range: no filter shows less
-constexpr double kOverNoise = 1;    // of the position's noise: what jitters within it rounds a reversal like a bristle
+constexpr Index kPreslidingSamples = 20'000;  // of each log; reversals enough, and a log of hours costs no more
+constexpr int kPasses = 4;                    // displacements and base parameters settle in three
+constexpr double kSmallest = 2e-5;            // of the joint's range: no filter shows less
+constexpr double kOverNoise = 1;              // of the position's noise: what jitters within it rounds a reversal like a bristle
 constexpr double kLargest =
     0.02;                  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
 constexpr double kClearGain = 25;  // of the squared residual in units of its noise: five standard deviations for one parameter
 constexpr double kForm =
     0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
-constexpr double kMemory_s = 0.2;           // of the residual, as in identify()
-constexpr double kWider = 3;                // displacements on either side that are tried with damping
-constexpr double kLongestDamping_s = 0.02;  // what lasts longer is no bristle
+constexpr double kPreslidingMemory_s = 0.2;  // of the residual, as in identify()
+constexpr double kWider = 3;                 // displacements on either side that are tried with damping
+constexpr double kLongestDamping_s = 0.02;   // what lasts longer is no bristle
 
 /// One log with what the search needs of it.
 struct SearchLog {
@@ -55,7 +55,7 @@ class Search {
     processing_.periods = Periods::ignore;  // the bristles' memory runs along the log as it was
     jitter_.setZero(robot.friction_joints());
     for (const Log& log : logs) {
-      logs_.push_back(middle_of(log, kSamples));
+      logs_.push_back(middle_of(log, kPreslidingSamples));
       const VectorXd steps = position_steps(logs_.back());
       for (Index j = 0; j < robot.drives(); ++j)
         jitter_(j) = std::max({jitter_(j), position_noise(logs_.back().q.col(j)), steps(j) / std::sqrt(12.0)});
@@ -100,7 +100,7 @@ class Search {
       log.prepared = std::move(prepared[l]);
       log.rows = base_rows(robot_, base_, log.prepared, log.use);
       const auto lags =
-          static_cast<Index>(std::ceil(kMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
+          static_cast<Index>(std::ceil(kPreslidingMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
       for (Index j = 0; j < robot_.drives(); ++j) {
         const double memory = noise_correlation(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
                                                 log.use.col(j) == RowUse::regular, std::min<Index>(lags, 50));

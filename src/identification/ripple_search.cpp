@@ -23,18 +23,18 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPi = std::numbers::pi;
-constexpr Index kSamples = 20'000;  // of each log, as for presliding
-constexpr double kFewestWaves = 4;  // over the drive's range; slower ones are the shape of gravity and wrong lengths
-constexpr double kSlowShare = 0.1;  // of the rows whose speed keeps the fastest waves within the pass band
-constexpr Index kMostWaves = 2000;  // over the range
-constexpr Index kMostOfDrive = 4;   // ripples
-constexpr Index kFinePhase = 8;     // bins a wave of the fastest ripple
-constexpr Index kPadding = 4;       // points of the spectrum a wave over the range
-constexpr double kClearGain = 40;   // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
-constexpr double kHalfShare = 0.3;  // of a half's own gain that the amplitude of the other half must bring there
-constexpr Index kPieces = 16;       // of each log, taken in turn by the halves
-constexpr double kMostMemory = 3;   // of what is left, as where structure is told: what else the model lacks can pass for a wave
-constexpr double kMemory_s = 0.2;   // of the residual, as in identify()
+constexpr Index kRippleSamples = 20'000;  // of each log, as for presliding
+constexpr double kFewestWaves = 4;        // over the drive's range; slower ones are the shape of gravity and wrong lengths
+constexpr double kSlowShare = 0.1;        // of the rows whose speed keeps the fastest waves within the pass band
+constexpr Index kMostWaves = 2000;        // over the range
+constexpr Index kMostOfDrive = 4;         // ripples
+constexpr Index kFinePhase = 8;           // bins a wave of the fastest ripple
+constexpr Index kPadding = 4;             // points of the spectrum a wave over the range
+constexpr double kClearWaveGain = 40;     // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
+constexpr double kHalfShare = 0.3;        // of a half's own gain that the amplitude of the other half must bring there
+constexpr Index kPieces = 16;             // of each log, taken in turn by the halves
+constexpr double kMostMemory = 3;  // of what is left, as where structure is told: what else the model lacks can pass for a wave
+constexpr double kRippleMemory_s = 0.2;  // of the residual, as in identify()
 
 struct RippleLog {
   PreparedLog prepared;
@@ -51,7 +51,7 @@ class RippleSearch {
     options.periods = Periods::ignore;  // each sample at its own position
     for (const Log& log : logs) {
       RippleLog one;
-      one.prepared = prepare_log(robot, middle_of(log, kSamples), options);
+      one.prepared = prepare_log(robot, middle_of(log, kRippleSamples), options);
       rows_.push_back(base_rows(robot, base, one.prepared, one.use));
       logs_.push_back(std::move(one));
     }
@@ -83,7 +83,7 @@ class RippleSearch {
       if (!(n > 0)) break;
       const double refined = refine(fit, drive, n);
       const std::vector<Columns> waves = columns(drive, refined);
-      if (fit.square() - fit.with(waves).cost < kClearGain || !halves_agree(waves, drive)) break;
+      if (fit.square() - fit.with(waves).cost < kClearWaveGain || !halves_agree(waves, drive)) break;
       Ripple found;
       found.drive = drive;
       found.n = refined;
@@ -110,7 +110,7 @@ class RippleSearch {
   [[nodiscard]] std::pair<double, double> memory_of(const VectorXd& residual, std::size_t l, Index drive) const {
     const PreparedLog& log = logs_[l].prepared;
     const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows_[l].weight.col(drive).array() > 0;
-    const auto lags = static_cast<Index>(std::ceil(kMemory_s * log.rate_hz / static_cast<double>(log.stride)));
+    const auto lags = static_cast<Index>(std::ceil(kRippleMemory_s * log.rate_hz / static_cast<double>(log.stride)));
     return {noise_correlation(residual, usable, std::min<Index>(lags, 50)), static_cast<double>(usable.count())};
   }
 

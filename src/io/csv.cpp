@@ -24,7 +24,7 @@
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
-namespace {
+namespace detail {
 
 /// Bytes of a file, with a line feed added after the last line if it has none: the line reader relies on it.
 /// Remembers what must be told to the user; the line reader itself passes nothing on.
@@ -59,6 +59,10 @@ class CheckedSource : public io::ByteSourceBase {
   Findings& findings_;
   char last_ = '\n';  // an empty file gets no line feed
 };
+
+}  // namespace detail
+
+namespace {
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -127,7 +131,7 @@ std::string place(std::string_view path, long line, std::string_view column) {
 
 struct CsvReader::Impl {
   std::string path;
-  CheckedSource::Findings findings;
+  detail::CheckedSource::Findings findings;
   std::unique_ptr<io::LineReader> lines;
   std::vector<std::string> columns;
   std::vector<std::string_view> fields;
@@ -168,7 +172,7 @@ CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) 
   if (file == nullptr) {
     throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path, "check the path and the permissions");
   }
-  impl_->lines = std::make_unique<io::LineReader>(path, std::make_unique<CheckedSource>(file, impl_->findings));
+  impl_->lines = std::make_unique<io::LineReader>(path, std::make_unique<detail::CheckedSource>(file, impl_->findings));
   std::string_view header;
   if (!impl_->next(header)) throw Error("the file is empty", path, "the first line must hold the column names");
   split(header, impl_->fields);

@@ -8,11 +8,11 @@
 namespace deltadyn {
 namespace {
 
-using Words = std::vector<std::string_view>;
+using WordList = std::vector<std::string_view>;
 
 /// Short words must stand alone; long ones may be part of a compound ("Istposition", "motortorque").
 struct Vocabulary {
-  Words alone, within;
+  WordList alone, within;
   [[nodiscard]] bool holds(std::string_view word) const {
     if (std::find(alone.begin(), alone.end(), word) != alone.end()) return true;
     return std::any_of(within.begin(), within.end(),
@@ -47,7 +47,7 @@ const Vocabulary kExcluded{
     {"err", "tcp", "max", "min", "lag", "cart", "temp", "volt", "power", "std", "var", "window", "status", "mode", "bias"},
     {"error", "limit", "cartesian", "temperature", "voltage", "fehler", "schlepp", "following", "momentum"}};
 
-bool is_number(const std::string& word) {
+bool is_whole_number(const std::string& word) {
   return std::isdigit(static_cast<unsigned char>(word.front())) != 0;
 }
 
@@ -114,8 +114,8 @@ HeaderWords read_header_words(const std::string& column, const std::string& unit
   if (any(kMeasured)) header.origin = Origin::measured;
   if (any(kCommanded)) header.origin = Origin::commanded;
   for (const std::string& word : words) {
-    if (is_number(word)) header.numbers.push_back(std::strtol(word.c_str(), nullptr, 10));
-    header.pattern += (header.pattern.empty() ? "" : " ") + (is_number(word) ? std::string("#") : word);
+    if (is_whole_number(word)) header.numbers.push_back(std::strtol(word.c_str(), nullptr, 10));
+    header.pattern += (header.pattern.empty() ? "" : " ") + (is_whole_number(word) ? std::string("#") : word);
   }
   return header;
 }

@@ -25,7 +25,7 @@ struct Spelling {
   double factor;  ///< to SI
 };
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;
 
 const char* prefix_of(Block quantity) {
@@ -42,12 +42,13 @@ const char* prefix_of(Block quantity) {
 std::vector<Spelling> spellings(Block quantity, DriveKind kind) {
   const bool turns = kind == DriveKind::revolute;
   switch (quantity) {
-    case Block::q: return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kDegree}} : std::vector<Spelling>{{"_m", 1.0}};
+    case Block::q:
+      return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kRadPerDegree}} : std::vector<Spelling>{{"_m", 1.0}};
     case Block::qd:
-      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kDegree}, {"_rpm", kRpm}}
+      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kRadPerDegree}, {"_rpm", kRpm}}
                    : std::vector<Spelling>{{"_m_s", 1.0}};
     case Block::qdd:
-      return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
+      return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kRadPerDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
     case Block::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
   }
   return {};

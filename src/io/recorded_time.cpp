@@ -22,7 +22,7 @@ struct TimeUnit {
   std::string name;
 };
 
-std::string simplified(const std::string& name) {
+std::string without_blanks(const std::string& name) {
   std::string plain;
   for (const char c : name) {
     if (c != ' ' && c != '\t' && c != '"') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -193,7 +193,9 @@ bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColum
   const bool other_rate = std::abs(a.step_s - b.step_s) > 0.1 * std::min(a.step_s, b.step_s);
   const bool fewer =
       std::abs(static_cast<double>(a.stamps - b.stamps)) > 0.01 * static_cast<double>(std::max(a.stamps, b.stamps));
-  const auto plain = [](const RecordedChannel& channel) { return simplified(channel.name.substr(0, channel.name.find(" ("))); };
+  const auto plain = [](const RecordedChannel& channel) {
+    return without_blanks(channel.name.substr(0, channel.name.find(" (")));
+  };
   const bool other_stamps = !((one.values - other.values).cwiseAbs().maxCoeff() <= 1e-3 * usual_step(one.values));
   return other_rate || fewer || (plain(one) == plain(other) && other_stamps);
 }
@@ -266,13 +268,13 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
     }
     return found;
   };
-  const std::string plain = simplified(source);
+  const std::string plain = without_blanks(source);
   for (const auto* found :
        {unique([&](const RecordedChannel& c) { return c.name == source; }), unique([&](const RecordedChannel& c) {
           return std::find(c.aliases.begin(), c.aliases.end(), source) != c.aliases.end();
         }),
-        unique([&](const RecordedChannel& c) { return simplified(c.name) == plain; }),
-        unique([&](const RecordedChannel& c) { return simplified(split_unit(c.name).stem) == plain; })}) {
+        unique([&](const RecordedChannel& c) { return without_blanks(c.name) == plain; }),
+        unique([&](const RecordedChannel& c) { return without_blanks(split_unit(c.name).stem) == plain; })}) {
     if (found != nullptr) return *found;
   }
   throw Error(fmt::format("there is no column '{}' in {}; it has {}", source, recording.file, list_channels(recording)), where,

@@ -22,11 +22,11 @@ using tinyxml2::XMLElement;
 constexpr double kPi = std::numbers::pi;
 
 /// Shortest text that reads back to the same number; no "-0" in a file that people read.
-std::string text(double value) {
+std::string number_text(double value) {
   return value == 0 ? "0" : fmt::format("{}", value);
 }
-std::string text(const Vec& v) {
-  return fmt::format("{} {} {}", text(v.x()), text(v.y()), text(v.z()));
+std::string number_text(const Vec& v) {
+  return fmt::format("{} {} {}", number_text(v.x()), number_text(v.y()), number_text(v.z()));
 }
 
 /// URDF has no word for "unlimited" and its readers do not take "inf".
@@ -68,8 +68,8 @@ class Writer {
 
   static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
     XMLElement* element = child(parent, "origin");
-    element->SetAttribute("xyz", text(xyz).c_str());
-    element->SetAttribute("rpy", text(rpy).c_str());
+    element->SetAttribute("xyz", number_text(xyz).c_str());
+    element->SetAttribute("rpy", number_text(rpy).c_str());
   }
 
   XMLElement* link(const std::string& name) {
@@ -89,16 +89,18 @@ class Writer {
     return element;
   }
 
-  static void axis_of(XMLElement* element, const Vec& axis) { child(element, "axis")->SetAttribute("xyz", text(axis).c_str()); }
+  static void axis_of(XMLElement* element, const Vec& axis) {
+    child(element, "axis")->SetAttribute("xyz", number_text(axis).c_str());
+  }
 
   static void limit_of(XMLElement* element, const DriveLimits& limits, bool with_range) {
     XMLElement* limit = child(element, "limit");
     if (with_range) {
-      limit->SetAttribute("lower", text(finite(limits.lower)).c_str());
-      limit->SetAttribute("upper", text(finite(limits.upper)).c_str());
+      limit->SetAttribute("lower", number_text(finite(limits.lower)).c_str());
+      limit->SetAttribute("upper", number_text(finite(limits.upper)).c_str());
     }
-    limit->SetAttribute("effort", text(finite(limits.effort)).c_str());
-    limit->SetAttribute("velocity", text(finite(limits.velocity)).c_str());
+    limit->SetAttribute("effort", number_text(finite(limits.effort)).c_str());
+    limit->SetAttribute("velocity", number_text(finite(limits.velocity)).c_str());
   }
 
   /// A passive joint: no effort, half a turn to both sides.
@@ -137,8 +139,8 @@ class Writer {
     const double viscous = value(name + ".viscous"), coulomb = value(name + ".coulomb");
     if (viscous == 0 && coulomb == 0) return;
     XMLElement* dynamics = child(element, "dynamics");
-    dynamics->SetAttribute("damping", text(viscous).c_str());
-    dynamics->SetAttribute("friction", text(coulomb).c_str());
+    dynamics->SetAttribute("damping", number_text(viscous).c_str());
+    dynamics->SetAttribute("friction", number_text(coulomb).c_str());
   }
 
   static void mimic(XMLElement* element, const std::string& other) {
@@ -157,8 +159,8 @@ class Writer {
     // Rz(yaw) Ry(pitch) turns the cylinder's z into the direction wanted.
     origin(element, (from + to) / 2, Vec(0, std::atan2(std::hypot(z.x(), z.y()), z.z()), std::atan2(z.y(), z.x())));
     XMLElement* cylinder = child(child(element, "geometry"), "cylinder");
-    cylinder->SetAttribute("radius", text(radius).c_str());
-    cylinder->SetAttribute("length", text(length).c_str());
+    cylinder->SetAttribute("radius", number_text(radius).c_str());
+    cylinder->SetAttribute("length", number_text(length).c_str());
   }
 
   /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or empty)
@@ -189,11 +191,11 @@ class Writer {
     I -= p[0] * (c.squaredNorm() * Matrix3<double>::Identity() - c * c.transpose());
     XMLElement* element = child(body, "inertial");
     origin(element, c);
-    child(element, "mass")->SetAttribute("value", text(p[0]).c_str());
+    child(element, "mass")->SetAttribute("value", number_text(p[0]).c_str());
     XMLElement* inertia = child(element, "inertia");
     const char* names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
     const double values[] = {I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)};
-    for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], text(values[k]).c_str());
+    for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], number_text(values[k]).c_str());
   }
 
   [[nodiscard]] double attachment_radius() const {
@@ -340,7 +342,7 @@ class Writer {
     XMLElement* element = child(root_, "deltadyn");
     element->SetAttribute("version", 1);
     element->SetAttribute("type", robot_.type.c_str());
-    child(element, "gravity")->SetAttribute("xyz_m_s2", text(robot_.gravity).c_str());
+    child(element, "gravity")->SetAttribute("xyz_m_s2", number_text(robot_.gravity).c_str());
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
       XMLElement* entry = child(element, "drive");
       entry->SetAttribute("joint", robot_file::drive_name(i).c_str());
@@ -348,7 +350,7 @@ class Writer {
       if (std::isfinite(robot_.limits[i].acceleration))
         entry->SetAttribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic ? robot_file::kAccelerationPrismatic
                                                                                               : robot_file::kAccelerationRevolute,
-                            text(robot_.limits[i].acceleration).c_str());
+                            number_text(robot_.limits[i].acceleration).c_str());
     }
   }
 

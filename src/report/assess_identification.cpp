@@ -151,12 +151,12 @@ Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
   return check;
 }
 
-struct Counts {
+struct SourceCounts {
   int fitted = 0, data = 0, both = 0, sums = 0, prior = 0, neither = 0;
 };
 
-Counts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
-  Counts counts;
+SourceCounts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
+  SourceCounts counts;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     if (!fit.fitted[i]) continue;
     ++counts.fitted;
@@ -172,7 +172,7 @@ Counts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibili
 }
 
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility, const std::vector<PriorGap>& gaps) {
-  const Counts counts = count_sources(fit, visibility);
+  const SourceCounts counts = count_sources(fit, visibility);
   const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
   check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} known only in sums, {} from the prior",

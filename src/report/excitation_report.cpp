@@ -28,11 +28,11 @@ double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
   return input.predicted_std(k) / std::max(input.base_scale(k), 1e-300);
 }
 
-struct Counts {
+struct VisibilityCounts {
   int well = 0, roughly = 0, not_at_all = 0;
 };
-Counts counts(const ExcitationReportInput& input) {
-  Counts c;
+VisibilityCounts counts(const ExcitationReportInput& input) {
+  VisibilityCounts c;
   for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) {
     const double relative = relative_std(input, k);
     ++(relative <= kWell ? c.well : (relative <= kNot ? c.roughly : c.not_at_all));
@@ -192,7 +192,7 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
 
 Assessment assess_excitation(const ExcitationReportInput& input) {
   const Excitation& e = input.excitation;
-  const Counts c = counts(input);
+  const VisibilityCounts c = counts(input);
   Assessment out;
   out.checks = {check_efficiency(input), check_reversals(input)};
   for (const Check& check : out.checks) out.verdict = std::max(out.verdict, check.verdict);

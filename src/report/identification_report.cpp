@@ -12,13 +12,10 @@
 #include "drive_figures.hpp"
 #include "drive_names.hpp"
 #include "identification_sections.hpp"
+#include "tone_of.hpp"
 
 namespace deltadyn {
 namespace {
-
-Tone tone_of(Verdict verdict) {
-  return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
-}
 
 std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey) {
   std::vector<KeyFigure> figures;

@@ -12,7 +12,7 @@ namespace deltadyn {
 namespace {
 
 using Index = Eigen::Index;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMaxPoints = 1500;      // an SVG point takes about 80 bytes,
 constexpr std::size_t kMaxPathPoints = 6000;  // a vertex of a line about 13
 
@@ -45,9 +45,9 @@ Series pick(const Series& series, const Pixels& pixels, const std::vector<Index>
   for (Index k = 0; k < n; ++k) {
     const Index i = kept[static_cast<std::size_t>(k)];
     const bool drawable = pixels.drawable(i);
-    result.x(k) = drawable ? series.x(i) : kNaN;
-    result.y(k) = drawable ? series.y(i) : kNaN;
-    if (bars) result.y_error(k) = drawable ? series.y_error(i) : kNaN;
+    result.x(k) = drawable ? series.x(i) : kBreak;
+    result.y(k) = drawable ? series.y(i) : kBreak;
+    if (bars) result.y_error(k) = drawable ? series.y_error(i) : kBreak;
   }
   return result;
 }

@@ -10,13 +10,10 @@
 #include "assessment_parts.hpp"
 #include "drive_figures.hpp"
 #include "drive_names.hpp"
+#include "tone_of.hpp"
 
 namespace deltadyn {
 namespace {
-
-Tone tone_of(Verdict verdict) {
-  return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
-}
 
 void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
   Table table({{"drive", Align::left},

@@ -20,16 +20,16 @@ void windowed_sinc(double cut, double width, double u, double& value, double& sl
     value = slope = 0;
     return;
   }
-  const double pi = std::numbers::pi;
-  const double x = 2 * pi * cut * u;
+  constexpr double kPi = std::numbers::pi;
+  const double x = 2 * kPi * cut * u;
   const double sinc = std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
   const double sinc_slope = std::abs(x) < 1e-4 ? -x / 3 : (std::cos(x) - sinc) / x;
   // Blackman's window
-  const double a = pi * u / width;
+  const double a = kPi * u / width;
   const double window = 0.42 + 0.5 * std::cos(a) + 0.08 * std::cos(2 * a);
-  const double window_slope = -(pi / width) * (0.5 * std::sin(a) + 0.16 * std::sin(2 * a));
+  const double window_slope = -(kPi / width) * (0.5 * std::sin(a) + 0.16 * std::sin(2 * a));
   value = 2 * cut * sinc * window;
-  slope = 2 * cut * (2 * pi * cut * sinc_slope * window + sinc * window_slope);
+  slope = 2 * cut * (2 * kPi * cut * sinc_slope * window + sinc * window_slope);
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kParts = 4;  // of a file: enough to see that a delay grows in a line
+constexpr int kPartsOfFile = 4;  // of a file: enough to see that a delay grows in a line
 constexpr double kShortestPart_s = 2;
 constexpr double kLongestPart_s = 30;    // its middle tells a delay as well as all of it
-constexpr double kSigmas = 5;            // of a rate
+constexpr double kRateSigmas = 5;        // of a rate
 constexpr double kOffShare = 0.15;       // of the change over the file: so far a part may lie off the line
 constexpr double kLeastChange_s = 2e-4;  // less is for the one delay of the file
 constexpr double kTakesAway = 0.75;      // of the residual may be left; parts of sound logs leave 0.9 and more
@@ -38,7 +38,7 @@ std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<Part>& which
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const Log& log = logs[l];
     const double length_s = log.sample_time_s() * static_cast<double>(log.samples());
-    const Index count = std::clamp<Index>(static_cast<Index>(length_s / kShortestPart_s), 1, kParts);
+    const Index count = std::clamp<Index>(static_cast<Index>(length_s / kShortestPart_s), 1, kPartsOfFile);
     for (Index k = 0; k < count; ++k) {
       const Index from = k * log.samples() / count, to = (k + 1) * log.samples() / count;
       const Index most = static_cast<Index>(kLongestPart_s / log.sample_time_s()), length = std::min(to - from, most);
@@ -63,7 +63,7 @@ std::optional<ClockDrift> line_through(const VectorXd& t, const VectorXd& delay)
   const Eigen::ArrayXd off = (delay.array() - out.delay_s - out.rate * x.array()).abs();
   out.rate_std = std::sqrt(off.square().sum() / (count - 2) / x.squaredNorm());
   const double change = std::abs(out.rate) * (t.maxCoeff() - t.minCoeff());
-  if (change < kLeastChange_s || std::abs(out.rate) < kSigmas * out.rate_std || off.maxCoeff() > kOffShare * change)
+  if (change < kLeastChange_s || std::abs(out.rate) < kRateSigmas * out.rate_std || off.maxCoeff() > kOffShare * change)
     return std::nullopt;
   return out;
 }

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kMostRows = 20000;
-constexpr double kSearch_s = 0.05;     // derivatives later than this are no derivatives
+constexpr double kLatest_s = 0.05;     // derivatives later than this are no derivatives
 constexpr double kLate_s = 2e-4;       // a later derivative spoils Coulomb friction at reversals
 constexpr double kWrongFactor = 0.02;  // of a rate: more is no noise of a filter
 constexpr double kRelated = 0.8;       // share of a derivative's square that the positions' own derivative explains
@@ -56,7 +56,7 @@ Comparison compare(const Eigen::VectorXd& given, const Eigen::VectorXd& own, con
                    double independent) {
   Comparison out;
   const Index n = given.size();
-  const auto reach = std::min<Index>(n / 4, static_cast<Index>(std::ceil(kSearch_s / step_s)));
+  const auto reach = std::min<Index>(n / 4, static_cast<Index>(std::ceil(kLatest_s / step_s)));
   const Index inner = n - 2 * reach;
   const auto g = given.segment(reach, inner);
   if (g.squaredNorm() < 1e-10 * own.squaredNorm()) {

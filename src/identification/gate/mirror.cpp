@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kOutOfReach = 0.01;  // share of poses
-constexpr double kRidge = 1e-11;      // of the scaled normal equations
-constexpr int kPasses = 4;            // of the weights
-constexpr Index kFewestRows = 300;    // of the yaw's drive
+constexpr double kMirrorOutOfReach = 0.01;  // share of poses
+constexpr double kMirrorRidge = 1e-11;      // of the scaled normal equations
+constexpr int kWeightPasses = 4;            // of the weights
+constexpr Index kFewestYawRows = 300;       // of the yaw's drive
 // Chi^2 of independent rows. Where a log cannot tell, the margin scatters by 2 to 4 about 0; the right reading of a log that can tell has
 // -30 and less.
 constexpr double kClear = 15;
@@ -52,7 +52,7 @@ Eigen::VectorXd solve(const Rows& rows, const std::vector<Eigen::VectorXd>& tau,
   }
   const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
-  scaled.diagonal().array() += kRidge;
+  scaled.diagonal().array() += kMirrorRidge;
   return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
 }
 
@@ -70,13 +70,13 @@ DriveFit figures_of(const Eigen::VectorXd& e) {
 std::vector<DriveFit> fit_of(const Robot& robot, const BaseParameters& base, const Sample& sample, const Reading& reading) {
   const Rows rows = low_passed_rows(robot, base, sample, reading);
   Index fewest = rows.drives.back().count();
-  for (const DriveRows& drive : rows.drives) fewest = std::min(fewest, drive.count() + kFewestRows - 1);
-  if (rows.unreachable > kOutOfReach || fewest < kFewestRows) return {};
+  for (const DriveRows& drive : rows.drives) fewest = std::min(fewest, drive.count() + kFewestYawRows - 1);
+  if (rows.unreachable > kMirrorOutOfReach || fewest < kFewestYawRows) return {};
   const std::vector<Eigen::VectorXd> tau = torques_at(sample, rows, reading);
   std::vector<double> weight;
   for (const Eigen::VectorXd& t : tau) weight.push_back(static_cast<double>(t.size()) / std::max(t.squaredNorm(), 1e-300));
   std::vector<DriveFit> out;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kWeightPasses; ++pass) {
     const Eigen::VectorXd beta = solve(rows, tau, weight);
     out.clear();
     for (std::size_t j = 0; j < tau.size(); ++j) {

@@ -28,9 +28,9 @@ constexpr double kWeak = 6;         // the same in a log in which somebody pushe
 constexpr double kWeakShare = 0.5;  // ... this share of the rms torque
 constexpr double kEnd = 2.5;        // a stretch goes on as long as the residual stays above
 constexpr double kMostOfMotion = 0.25;
-constexpr int kPasses = 12;       // of the robust fit
-constexpr double kTukey = 4.685;  // 95 % efficient for normal noise
-constexpr Index kFewestRows = 30;
+constexpr int kRobustPasses = 12;  // of the robust fit
+constexpr double kTukey = 4.685;   // 95 % efficient for normal noise
+constexpr Index kFewestFitRows = 30;
 constexpr Index kRowsPerBlock = 256;
 
 /// The log at the rate that the band needs.
@@ -110,10 +110,10 @@ class RobustFit {
   bool run() {
     try {
       VectorXd p = solve({});
-      for (int pass = 0; pass < kPasses; ++pass) {
+      for (int pass = 0; pass < kRobustPasses; ++pass) {
         look(p);
         // The first half of the passes only damps what stands out (Huber's weights), the others leave it out (Tukey's).
-        const bool damp = 2 * pass < kPasses;
+        const bool damp = 2 * pass < kRobustPasses;
         p = solve([&](int drive, double residual) {
           const double u = std::abs(residual) / (kTukey * scale_[static_cast<std::size_t>(drive)]);
           if (damp) return u < 0.3 ? 1.0 : 0.3 / u;
@@ -186,7 +186,7 @@ class DriveRowsSeen {
   [[nodiscard]] std::vector<Push> pushes() const {
     std::vector<Push> out;
     const double strong = std::max(largest_torque_, kStrong * scale_);
-    if (moving_ < kFewestRows || !(recorded_ && residual_.array() > strong).any()) return out;
+    if (moving_ < kFewestFitRows || !(recorded_ && residual_.array() > strong).any()) return out;
     const double least = std::max(kWeakShare * rms_torque_, kWeak * scale_);
     for (Index k = 0; k < residual_.size(); ++k) {
       if (!above(k, least, strong)) continue;

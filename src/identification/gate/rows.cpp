@@ -16,7 +16,7 @@ using Eigen::Index;
 constexpr double kReach = 4.5;          // standard deviations of the Gaussian that count
 constexpr double kMaskFloor = 0.003;    // of a joint's largest rate: below, the sign of the friction is uncertain
 constexpr Index kFewestUnmasked = 300;  // rows of a drive; with fewer, those near reversals count, too
-constexpr double kSearch_s = 0.05;      // torque is looked up so far from a row
+constexpr double kLookUp_s = 0.05;      // torque is looked up so far from a row
 constexpr double kSmear = 2.5;          // standard deviations of the Gaussian about a reversal, for rows at single points
 constexpr double kRowsPerBand = 0.4;    // spacing of rows in periods of the band: nearly independent rows
 
@@ -156,7 +156,7 @@ Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sampl
     looked_at += static_cast<double>(std::max<Index>(0, stretch.last - stretch.first));
     const Kernel kernel(sample.sigma_s, stretch.step_s, 0.0);
     const Index reach = reach_of(sample, stretch);
-    const auto search = static_cast<Index>(std::ceil(kSearch_s / stretch.step_s));
+    const auto search = static_cast<Index>(std::ceil(kLookUp_s / stretch.step_s));
     const auto spacing = std::max<Index>(1, static_cast<Index>(kRowsPerBand / sample.band_hz / stretch.step_s));
     const Index from = std::max(stretch.first + reach, reach + search);
     const Index to = std::min(stretch.last - reach, stretch.points() - reach - search);

@@ -17,12 +17,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSound = 0.02;    // of the torque: what a log without faults may leave
-constexpr double kWins = 0.85;     // of the residual: offsets of all drives are nearly a load
-constexpr double kMore = 0.95;     // of the residual of fewer drives
-constexpr double kLeast = 0.01;    // of the drive's rms torque: less is no matter
-constexpr double kSigmas = 15;     // of the offset
-constexpr Index kFewestRows = 20;  // of a drive
+constexpr double kSound = 0.02;          // of the torque: what a log without faults may leave
+constexpr double kOffsetWins = 0.85;     // of the residual: offsets of all drives are nearly a load
+constexpr double kMore = 0.95;           // of the residual of fewer drives
+constexpr double kLeast = 0.01;          // of the drive's rms torque: less is no matter
+constexpr double kOffsetSigmas = 15;     // of the offset
+constexpr Index kFewestOffsetRows = 20;  // of a drive
 
 /// All drives' rows, each over its rms torque, without what the base parameters explain of them.
 struct Rest {
@@ -33,7 +33,7 @@ struct Rest {
     const auto drives = static_cast<Index>(rows.drives.size());
     Index total = 0;
     for (const DriveRows& drive : rows.drives) {
-      if (drive.count() < kFewestRows) return false;
+      if (drive.count() < kFewestOffsetRows) return false;
       total += drive.count();
     }
     const Index parameters = rows.drives.front().Y.cols();
@@ -83,7 +83,7 @@ Offsets fit(const Rest& rest, const std::vector<int>& drives) {
 bool stands_out(const Offsets& o, const Rest& rest) {
   for (Index k = 0; k < o.value.size(); ++k) {
     const double least = kLeast * rest.rms(o.drives[static_cast<std::size_t>(k)]);
-    if (std::abs(o.value(k)) < std::max(least, kSigmas * o.std(k))) return false;
+    if (std::abs(o.value(k)) < std::max(least, kOffsetSigmas * o.std(k))) return false;
   }
   return true;
 }
@@ -116,7 +116,7 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
   if (!rest.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
   const double as_given = root_mean_square(rest.torque);
   const Offsets best = best_offsets(rest, robot.drives());
-  if (best.residual >= kSound || best.residual >= kWins * as_given) return {};
+  if (best.residual >= kSound || best.residual >= kOffsetWins * as_given) return {};
   TorqueOffset out{{}, VectorXd::Zero(robot.drives())};
   LogFinding& f = out.finding;
   f.level = FindingLevel::warning;

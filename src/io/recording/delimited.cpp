@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <limits>
 #include <set>
 #include <string_view>
 
@@ -16,7 +15,6 @@
 namespace deltadyn::forms {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kDayNs = 86400LL * 1000000000LL;
 
 enum class ColumnKind { number, long_number, date };

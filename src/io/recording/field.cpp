@@ -7,12 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 
 namespace deltadyn::forms {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';

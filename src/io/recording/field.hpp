@@ -4,6 +4,7 @@
 /// Fields of text exports: numbers in the spellings of the world, dates, and how lines fall into fields.
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ namespace deltadyn::forms {
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lower(std::string_view text);
+
+/// Stands for a number that is missing.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 enum class Field { number, missing, date, text };
 

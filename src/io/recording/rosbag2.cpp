@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -14,12 +13,12 @@
 
 #include "deltadyn/runtime/error.hpp"
 
+#include "field.hpp"
 #include "recognisers.hpp"
 
 namespace deltadyn::forms {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kJointState = "sensor_msgs/msg/JointState";
 constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <map>
 
 #include "deltadyn/runtime/error.hpp"
@@ -12,7 +11,6 @@
 namespace deltadyn::forms {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
 
 using Fields = std::vector<std::string>;

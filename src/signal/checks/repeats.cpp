@@ -19,7 +19,7 @@
 namespace deltadyn::checks {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStaleShare = 0.15;    // of the rows; fewer repeats are single held values, mended one by one
 constexpr Index kFewestJudged = 200;    // rows to judge a channel by
 constexpr double kStepsOfChange = 8.0;  // in units of the smallest change: equality by chance is then below 1 in 25
@@ -32,10 +32,10 @@ bool same(double a, double b) {
 /// Mean number of rows between two changes, over the runs of equal values that lie between two changes by many steps; 1 if the channel
 /// is fresh in (nearly) every row. A robot that stops and starts again has a small change on either side of its rest.
 double rows_between_changes(const Eigen::Ref<const Eigen::VectorXd>& x, double smallest) {
-  constexpr Index kStretch = 512;
+  constexpr Index kStretchRows = 512;
   const double many = kStepsOfChange * smallest;
   double rows = 0, repeats = 0;
-  for (const auto& [begin, end] : sample_stretches(x.size(), kStretch)) {
+  for (const auto& [begin, end] : sample_stretches(x.size(), kStretchRows)) {
     bool large_before = false;
     Index run = begin;
     for (Index i = begin + 1; i < end; ++i) {
@@ -112,7 +112,7 @@ void keep_updates_only(StaleChannel& one) {
     if (next < one.updates.size() && one.updates[next] == i) {
       ++next;
     } else {
-      x(i) = kNan;
+      x(i) = kUnknown;
     }
   }
 }
@@ -247,11 +247,11 @@ class HeldRows {
     Log& log = room_.log;
     room_.mark_filled(sample, Log::kBridged);
     if (drive >= 0) {
-      log.q(sample, drive) = kNan;
+      log.q(sample, drive) = kUnknown;
       return;
     }
     for (Eigen::MatrixXd* block : {&log.q, &log.qd, &log.qdd, &log.tau}) {
-      if (block->size() > 0) block->row(sample).setConstant(kNan);
+      if (block->size() > 0) block->row(sample).setConstant(kUnknown);
     }
   }
 

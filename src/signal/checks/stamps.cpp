@@ -16,7 +16,7 @@ namespace deltadyn::checks {
 namespace {
 
 /// A clock repeats stamps for more rows than this share only if it is too coarse; fewer are single mistakes.
-constexpr double kCoarseShare = 0.02;
+constexpr double kCoarseStampShare = 0.02;
 
 bool same_row(const CheckRoom& room, Index a, Index b) {
   const Log& log = room.log;
@@ -90,7 +90,7 @@ bool mend_coarse_clock(CheckRoom& room) {
     if (step == 0) repeated.add(i);
     coarse = std::max(coarse, step);
   }
-  if (static_cast<double>(repeated.count) < kCoarseShare * static_cast<double>(n)) return false;
+  if (static_cast<double>(repeated.count) < kCoarseStampShare * static_cast<double>(n)) return false;
   const double step = (log.t_s(n - 1) - log.t_s(0)) / static_cast<double>(n - 1);
   // Rows of one stamp that differ by less than the motion between two samples were taken at one time, by two sources.
   const auto at_once = [&](Index i) { return log.t_s(i) == log.t_s(i - 1); };

@@ -15,7 +15,7 @@ namespace deltadyn::checks {
 namespace {
 
 /// A value that runs over goes from one end of its range to the other; lost counts and spikes do not.
-constexpr double kShareOfRange = 0.85;
+constexpr double kWrapShareOfRange = 0.85;
 constexpr double kShareOfTurn = 0.9;
 
 /// The modulus that a jump of this size comes from: a whole turn or a power of two of quantisation steps.
@@ -121,7 +121,7 @@ void unwrap(CheckRoom& room) {
     const ChannelQuality quality = measure_channel(x);
     if (quality.range <= 0) continue;
     const bool turns_round = channel.position && room.turns(channel.drive);
-    auto jumps = find_jumps(x, quality, kShareOfRange * quality.range, turns_round);
+    auto jumps = find_jumps(x, quality, kWrapShareOfRange * quality.range, turns_round);
     // A whole turn is one also where the drive itself turns further.
     if (!jumps && turns_round) jumps = find_jumps(x, quality, kShareOfTurn * 2.0 * std::numbers::pi, turns_round);
     if (!jumps || (!channel.position && jumps_with_reversals(room.log.q.col(channel.drive), *jumps))) continue;
