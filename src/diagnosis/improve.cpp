@@ -107,10 +107,12 @@ NamedEffect swapped(NamedEffect one, std::size_t alternative) {
   return one;
 }
 
-/// Parameters that a fit spends on an effect.
+/// Parameters that a fit spends on an effect. A choice of a few is none: it bends to no data.
 int freedom(const Effect& effect) {
   const EffectKind& kind = effect_kind(effect.id);
-  return static_cast<int>(kind.amplitudes.size() + kind.shapes.size()) - (kind.tied ? 1 : 0);
+  const auto moves = [](const ShapeTraits& shape) { return shape.scale != ShapeScale::choice; };
+  const auto shapes = std::count_if(kind.shapes.begin(), kind.shapes.end(), moves);
+  return static_cast<int>(kind.amplitudes.size()) + static_cast<int>(shapes) - (kind.tied ? 1 : 0);
 }
 
 /// What the hold-out log says to one name and those that the training logs cannot tell from it: the one that it bears out, and of those

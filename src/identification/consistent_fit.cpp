@@ -21,7 +21,7 @@ namespace {
 using fit::Block;
 using fit::ConvexProblem;
 using fit::Layout;
-using fit::Shape;
+using fit::BlockKind;
 using Clock = std::chrono::steady_clock;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -29,7 +29,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 Eigen::VectorXd fitted_entries(const Block& block, const double* variables, Eigen::MatrixXd* jacobian) {
   Eigen::VectorXd y(block.fitted());
   if (!block.is_body()) {
-    const bool positive = block.shape == Shape::positive;
+    const bool positive = block.shape == BlockKind::positive;
     y(0) = positive ? std::exp(variables[0]) : variables[0];
     if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, positive ? y(0) : 1.0);
     return y;
@@ -253,8 +253,8 @@ void add_least_squares(const ConsistentFitProblem& problem, const Layout& layout
 InertialVector<double> complete_body(const Block& block, const ConsistentFitProblem& problem, const Layout& layout,
                                      const InertialVector<double>& fitted) {
   const InertialVector<double> prior = problem.prior.segment<10>(block.column);
-  if (block.shape == Shape::spatial || !is_physically_consistent(prior)) return fitted;
-  const int measure = block.shape == Shape::planar ? block.inertia : inertial::kM;
+  if (block.shape == BlockKind::spatial || !is_physically_consistent(prior)) return fitted;
+  const int measure = block.shape == BlockKind::planar ? block.inertia : inertial::kM;
   InertialVector<double> as_prior = fitted, in_proportion = fitted;
   for (int i = 0; i < 10; ++i) {
     const bool is_fitted = std::find(block.entries.begin(), block.entries.end(), i) != block.entries.end();

@@ -28,7 +28,7 @@ constexpr double kTiny = 1e-3;      // a prior below this part of its natural sc
 /// What section VI keeps of a body.
 struct Reduction {
   std::string_view body;
-  Shape shape;
+  BlockKind shape;
   std::vector<int> entries, variables;
   int axes[2];
   int inertia;
@@ -37,12 +37,12 @@ struct Reduction {
 const std::vector<Reduction>& reductions() {
   using namespace log_cholesky;
   static const std::vector<Reduction> table = {
-      {"upper_arm", Shape::planar, {kM, kMcx, kMcz, kIyy}, {kD1, kD3, kT1, kT3}, {0, 2}, kIyy},
-      {"strut", Shape::spatial, {kM, kMcx, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT1}, {0, 0}, 0},
-      {"platform", Shape::point, {kM}, {kAlpha}, {0, 0}, 0},
-      {"tool", Shape::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
-      {"telescope_upper", Shape::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
-      {"telescope_lower", Shape::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
+      {"upper_arm", BlockKind::planar, {kM, kMcx, kMcz, kIyy}, {kD1, kD3, kT1, kT3}, {0, 2}, kIyy},
+      {"strut", BlockKind::spatial, {kM, kMcx, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT1}, {0, 0}, 0},
+      {"platform", BlockKind::point, {kM}, {kAlpha}, {0, 0}, 0},
+      {"tool", BlockKind::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
+      {"telescope_upper", BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
+      {"telescope_lower", BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
   };
   return table;
 }
@@ -193,10 +193,10 @@ void make_matrices(Block& block) {
     matrix.basis.push_back(Eigen::Matrix4d::Zero());
     add_to(matrix, 0, 0, 1);
   };
-  if (block.shape == Shape::spatial) {
+  if (block.shape == BlockKind::spatial) {
     add_spatial(block.cone);
     add_spatial(block.metric);
-  } else if (block.shape == Shape::planar) {
+  } else if (block.shape == BlockKind::planar) {
     // entries are: mass, first moment along each axis, inertia
     for (LinearMatrix* matrix : {&block.cone, &block.metric}) {
       matrix->size = 3;
@@ -214,7 +214,7 @@ void make_matrices(Block& block) {
     add_to(block.cone, 0, 0, 0.5);
     add_to(block.cone, 1, 1, -0.5);
     block.cone.base(2, 2) = -block.mass_floor;
-  } else if (block.shape != Shape::free) {
+  } else if (block.shape != BlockKind::free) {
     add_scalar(block.cone);
     if (block.has_reference) add_scalar(block.metric);
   }
@@ -284,7 +284,7 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
   block.column = column;
   bool unseen_inertia = false;
   if (set == ParameterSet::full) {
-    block.shape = Shape::spatial;
+    block.shape = BlockKind::spatial;
     for (int i = 0; i < 10; ++i) {
       block.entries.push_back(i);
       block.variables.push_back(i);
@@ -300,13 +300,13 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
       // a carriage on a prismatic drive does not turn: only its mass is seen, as for the plate
       const auto seen = [&](int entry) { return problem.A.col(column + entry).cwiseAbs().maxCoeff() > 0; };
       if (seen(kM) && !seen(kMcx) && !seen(kMcz) && !seen(kIyy)) {
-        block.shape = Shape::point;
+        block.shape = BlockKind::point;
         block.entries = {kM};
         block.variables = {log_cholesky::kAlpha};
         block.fixed_alpha = false;
       }
     }
-    if (block.shape != Shape::spatial) {
+    if (block.shape != BlockKind::spatial) {
       for (const int entry : {kIxx, kIyy, kIzz}) {
         const bool fitted = std::find(block.entries.begin(), block.entries.end(), entry) != block.entries.end();
         unseen_inertia = unseen_inertia || (!fitted && prior(entry) != 0);
@@ -316,10 +316,10 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
     }
   }
   std::string moved;
-  if (block.shape == Shape::spatial) {
+  if (block.shape == BlockKind::spatial) {
     for (const int entry : block.entries) block.anchor(entry) = prior(entry);
     if (make_spatial_anchor(name, block.anchor)) moved = "was on the boundary of what a body can have and starts a hair inside";
-  } else if (block.shape == Shape::planar) {
+  } else if (block.shape == BlockKind::planar) {
     moved = make_planar_anchor(block, prior);
   } else {
     make_point_anchor(block, prior);
@@ -330,7 +330,7 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
   for (int i = 0; i < 10; ++i) {
     layout.scale(column + i) = std::abs(prior(i)) > kTiny * natural(i) ? std::abs(prior(i)) : natural(i);
   }
-  if (block.shape == Shape::planar) {
+  if (block.shape == BlockKind::planar) {
     // split into two halves, the moments' room is that of the inertia that is fitted
     for (const int axis : block.axes) {
       const double size = std::sqrt(block.anchor(kM) * block.anchor(block.inertia) / 2);
@@ -359,13 +359,13 @@ Block make_scalar(const ConsistentFitProblem& problem, int column, const std::st
   block.entries = {0};
   const std::string kind = name.substr(name.find('.') + 1);
   if (kind == "viscous" || kind == "coulomb" || kind == "rotor_inertia") {
-    block.shape = Shape::positive;
+    block.shape = BlockKind::positive;
   } else if (kind != "offset") {
     throw Error(fmt::format("parameter '{}' is unknown", name), "consistent fit, names",
                 "scalars are viscous, coulomb, rotor_inertia and offset of a joint");
   }
   const double prior = problem.prior(column);
-  if (block.shape == Shape::positive && prior < 0) {
+  if (block.shape == BlockKind::positive && prior < 0) {
     throw Error(fmt::format("the prior {:g} of '{}' is negative", prior, name), "prior, " + name,
                 "friction and inertia only take energy: give 0 or a positive value");
   }
@@ -374,10 +374,10 @@ Block make_scalar(const ConsistentFitProblem& problem, int column, const std::st
   const double from_data = column_norm > 0 ? 0.1 * problem.b.norm() / column_norm : 1.0;
   const double scale = prior != 0 ? std::abs(prior) : (from_data > 0 ? from_data : 1.0);
   layout.scale(column) = scale;
-  block.anchor(0) = block.shape == Shape::positive && prior == 0 ? 0.1 * scale : prior;
+  block.anchor(0) = block.shape == BlockKind::positive && prior == 0 ? 0.1 * scale : prior;
   block.has_reference = prior != 0;
   make_matrices(block);
-  block.pi(0) = block.shape == Shape::positive ? std::log(block.anchor(0)) : block.anchor(0);
+  block.pi(0) = block.shape == BlockKind::positive ? std::log(block.anchor(0)) : block.anchor(0);
   return block;
 }
 
@@ -428,7 +428,7 @@ Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set) {
   }
   layout.convex = layout.fitted;
   for (Block& block : layout.blocks) {
-    if (block.shape == Shape::planar) block.split = layout.convex++;
+    if (block.shape == BlockKind::planar) block.split = layout.convex++;
   }
   layout.prior.resize(layout.fitted);
   for (int i = 0; i < layout.fitted; ++i) layout.prior(i) = problem.prior(layout.y_to_p[static_cast<std::size_t>(i)]);
@@ -450,11 +450,11 @@ Eigen::VectorXd convex_start(const Layout& layout) {
 
 LogCholeskyVector<double> variables_of(const Block& block, const Eigen::VectorXd& x) {
   LogCholeskyVector<double> pi = block.pi;
-  if (block.shape == Shape::free || block.shape == Shape::positive) {
-    pi(0) = block.shape == Shape::free ? x(block.y) : std::log(x(block.y));
-  } else if (block.shape == Shape::point) {
+  if (block.shape == BlockKind::free || block.shape == BlockKind::positive) {
+    pi(0) = block.shape == BlockKind::free ? x(block.y) : std::log(x(block.y));
+  } else if (block.shape == BlockKind::point) {
     pi(log_cholesky::kAlpha) += 0.5 * std::log(x(block.y) / from_log_cholesky(pi)(kM));
-  } else if (block.shape == Shape::spatial) {
+  } else if (block.shape == BlockKind::spatial) {
     Vector10 p = Vector10::Zero();
     for (int i = 0; i < block.fitted(); ++i) p(block.entries[static_cast<std::size_t>(i)]) = x(block.y + i);
     if (to_log_cholesky(p, pi) != Status::ok) return block.pi;

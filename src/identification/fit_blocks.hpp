@@ -15,7 +15,7 @@
 
 namespace deltadyn::fit {
 
-enum class Shape {
+enum class BlockKind {
   spatial,   ///< a body whose fitted entries fill the 4 x 4 pseudo-inertia, others being 0
   planar,    ///< a body seen in one plane: mass, two first moments, one inertia
   point,     ///< a body of which only the mass is fitted
@@ -33,7 +33,7 @@ struct LinearMatrix {
 
 struct Block {
   std::string name;  ///< "strut2" or "drive1.viscous"
-  Shape shape = Shape::free;
+  BlockKind shape = BlockKind::free;
   int column = 0;              ///< first column of p
   std::vector<int> entries;    ///< fitted entries, counted from `column`
   std::vector<int> variables;  ///< free log-Cholesky variables
@@ -50,7 +50,7 @@ struct Block {
   LinearMatrix metric;  ///< what bregman and riemannian compare, in the entries; size 0: compared as in `relative`
   Eigen::Matrix4d metric_root = Eigen::Matrix4d::Zero();  ///< C with C C^T = inverse of the metric matrix of the anchor
 
-  [[nodiscard]] bool is_body() const { return shape != Shape::positive && shape != Shape::free; }
+  [[nodiscard]] bool is_body() const { return shape != BlockKind::positive && shape != BlockKind::free; }
   [[nodiscard]] int width() const { return is_body() ? 10 : 1; }
   [[nodiscard]] int fitted() const { return static_cast<int>(entries.size()); }
   /// The block's variables of the convex problem, entries then split.

@@ -198,7 +198,7 @@ double min_eigenvalue(const Eigen::MatrixXd& M) {
 Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
   Dual dual;
   dual.identity.setZero(block.fitted());
-  if (block.shape == Shape::spatial) {
+  if (block.shape == BlockKind::spatial) {
     InertialVector<double> g10 = InertialVector<double>::Zero();
     for (int i = 0; i < block.fitted(); ++i) g10(block.entries[static_cast<std::size_t>(i)]) = g(i);
     const Eigen::Vector4d size = to_pseudo_inertia(block.anchor).diagonal().cwiseSqrt();
@@ -208,7 +208,7 @@ Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
       const Eigen::Matrix4d basis = block.cone.basis[static_cast<std::size_t>(i)];
       dual.identity(i) = basis.diagonal().cwiseQuotient(size.cwiseAbs2()).sum();
     }
-  } else if (block.shape == Shape::planar) {
+  } else if (block.shape == BlockKind::planar) {
     // The cone (|a| + |b|)^2 <= m I has the dual max(|g_a|, |g_b|)^2 <= 4 g_m g_I: two 2 x 2 matrices (the completion of S_ab).
     const double m = block.anchor(inertial::kM), I = block.anchor(block.inertia);
     for (int j = 0; j < 2; ++j) {
@@ -219,7 +219,7 @@ Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
     }
     dual.identity(0) = 1 / m;
     dual.identity(3) = 1 / I;
-  } else if (block.shape != Shape::free) {
+  } else if (block.shape != BlockKind::free) {
     dual.min_eigenvalue = g(0) * block.anchor(0);
     dual.identity(0) = 1 / block.anchor(0);
   }
@@ -282,7 +282,7 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
   for (const Block& block : layout_.blocks) {
     const int count = block.fitted();
     const Eigen::VectorXd own = z.segment(block.y, count);
-    if (block.shape == Shape::free) {
+    if (block.shape == BlockKind::free) {
       shifted.segment(block.y, count) = -own;
       continue;
     }

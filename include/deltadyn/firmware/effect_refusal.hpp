@@ -62,7 +62,7 @@ constexpr bool acts_in_one_log() {
 
 constexpr bool is_on_drive(EffectPlace place) {
   return place == EffectPlace::drive || place == EffectPlace::arm || place == EffectPlace::limb ||
-         place == EffectPlace::drive_or_robot;
+         place == EffectPlace::limb_or_all || place == EffectPlace::drive_or_robot;
 }
 
 }  // namespace detail
@@ -99,6 +99,7 @@ constexpr bool has_place(EffectPlace place, int joint) {
     case EffectPlace::drive: return on_drive;
     case EffectPlace::arm: return on_drive && joint < Robot::kLimbs && kHasPlate<Robot> && Robot::kDrive == DriveKind::revolute;
     case EffectPlace::limb: return on_drive && joint < Robot::kLimbs && kHasPlate<Robot>;
+    case EffectPlace::limb_or_all: return joint == -1 || (on_drive && (joint < Robot::kLimbs || !kHasPlate<Robot>));
     case EffectPlace::drive_or_robot: return on_drive || joint == -1;
     case EffectPlace::telescope: return joint == -1 && Robot::kTelescope;
     case EffectPlace::passive_joints:

@@ -147,6 +147,7 @@ class EffectSet {
     const EffectRefusal refusal = refusal_of<E>(row.shape);
     if (refusal != EffectRefusal::none) return refusal;
     if (!has_place<Robot>(E::traits().place, row.joint)) return EffectRefusal::no_such_place;
+    if (kIs<E, JointMemory> && row.joint < 0) return EffectRefusal::memory_elsewhere;
     if (count_ >= kCapacity) return EffectRefusal::no_room;
     Term term;
     term.id = row.id;
@@ -188,7 +189,10 @@ class EffectSet {
       state = E::moved(state, T(in.position - q_before(term.joint)), in, term.shape);
       tau(term.joint) += sum<E>(E::columns(state, in, term.shape), term);
     } else if constexpr (kIs<E, JointLaw> && detail::is_on_drive(place)) {
-      tau(term.joint) += sum<E>(E::columns(scene.at_drive(term.joint), term.shape), term);
+      // Joint -1: all drives alike, of limbs where the robot has limbs.
+      constexpr int kAlike = place == EffectPlace::limb_or_all && kHasPlate<Robot> ? Robot::kLimbs : Robot::kDrives;
+      const int first = term.joint >= 0 ? term.joint : 0, end = term.joint >= 0 ? term.joint + 1 : kAlike;
+      for (int j = first; j < end; ++j) tau(j) += sum<E>(E::columns(scene.at_drive(j), term.shape), term);
     } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::telescope && Robot::kTelescope) {
       tau += sum<E>(E::columns(scene.at_telescope(), term.shape), term) * scene.motion.posture.telescope.J_length.transpose();
     } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::passive_joints) {
