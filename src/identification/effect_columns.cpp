@@ -123,7 +123,11 @@ std::vector<EffectColumn> columns_of_record(const EffectSignals& s, int joint, c
   std::vector<EffectColumn> out = empty_columns(1, joint, s.torque.rows(), count);
   for (Index j = 0; j < count; ++j) {
     const VectorXd torque = s.torque.col(first + j);
-    out[0].values.col(j) = (E::record(torque, s.sample_time_s, amount, shape) - torque) / amount;
+    if constexpr (requires { E::expected(torque, s.sample_time_s, amount, shape); }) {
+      out[0].values.col(j) = (E::expected(torque, s.sample_time_s, amount, shape) - torque) / amount;
+    } else {
+      out[0].values.col(j) = (E::record(torque, s.sample_time_s, amount, shape) - torque) / amount;
+    }
   }
   return out;
 }

@@ -15,7 +15,6 @@ struct AsymmetricCoulomb : JointLaw {
     t.amplitudes = {{"offset", "{F}"}};
     t.by_direction = true;
     t.form = {0.01, 0.12, 5e-4};  // linear, but friction that differs by direction does so in more ways
-    t.special_case_of = "direction_dependent_friction";
     t.base_term = BaseTerm::offset;
     t.role = Role::offset;
     t.meaning = "the drive's torque has a constant offset (amplifier, or Coulomb friction that differs by direction)";

@@ -15,7 +15,6 @@ struct AsymmetricViscous : JointLaw {
     t.amplitudes = {{"viscous", "{F}*s/{x}"}};
     t.by_direction = true;
     t.form = {0.01, 0.12, 5e-4};  // as `asymmetric_coulomb`
-    t.special_case_of = "direction_dependent_friction";
     t.meaning = "the drive's viscous friction differs by direction";
     t.shows = "residual even in the speed";
     t.remedy = "keep it as a feed-forward term";

@@ -30,19 +30,28 @@ struct TimeSkew : RecordedChange {
   static V record(const V& torque, double dt, double delay, const Shape<double>&) {
     V out = torque;
     if (torque.size() < 2) return out;
-    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - delay / dt);
+    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - delay / dt, true);
+    return out;
+  }
+
+  /// What a fit takes for it: along straight lines between the samples, by which the sets of lag and skew were tuned.
+  template <class V>
+  static V expected(const V& torque, double dt, double delay, const Shape<double>&) {
+    V out = torque;
+    if (torque.size() < 2) return out;
+    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - delay / dt, false);
     return out;
   }
 
  private:
   /// Value between samples, held at the ends.
   template <class V>
-  static double at(const V& y, double sample) {
+  static double at(const V& y, double sample, bool cubic) {
     const double place = std::clamp(sample, 0.0, static_cast<double>(y.size() - 1));
     const auto low = std::min(static_cast<Eigen::Index>(place), y.size() - 2);
     const double s = place - static_cast<double>(low);
-    // Cubic through four neighbours: a line would damp the highest frequencies, which a dead time does not.
-    if (low < 1 || low + 2 >= y.size()) return (1 - s) * y(low) + s * y(low + 1);
+    // Cubic through four neighbours: a line damps the highest frequencies, which a dead time does not.
+    if (!cubic || low < 1 || low + 2 >= y.size()) return (1 - s) * y(low) + s * y(low + 1);
     return y(low - 1) * (-s * (s - 1) * (s - 2) / 6) + y(low) * ((s + 1) * (s - 1) * (s - 2) / 2) +
            y(low + 1) * (-(s + 1) * s * (s - 2) / 2) + y(low + 2) * ((s + 1) * s * (s - 1) / 6);
   }
