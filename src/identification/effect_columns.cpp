@@ -47,14 +47,19 @@ std::vector<EffectColumn> empty_columns(std::size_t count, int drive, Index samp
   return std::vector<EffectColumn>(count, EffectColumn{drive, MatrixXd::Zero(samples, drives)});
 }
 
-/// What a law of joint `j` sees at one sample.
-JointInput<double> input_of_drive(const EffectSignals& s, const MatrixXd& gravity, Index j, Index k) {
+/// What a law of any joint sees at one sample.
+JointInput<double> input_at_rate(const EffectSignals& s, double rate, Index k) {
   JointInput<double> in;
-  in.position = s.q(k, j);
-  in.rate = s.qd(k, j);
-  in.acceleration = s.qdd(k, j);
-  in.sign = sign_of(in.rate);
+  in.rate = rate;
+  in.sign = sign_of(rate);
   in.time = s.t_s(k) - s.t_s(0);
+  return in;
+}
+
+JointInput<double> input_of_drive(const EffectSignals& s, const MatrixXd& gravity, Index j, Index k) {
+  JointInput<double> in = input_at_rate(s, s.qd(k, j), k);
+  in.position = s.q(k, j);
+  in.acceleration = s.qdd(k, j);
   in.load = s.load(k, j);
   in.gravity_x = gravity(0, j);
   in.gravity_z = gravity(1, j);
@@ -62,10 +67,7 @@ JointInput<double> input_of_drive(const EffectSignals& s, const MatrixXd& gravit
 }
 
 JointInput<double> input_of_bar(const EffectSignals& s, const Eigen::Vector3d& gravity, Index k) {
-  JointInput<double> in;
-  in.rate = s.bar_rate(k);
-  in.sign = sign_of(in.rate);
-  in.time = s.t_s(k) - s.t_s(0);
+  JointInput<double> in = input_at_rate(s, s.bar_rate(k), k);
   in.side_load = side_load<double>(s.bar.row(k).transpose(), s.acceleration.row(k).transpose(), gravity);
   return in;
 }
@@ -201,15 +203,12 @@ void add_differences_of(const Robot& robot, std::vector<MachineDifference>& all)
   }
 }
 
-template <class E>
-constexpr bool kByDifferences = kIs<E, MachineChange>;
-
 template <class... Effects>
 std::vector<MachineDifference> differences_of(EffectList<Effects...>, const Robot& robot) {
   std::vector<MachineDifference> all;
   const auto add = [&](auto effect) {
     using E = decltype(effect);
-    if constexpr (kByDifferences<E>) add_differences_of<E>(robot, all);
+    if constexpr (kIs<E, MachineChange>) add_differences_of<E>(robot, all);
   };
   (add(Effects()), ...);
   return all;
@@ -363,44 +362,28 @@ std::vector<EffectColumn> EffectModel::columns_of_changes(const EffectSignals& s
   return out;
 }
 
-std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, EffectId id, int joint,
-                                                            const Shape<double>& shape) const {
+template <class E>
+std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, int joint, const Shape<double>& shape) const {
   const Index N = s.q.rows(), n = s.q.cols();
-  std::vector<EffectColumn> out;
-  visit_effect(id, [&](auto effect) {
-    using E = decltype(effect);
-    if constexpr (kIs<E, JointLaw> || kIs<E, JointMemory>) {
-      if (joint >= 0) {
-        out = columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
-        return;
-      }
-      out = empty_columns(kAmplitudesOf<E>, -1, N, n);
-      for (Index j = 0; j < n; ++j) {
-        if (!acts_on_all(id, static_cast<int>(j), robot_.description())) continue;
-        const auto one = columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_drive(s, gravity_, j, k); });
-        for (std::size_t c = 0; c < one.size(); ++c) out[c].values.col(j) = one[c].values;
-      }
-      if (E::traits().place == EffectPlace::telescope) {
-        const Eigen::Vector3d gravity = robot_.description().gravity;
-        spread(
-            columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, gravity, k); }),
-            [&](Index k) { return s.J_bar.row(k); }, out);
-        return;
-      }
-      if (E::traits().place != EffectPlace::passive_joints) return;
-      for (Index m = 0; m < s.passive_rate.cols(); ++m) {
-        const auto input = [&](Index k) {
-          JointInput<double> in;
-          in.rate = s.passive_rate(k, m);
-          in.sign = sign_of(in.rate);
-          in.time = s.t_s(k) - s.t_s(0);
-          return in;
-        };
-        spread(
-            columns_of_law<E>(0, shape, N, input), [&](Index k) { return s.J_passive.row(k).segment(m * n, n); }, out);
-      }
+  if (joint >= 0) return columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
+  std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, N, n);
+  for (Index j = 0; j < n; ++j) {
+    if (!acts_on_all(effect_id<E>, static_cast<int>(j), robot_.description())) continue;
+    const auto one = columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_drive(s, gravity_, j, k); });
+    for (std::size_t c = 0; c < one.size(); ++c) out[c].values.col(j) = one[c].values;
+  }
+  if constexpr (E::traits().place == EffectPlace::telescope) {
+    const Eigen::Vector3d gravity = robot_.description().gravity;
+    spread(
+        columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, gravity, k); }),
+        [&](Index k) { return s.J_bar.row(k); }, out);
+  } else if constexpr (E::traits().place == EffectPlace::passive_joints) {
+    for (Index m = 0; m < s.passive_rate.cols(); ++m) {
+      spread(
+          columns_of_law<E>(0, shape, N, [&](Index k) { return input_at_rate(s, s.passive_rate(k, m), k); }),
+          [&](Index k) { return s.J_passive.row(k).segment(m * n, n); }, out);
     }
-  });
+  }
   return out;
 }
 
@@ -411,7 +394,7 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
   visit_effect(id, [&](auto effect) {
     using E = decltype(effect);
     if constexpr (kIs<E, JointLaw> || kIs<E, JointMemory>) {
-      out = columns_of_joint_law(s, id, joint, shape);
+      out = columns_of_joint_law<E>(s, joint, shape);
     } else if constexpr (kIs<E, PlateForce>) {
       out = columns_on_plate<E>(s, shape, robot_.description().gravity);
     } else if constexpr (kIs<E, RecordedChange>) {
@@ -419,7 +402,7 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
     } else if constexpr (kIs<E, ElasticJoint>) {
       out = columns_of_spring<E>(s, joint, shape);
     } else {
-      static_assert(kByDifferences<E>, "an effect is of one of the kinds");
+      static_assert(kIs<E, MachineChange>, "an effect is of one of the kinds");
       out = columns_of_changes(s, id, joint, shape);
     }
   });
@@ -465,7 +448,7 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
 
 bool needs_differences(const std::vector<Effect>& effects) {
   bool any = false;
-  for (const Effect& one : effects) visit_effect(one.id, [&any](auto effect) { any |= kByDifferences<decltype(effect)>; });
+  for (const Effect& one : effects) visit_effect(one.id, [&any](auto effect) { any |= kIs<decltype(effect), MachineChange>; });
   return any;
 }
 

@@ -200,10 +200,6 @@ Plant::Plant(const RobotDescription& description, const std::vector<std::string>
 Plant::~Plant() = default;
 Plant::Plant(Plant&&) noexcept = default;
 
-bool Plant::takes(EffectId id) {
-  return detail::plant_takes(id);
-}
-
 void Plant::start(const DriveVector& q, const DriveVector& qd) {
   Impl& m = *impl_;
   const int c = m.coordinates();

@@ -195,12 +195,6 @@ double SoftDrive::energy(double lead) const {
   return 0.5 * stiffness * wound * wound;
 }
 
-bool plant_takes(EffectId id) {
-  bool takes = true;
-  visit_effect(id, [&takes](auto effect) { takes = !kIs<decltype(effect), RecordedChange>; });
-  return takes;
-}
-
 PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
                        const std::vector<Effect>& effects) {
   return Builder(description, names, p).build(effects);

@@ -38,7 +38,4 @@ struct PlantParts {
 [[nodiscard]] PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names,
                                      const Eigen::VectorXd& p, const std::vector<Effect>& effects);
 
-/// True if build_plant() has a place for the effect: it is not one of the log alone (sensors.hpp).
-[[nodiscard]] bool plant_takes(EffectId id);
-
 }  // namespace deltadyn::detail

@@ -74,8 +74,8 @@ struct Dual {
   }
   friend Dual tanh(const Dual& a) {
     using std::tanh;
-    const T value = tanh(a.value);
-    return Dual(value, (T(1) - value * value) * a.slope);
+    const T tangent = tanh(a.value);
+    return Dual(tangent, (T(1) - tangent * tangent) * a.slope);
   }
   /// a^b for a > 0.
   friend Dual pow(const Dual& a, const Dual& b) {

@@ -16,7 +16,6 @@ struct AsymmetricCoulomb : JointLaw {
     t.by_direction = true;
     t.form = {0.01, 0.12, 5e-4};  // linear, but friction that differs by direction does so in more ways
     t.base_term = BaseTerm::offset;
-    t.role = Role::offset;
     t.meaning = "the drive's torque has a constant offset (amplifier, or Coulomb friction that differs by direction)";
     t.shows = "the same residual at every speed";
     t.remedy = "trim the amplifier's offset, or keep the term";

@@ -53,7 +53,8 @@ struct PlateForce {};
 
 /// A change of the recorded torque (`drive`, `drive_or_robot`):
 ///   template <class V> static V record(const V& torque, double dt, double amplitude, const Shape<double>&)
-/// what the log shows of evenly sampled torque that acted. `kStage` orders them as a drive spoils its signal, smallest first.
+/// what the log shows of evenly sampled torque that acted. An effect may have expected(), of the same form, for what a fit takes in
+/// place of that. `kStage` orders them as a drive spoils its signal, smallest first.
 struct RecordedChange {};
 
 /// What an elastic drive's columns are computed from, at one sample.

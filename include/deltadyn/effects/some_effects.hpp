@@ -19,20 +19,7 @@ struct EffectAt<k, EffectList<Effects...>> {
   using Type = std::tuple_element_t<static_cast<std::size_t>(k), std::tuple<Effects...>>;
 };
 
-template <class Function, class... Effects>
-constexpr bool visit_some(EffectList<Effects...>, [[maybe_unused]] EffectId id, [[maybe_unused]] Function& function) {
-  return ((effect_id<Effects> == id ? (function(Effects()), true) : false) || ...);
-}
-
 }  // namespace detail
-
-/// visit_effect() for a program that has but some of the effects, so that it holds no code of the others.
-/// \tparam List  an EffectList
-/// \return false if the effect is not in the list
-template <class List, class Function>
-constexpr bool visit_effect_in(EffectId id, Function function) {
-  return detail::visit_some(List(), id, function);
-}
 
 /// Number of the effect of this name; -1 if there is none.
 [[nodiscard]] constexpr EffectId effect_named(std::string_view name) {

@@ -28,22 +28,23 @@ struct TimeSkew : RecordedChange {
 
   template <class V>
   static V record(const V& torque, double dt, double delay, const Shape<double>&) {
-    V out = torque;
-    if (torque.size() < 2) return out;
-    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - delay / dt, true);
-    return out;
+    return shifted(torque, delay / dt, true);
   }
-
-  /// What a fit takes for it: along straight lines between the samples, by which the sets of lag and skew were tuned.
+  /// Along straight lines between the samples, by which the sets of lag and skew were tuned.
   template <class V>
   static V expected(const V& torque, double dt, double delay, const Shape<double>&) {
-    V out = torque;
-    if (torque.size() < 2) return out;
-    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - delay / dt, false);
-    return out;
+    return shifted(torque, delay / dt, false);
   }
 
  private:
+  template <class V>
+  static V shifted(const V& torque, double samples, bool cubic) {
+    V out = torque;
+    if (torque.size() < 2) return out;
+    for (Eigen::Index k = 0; k < torque.size(); ++k) out(k) = at(torque, static_cast<double>(k) - samples, cubic);
+    return out;
+  }
+
   /// Value between samples, held at the ends.
   template <class V>
   static double at(const V& y, double sample, bool cubic) {

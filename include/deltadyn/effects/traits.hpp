@@ -187,8 +187,7 @@ enum class Course {
 enum class Role {
   none,
   bristle,  ///< driveK.presliding rows
-  wave,     ///< driveK.rippleI rows
-  offset    ///< driveK.offset
+  wave      ///< driveK.rippleI rows
 };
 
 struct EffectTraits {

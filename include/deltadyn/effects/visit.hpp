@@ -26,27 +26,33 @@ constexpr int index_in(EffectList<Effects...>) {
   return index;
 }
 
-template <class Function, class... Effects>
-constexpr void visit_in(EffectList<Effects...>, EffectId id, Function& function) {
-  int k = 0;
-  ((k++ == static_cast<int>(id) ? function(Effects()) : void()), ...);
-}
-
 }  // namespace detail
 
 template <class Effect>
 inline constexpr EffectId effect_id = EffectId{detail::index_in<Effect>(AllEffects())};
 
-/// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E = decltype(effect); ... }`.
-template <class Function>
-constexpr void visit_effect(EffectId id, Function function) {
-  detail::visit_in(AllEffects(), id, function);
+namespace detail {
+
+template <class Function, class... Effects>
+constexpr bool visit_in(EffectList<Effects...>, [[maybe_unused]] EffectId id, [[maybe_unused]] Function& function) {
+  return ((effect_id<Effects> == id ? (function(Effects()), true) : false) || ...);
 }
 
-[[nodiscard]] constexpr EffectTraits traits_of(EffectId id) {
-  EffectTraits traits;
-  visit_effect(id, [&traits](auto effect) { traits = decltype(effect)::traits(); });
-  return traits;
+}  // namespace detail
+
+/// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E = decltype(effect); ... }`.
+/// A program that visits a list of some of the effects holds no code of the others.
+/// \tparam List  an EffectList
+/// \return false if the effect is not in the list
+template <class List, class Function>
+constexpr bool visit_effect_in(EffectId id, Function function) {
+  return detail::visit_in(List(), id, function);
+}
+
+/// visit_effect_in() the list of all effects.
+template <class Function>
+constexpr void visit_effect(EffectId id, Function function) {
+  visit_effect_in<AllEffects>(id, function);
 }
 
 /// Has the effect a change() of the machine?

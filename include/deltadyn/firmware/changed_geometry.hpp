@@ -25,13 +25,12 @@ struct ChangedGeometry {
     geometry.gravity += turn.cross(geometry.gravity).eval();
   }
   void shift_home(int drive, double by) { home_offset(drive) += static_cast<T>(by); }
-  /// A carriage has no arm: its place along the axis is what a length would be.
+  /// A carriage has no arm: an error of its place along the axis, which a length would be, is one of its home position.
   void lengthen_arm(int limb, double by) {
-    LimbGeometry<T>& one = geometry.limbs[limb];
     if constexpr (Robot::kDrive == DriveKind::revolute) {
-      one.p_DE_0.x() += static_cast<T>(by);
+      geometry.limbs[limb].p_DE_0.x() += static_cast<T>(by);
     } else {
-      one.p_DE_0 += static_cast<T>(by) * one.axis_L;
+      shift_home(limb, by);
     }
   }
   void lengthen_strut(int limb, double by) { geometry.limbs[limb].strut += static_cast<T>(by); }

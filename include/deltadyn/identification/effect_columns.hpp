@@ -86,7 +86,8 @@ class EffectModel {
  private:
   [[nodiscard]] std::vector<EffectColumn> columns_of_changes(const EffectSignals& signals, EffectId id, int joint,
                                                              const Shape<double>& shape) const;
-  [[nodiscard]] std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& signals, EffectId id, int joint,
+  template <class E>
+  [[nodiscard]] std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& signals, int joint,
                                                                const Shape<double>& shape) const;
   void add_differences(const PreparedLog& log, const Eigen::VectorXd& p, EffectSignals& out) const;
   void add_lags(const Eigen::VectorXd& p, const EffectSignals* near, EffectSignals& out) const;

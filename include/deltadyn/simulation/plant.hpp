@@ -46,9 +46,6 @@ class Plant {
   ~Plant();
   Plant(Plant&&) noexcept;
 
-  /// True if the plant has this effect inside.
-  [[nodiscard]] static bool takes(EffectId id);
-
   /// Puts the robot at rest or in motion at time 0. Throws Error(bad_input) if the pose is out of reach.
   void start(const DriveVector& q, const DriveVector& qd);
   /// Torque that the drives are told to give from now on, held until the next call [N m | N].
