@@ -8,11 +8,11 @@
 #include <memory>
 #include <set>
 
-#include "deltadyn/diagnosis/effect_search.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
 #include "diagnosis_steps.hpp"
+#include "effect_search.hpp"
 #include "explains_more.hpp"
 #include "improve.hpp"
 #include "prepare_rows.hpp"

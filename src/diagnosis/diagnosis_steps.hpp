@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "deltadyn/diagnosis/diagnose.hpp"
-#include "deltadyn/diagnosis/effect_search.hpp"
+
+#include "effect_search.hpp"
 
 namespace deltadyn::detail {
 

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/effect_search.hpp"
+#include "effect_search.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/generic_basis.hpp"
+#include "generic_basis.hpp"
 
 #include <algorithm>
 #include <cmath>

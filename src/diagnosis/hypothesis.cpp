@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/hypothesis.hpp"
+#include "hypothesis.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/log_rows.hpp"
+#include "log_rows.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -7,10 +7,11 @@
 #include <random>
 #include <vector>
 
-#include "deltadyn/diagnosis/hypothesis.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
+
+#include "hypothesis.hpp"
 
 namespace deltadyn {
 

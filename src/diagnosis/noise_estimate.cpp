@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/noise_estimate.hpp"
+#include "noise_estimate.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

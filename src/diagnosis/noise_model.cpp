@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/noise_model.hpp"
+#include "noise_model.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/null_study.hpp"
+#include "null_study.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <optional>
 
-#include "deltadyn/diagnosis/generic_basis.hpp"
-#include "deltadyn/diagnosis/noise_estimate.hpp"
-#include "deltadyn/diagnosis/whitener.hpp"
 #include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/statistics.hpp"
+
+#include "generic_basis.hpp"
+#include "noise_estimate.hpp"
+#include "whitener.hpp"
 
 namespace deltadyn::detail {
 

@@ -6,8 +6,9 @@
 
 #include <vector>
 
-#include "deltadyn/diagnosis/log_rows.hpp"
 #include "deltadyn/signal/log.hpp"
+
+#include "log_rows.hpp"
 
 namespace deltadyn::detail {
 

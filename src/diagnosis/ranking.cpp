@@ -8,8 +8,6 @@ namespace deltadyn::detail {
 
 namespace {
 
-constexpr double kSimplerGain =
-    0.95;                         // share of the best one's gain for which an effect is preferred that it holds as a special case
 constexpr double kSamples = 1.0;  // a skew or lag up to one sample is a matter of who samples when, not of the robot
 
 /// Does a rich effect lie so near its special case that only the form of the law can have parted them?
@@ -33,7 +31,8 @@ std::vector<std::size_t> best_of(const EffectSearch& search, const EffectSearch:
 }
 
 bool holds(EffectId rich, EffectId simple) {
-  return effect_kind(simple).special_case_of == effect_kind(rich).name;
+  const auto& cases = effect_kind(rich).special_cases;
+  return std::find(cases.begin(), cases.end(), effect_kind(simple).name) != cases.end();
 }
 
 std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
@@ -60,7 +59,7 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   for (Fit& fit : fits) {
     const Hypothesis& other = hypotheses[fit.hypothesis];
     if (other.joint != winner.joint || !holds(winner.id, other.id)) continue;
-    if (fit.gain < kSimplerGain * best->gain && !nearly_special(*best)) continue;
+    if (fit.gain < effect_kind(winner.id).simpler_gain * best->gain && !nearly_special(*best)) continue;
     if (!simpler || fit.gain > simpler->gain) simpler = std::move(fit);
   }
   return simpler ? simpler : best;

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/unknown_torque.hpp"
+#include "unknown_torque.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/white_problem.hpp"
+#include "white_problem.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/whitener.hpp"
+#include "whitener.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

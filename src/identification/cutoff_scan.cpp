@@ -1,11 +1,12 @@
-#include "deltadyn/identification/cutoff_scan.hpp"
+#include "cutoff_scan.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/runtime/error.hpp"
+
+#include "data_fold.hpp"
 
 namespace deltadyn {
 

@@ -1,4 +1,4 @@
-#include "deltadyn/identification/data_fold.hpp"
+#include "data_fold.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

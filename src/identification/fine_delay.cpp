@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "deltadyn/identification/effect_columns.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/signal/differentiate.hpp"
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
+#include "least_squares.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {

@@ -6,12 +6,12 @@
 #include <limits>
 #include <utility>
 
-#include "deltadyn/identification/noise_bias.hpp"
-#include "deltadyn/identification/ripple_search.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "encoder_uncertainty.hpp"
+#include "noise_bias.hpp"
 #include "residual_noise.hpp"
+#include "ripple_search.hpp"
 #include "seconds_since.hpp"
 
 namespace deltadyn {

@@ -1,4 +1,4 @@
-#include "deltadyn/identification/least_squares.hpp"
+#include "least_squares.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

@@ -6,11 +6,12 @@
 #include <optional>
 #include <random>
 
-#include "deltadyn/identification/data_fold.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/log_part.hpp"
+
+#include "data_fold.hpp"
+#include "least_squares.hpp"
 
 namespace deltadyn {
 namespace {

@@ -1,4 +1,4 @@
-#include "deltadyn/identification/noise_bias.hpp"
+#include "noise_bias.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -5,14 +5,14 @@
 
 #include "deltadyn/core/sign.hpp"
 #include "deltadyn/effects/bristle.hpp"
-#include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/requantise.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
+#include "data_fold.hpp"
+#include "least_squares.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {

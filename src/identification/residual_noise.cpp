@@ -4,10 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/motion_band.hpp"
+
+#include "least_squares.hpp"
 
 namespace deltadyn {
 namespace {

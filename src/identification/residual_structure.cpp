@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "deltadyn/identification/least_squares.hpp"
+#include "least_squares.hpp"
 
 namespace deltadyn {
 namespace {

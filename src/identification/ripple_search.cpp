@@ -1,4 +1,4 @@
-#include "deltadyn/identification/ripple_search.hpp"
+#include "ripple_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 
 #include "deltadyn/effects/wave.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/signal/log_part.hpp"
 
+#include "least_squares.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {

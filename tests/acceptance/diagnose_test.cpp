@@ -99,6 +99,24 @@ TEST_F(Diagnosing, TellsTheSizeOfAStribeckEffect) {
   figure("stribeck_size_error", std::abs(number(summary(), "amplitude") / 2 - 1), 0.05);
 }
 
+TEST_F(Diagnosing, NamesFrictionThatDiffersByDirectionWithADeadZone) {
+  record_all(
+      {"--effect", "direction_dependent_friction@drive2:coulomb_difference=1,viscous_difference=0.3,dead_zone=3,rate=0.15"});
+  succeed(diagnose("truth.csv"));
+  EXPECT_EQ(summary().at("effect"), "direction_dependent_friction");
+  EXPECT_EQ(summary().at("joint"), "drive2");
+  EXPECT_GE(number(summary(), "gap_shrink"), 0.9);
+}
+
+TEST_F(Diagnosing, NamesASpringOnAnArm) {
+  record_all({"--effect", "arm_spring@drive1:stiffness=8,zero=-0.4"});
+  succeed(diagnose("truth.csv"));
+  EXPECT_EQ(summary().at("effect"), "arm_spring");
+  EXPECT_EQ(summary().at("joint"), "drive1");
+  figure("spring_size_error", std::abs(number(summary(), "amplitude") / 8 - 1), 0.05);
+  EXPECT_GE(number(summary(), "gap_shrink"), 0.9);
+}
+
 TEST_F(Diagnosing, CounterweightsAreHeldByTheArmsParameters) {
   // The machine has them, the model that is diagnosed does not: a re-fit of the arms is all that is needed.
   const ParameterTable bare = read_parameters(path("truth.csv"));

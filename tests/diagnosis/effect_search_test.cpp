@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/effect_search.hpp"
+#include "../../src/diagnosis/effect_search.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/log_rows.hpp"
+#include "../../src/diagnosis/log_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Noise beside structure: an offset must not become noise, slow noise must not become structure.
 
-#include "deltadyn/diagnosis/noise_estimate.hpp"
+#include "../../src/diagnosis/noise_estimate.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

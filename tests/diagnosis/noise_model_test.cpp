@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/noise_model.hpp"
+#include "../../src/diagnosis/noise_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/unknown_torque.hpp"
+#include "../../src/diagnosis/unknown_torque.hpp"
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>

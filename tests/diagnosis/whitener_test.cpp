@@ -1,4 +1,4 @@
-#include "deltadyn/diagnosis/whitener.hpp"
+#include "../../src/diagnosis/whitener.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>

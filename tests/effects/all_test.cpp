@@ -359,7 +359,7 @@ TEST(AllEffects, NamesAndAliasesAreTheirOwnAndSpecialCasesExist) {
   for (const EffectKind& kind : effect_catalogue()) {
     names.push_back(kind.name);
     if (!kind.alias.empty()) names.push_back(kind.alias);
-    EXPECT_TRUE(kind.special_case_of.empty() || find_effect_kind(kind.special_case_of) != nullptr) << kind.name;
+    for (const std::string_view name : kind.special_cases) EXPECT_NE(find_effect_kind(name), nullptr) << kind.name;
     EXPECT_FALSE(kind.meaning.empty() || kind.shows.empty() || kind.remedy.empty()) << kind.name;
     EXPECT_FALSE(kind.amplitudes.empty()) << kind.name;
   }

@@ -137,7 +137,8 @@ inline Findings check_floor_includes(const SourceFile& file) {
   for (const Include& include : includes_of(file)) {
     std::smatch match;
     if (!std::regex_match(include.target, match, pattern)) {
-      if (include.target.find("..") != std::string::npos) {
+      const auto resolved = (std::filesystem::path(file.path).parent_path() / include.target).lexically_normal();
+      if (include.target.find("..") != std::string::npos && floor_of(resolved.generic_string()) != folder) {
         findings.push_back({file.path, include.line, "includes '" + include.target + "' around the floors; write deltadyn/..."});
       }
       continue;

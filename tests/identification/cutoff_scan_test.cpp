@@ -1,8 +1,9 @@
-#include "deltadyn/identification/cutoff_scan.hpp"
+#include "../../src/identification/cutoff_scan.hpp"
 
 #include <gtest/gtest.h>
 
 #include "deltadyn/runtime/error.hpp"
+
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -25,7 +26,8 @@ TEST(CutoffScan, CoarserEncodersAskForALowerCutoff) {
     EXPECT_GT(best, 5.0);
     last = best;
     // Too high a cut-off is clearly worse than the best one.
-    EXPECT_GT(points.back().score, 1.05 * std::min_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.score < b.score; })->score);
+    EXPECT_GT(points.back().score,
+              1.05 * std::min_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.score < b.score; })->score);
   }
 }
 

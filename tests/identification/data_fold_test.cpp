@@ -1,4 +1,4 @@
-#include "deltadyn/identification/data_fold.hpp"
+#include "../../src/identification/data_fold.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,8 @@ TEST(DataFold, HoldsTheSquareErrorOfEveryParameterVector) {
         const double expected = direct_square_error(*robot, log, j, RowUse::regular, p);
         EXPECT_NEAR(regular.square_error(p), expected, 1e-9 * (expected + regular.tau_square));
         const double at_reversals = direct_square_error(*robot, log, j, RowUse::reversal, p);
-        EXPECT_NEAR(fold.reversal[static_cast<std::size_t>(j)].square_error(p), at_reversals, 1e-9 * (at_reversals + regular.tau_square));
+        EXPECT_NEAR(fold.reversal[static_cast<std::size_t>(j)].square_error(p), at_reversals,
+                    1e-9 * (at_reversals + regular.tau_square));
       }
     }
   }

@@ -7,11 +7,11 @@
 #include <random>
 
 #include "deltadyn/identification/base_parameters.hpp"
-#include "deltadyn/identification/data_fold.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
 #include "deltadyn/runtime/random.hpp"
 
+#include "../../src/identification/data_fold.hpp"
+#include "../../src/identification/least_squares.hpp"
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {

@@ -1,4 +1,4 @@
-#include "deltadyn/identification/least_squares.hpp"
+#include "../../src/identification/least_squares.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

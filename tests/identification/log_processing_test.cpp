@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/runtime/error.hpp"
 
+#include "../../src/identification/data_fold.hpp"
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {

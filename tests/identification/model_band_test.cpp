@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "deltadyn/identification/least_squares.hpp"
-
+#include "../../src/identification/least_squares.hpp"
 #include "identification/axis_log.hpp"
 #include "support/descriptions.hpp"
 

@@ -1,10 +1,10 @@
-#include "deltadyn/identification/noise_bias.hpp"
+#include "../../src/identification/noise_bias.hpp"
 
 #include <gtest/gtest.h>
 
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
+#include "../../src/identification/least_squares.hpp"
 #include "identification/axis_log.hpp"
 #include "support/descriptions.hpp"
 

@@ -1,4 +1,4 @@
-#include "deltadyn/identification/ripple_search.hpp"
+#include "../../src/identification/ripple_search.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -4,12 +4,14 @@
 /// The list of all effects, in the order in which they are shown. A new effect is its header and a line here.
 
 #include "deltadyn/effects/aerodynamic_drag.hpp"
+#include "deltadyn/effects/arm_spring.hpp"
 #include "deltadyn/effects/asymmetric_coulomb.hpp"
 #include "deltadyn/effects/asymmetric_viscous.hpp"
 #include "deltadyn/effects/backlash.hpp"
 #include "deltadyn/effects/base_tilt.hpp"
 #include "deltadyn/effects/convex_viscous.hpp"
 #include "deltadyn/effects/current_lag.hpp"
+#include "deltadyn/effects/direction_dependent_friction.hpp"
 #include "deltadyn/effects/directional_efficiency.hpp"
 #include "deltadyn/effects/hose_force.hpp"
 #include "deltadyn/effects/hysteresis.hpp"
@@ -46,6 +48,6 @@ using AllEffects =
                effects::JointElasticity, effects::RotorInertia, effects::LimbInertiaMismatch, effects::BaseTilt, effects::Payload,
                effects::TorqueConstantError, effects::TimeSkew, effects::CurrentLag, effects::Saturation, effects::ThermalDrift,
                effects::PassiveJointFriction, effects::AerodynamicDrag, effects::TelescopeStribeck, effects::TelescopeSideLoad,
-               effects::HoseForce, effects::KinematicOffset>;
+               effects::HoseForce, effects::KinematicOffset, effects::DirectionDependentFriction, effects::ArmSpring>;
 
 }  // namespace deltadyn

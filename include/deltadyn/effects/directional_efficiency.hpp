@@ -22,6 +22,7 @@ struct DirectionalEfficiency : JointLaw {
     t.meaning = "the drive's gear loses different shares when it drives and when it is driven";
     t.shows = "follows the sign of torque times speed";
     t.remedy = "keep it as a feed-forward term";
+    t.special_cases = {"load_dependent_friction"};
     t.nearly_special = [](const double* loss) {
       return (loss[0] < loss[1] ? loss[0] : loss[1]) > kSameLoss * (loss[0] < loss[1] ? loss[1] : loss[0]);
     };

@@ -19,6 +19,7 @@ struct LimbInertiaMismatch : JointLaw {
     t.place = EffectPlace::arm;
     t.amplitudes = {{"moment", "kg*m"}, {"inertia", "kg*m^2"}};
     t.form = {0.01, 5e-4, 5e-4};  // linear in what is known
+    t.special_cases = {"rotor_inertia"};
     t.base_term = BaseTerm::limb;
     t.meaning = "one limb has another mass distribution than the others";
     t.shows = "gravity and inertia of one limb";

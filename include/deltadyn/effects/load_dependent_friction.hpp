@@ -16,7 +16,6 @@ struct LoadDependentFriction : JointLaw {
     t.effect_class = EffectClass::load;
     t.amplitudes = {{"coefficient", "", Sign::positive, 1.0}};
     t.form = {0.06, 0.12, 0.04};  // of the torque on one side of the gear or on the other
-    t.special_case_of = "directional_efficiency";
     t.meaning = "the drive's friction grows with the torque that it transmits";
     t.shows = "friction that grows with the load";
     t.remedy = "keep it as a feed-forward term; look at the gear's efficiency";

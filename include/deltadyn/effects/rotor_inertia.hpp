@@ -14,7 +14,6 @@ struct RotorInertia : JointLaw {
     t.amplitudes = {{"inertia", "{F}*s^2/{x}"}};
     t.form = {0.01, 5e-4, 5e-4};  // linear in what is known
     t.base_term = BaseTerm::rotor_inertia;
-    t.special_case_of = "limb_inertia_mismatch";
     t.meaning = "one drive has another inertia than the others (rotor, gear, coupling)";
     t.shows = "in proportion to one drive's acceleration";
     t.remedy = "identify with --rotor-inertia for this drive";

@@ -202,10 +202,11 @@ struct EffectTraits {
   FormShare form;
   BaseTerm base_term = BaseTerm::none;
   Role role = Role::none;
-  std::string_view special_case_of;  ///< the richer effect that holds this one
-  std::string_view meaning;          ///< in plain words: what it is
-  std::string_view shows;            ///< how it shows
-  std::string_view remedy;           ///< what to do about it on the machine
+  Few<std::string_view, 2> special_cases;  ///< names of simpler effects that this one holds
+  double simpler_gain = 0.95;              ///< share of its gain from which a special case is preferred
+  std::string_view meaning;                ///< in plain words: what it is
+  std::string_view shows;                  ///< how it shows
+  std::string_view remedy;                 ///< what to do about it on the machine
 
   // What only some effects have to say; null: nothing.
   /// Is the parameter a mere unit beside the others, so that one start value (the last) serves?

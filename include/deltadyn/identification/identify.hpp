@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/identification/base_estimate.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/consistent_fit.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/log_processing.hpp"
 #include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/identification/presliding_search.hpp"

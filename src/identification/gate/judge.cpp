@@ -27,6 +27,7 @@ constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for t
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
 constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent
 constexpr double kAlike = 1.1;                 // residuals within this ratio do not tell explanations apart
+constexpr double kSprings = 0.9;               // of an explanation's residual: springs on the drives explain the log better
 constexpr double kOutOfReach = 0.01;           // share of poses that a recording of this robot cannot have
 constexpr Index kCoarsePoints = 120;           // for searches over a factor or a zero
 constexpr int kBestStarts = 2;                 // of a search, refined
@@ -101,7 +102,23 @@ class Judge {
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
     alone_ = root_mean_square(own_residuals(blocks));
+    with_springs_ = relative_residual(
+        residual_form(fold_torques(with_springs(rows), torques(rows, points_)), out.assignment, out.factor), out.factor);
     return out;
+  }
+
+  /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault of a record is.
+  [[nodiscard]] Rows with_springs(Rows rows) const {
+    const auto n = static_cast<Index>(rows.drives.size());
+    for (Index j = 0; j < n; ++j) {
+      DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
+      const Index before = drive.Y.cols();
+      drive.Y.conservativeResize(Eigen::NoChange, before + n);
+      drive.Y.rightCols(n).setZero();
+      for (Index k = 0; k < drive.count(); ++k)
+        drive.Y(k, before + j) = points_.q(drive.at[static_cast<std::size_t>(k)].point, j);
+    }
+    return rows;
   }
 
   /// Adds every explanation over `start`, itself the reading of `before` or the log as given.
@@ -352,6 +369,8 @@ class Judge {
     std::vector<Explanation> out;
     if (least > kSoundWinner) return out;
     for (const Explanation& e : all_) {
+      // A factor or a zero of any size follows a spring's torque to some extent, too.
+      if (is_search(e.key) && with_springs_ < kSprings * e.residual) continue;
       if (e.residual < kAlike * least + 0.0005 && (e.residual < kWins * as_given || heals(e, as_given)) &&
           (!e.odd || e.residual < kSoundOdd))
         out.push_back(e);
@@ -388,6 +407,7 @@ class Judge {
   const BaseParameters& base_;
   const Points& points_;
   double unreachable_ = 0, alone_ = 0, reading_alone_ = 0;
+  double with_springs_ = 1;  ///< residual of the log as given with a spring on every drive
   std::vector<Explanation> all_;
 };
 

@@ -6,12 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "deltadyn/identification/data_fold.hpp"
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/fir_decimator.hpp"
+
+#include "../data_fold.hpp"
+#include "../least_squares.hpp"
 
 namespace deltadyn::gate {
 

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deltadyn/identification/least_squares.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
+
+#include "../least_squares.hpp"
 
 namespace deltadyn::gate {
 

@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "deltadyn/identification/base_parameters.hpp"
-#include "deltadyn/identification/data_fold.hpp"
 #include "deltadyn/identification/log_processing.hpp"
 #include "deltadyn/signal/log.hpp"
+
+#include "data_fold.hpp"
 
 namespace deltadyn {
 

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "deltadyn/diagnosis/noise_model.hpp"
-#include "deltadyn/diagnosis/unknown_torque.hpp"
+#include "noise_model.hpp"
+#include "unknown_torque.hpp"
 
 namespace deltadyn {
 

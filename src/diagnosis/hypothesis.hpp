@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/diagnosis/log_rows.hpp"
+#include "log_rows.hpp"
 
 namespace deltadyn {
 

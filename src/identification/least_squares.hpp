@@ -6,31 +6,13 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "deltadyn/identification/base_estimate.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
-#include "deltadyn/identification/data_fold.hpp"
-#include "deltadyn/identification/noise_bias.hpp"
+
+#include "data_fold.hpp"
+#include "noise_bias.hpp"
 
 namespace deltadyn {
-
-/// Noise of one drive as the fit sees it.
-struct DriveNoise {
-  double std = 1;          ///< of the torque residual [N m | N]
-  double correlation = 1;  ///< variance of a mean over the rows in units of that of white noise; above 1: fewer independent rows
-};
-
-/// Least-squares estimate of beta in tau = Y_B beta.
-struct BaseEstimate {
-  Eigen::VectorXd value;       ///< one a base parameter
-  Eigen::MatrixXd covariance;  ///< from the residual
-  std::vector<DriveNoise> noise;
-  double condition_number = 0;  ///< of the weighted Y_B with columns scaled to norm 1
-  double log_det = 0;           ///< of the information matrix Y_B^T W Y_B
-  /// A p = b in units of the noise: A^T A is the information matrix of the full parameters. parameters x parameters.
-  Eigen::MatrixXd A;
-  Eigen::VectorXd b;
-
-  [[nodiscard]] Eigen::VectorXd std() const { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
-};
 
 /// Parameters of the full set that reproduce beta: the dependent ones 0. Not physical; Y p is what counts.
 [[nodiscard]] Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta,

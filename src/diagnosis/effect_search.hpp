@@ -9,9 +9,9 @@
 #include <memory>
 #include <vector>
 
-#include "deltadyn/diagnosis/noise_estimate.hpp"
-#include "deltadyn/diagnosis/null_study.hpp"
-#include "deltadyn/diagnosis/white_problem.hpp"
+#include "noise_estimate.hpp"
+#include "null_study.hpp"
+#include "white_problem.hpp"
 
 namespace deltadyn {
 

@@ -7,10 +7,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deltadyn/diagnosis/noise_model.hpp"
-#include "deltadyn/diagnosis/unknown_torque.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/effect_columns.hpp"
+
+#include "noise_model.hpp"
+#include "unknown_torque.hpp"
 
 namespace deltadyn {
 

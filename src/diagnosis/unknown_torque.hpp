@@ -8,8 +8,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deltadyn/diagnosis/noise_model.hpp"
 #include "deltadyn/identification/log_processing.hpp"
+
+#include "noise_model.hpp"
 
 namespace deltadyn {
 

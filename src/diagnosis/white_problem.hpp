@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deltadyn/diagnosis/hypothesis.hpp"
-#include "deltadyn/diagnosis/log_rows.hpp"
-#include "deltadyn/diagnosis/noise_model.hpp"
-#include "deltadyn/diagnosis/whitener.hpp"
+#include "hypothesis.hpp"
+#include "log_rows.hpp"
+#include "noise_model.hpp"
+#include "whitener.hpp"
 
 namespace deltadyn {
 

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deltadyn/diagnosis/generic_basis.hpp"
-#include "deltadyn/diagnosis/white_problem.hpp"
+#include "generic_basis.hpp"
+#include "white_problem.hpp"
 
 namespace deltadyn {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "deltadyn/diagnosis/log_rows.hpp"
+#include "log_rows.hpp"
 
 namespace deltadyn {
 
