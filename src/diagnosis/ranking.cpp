@@ -35,34 +35,40 @@ bool holds(EffectId rich, EffectId simple) {
   return std::find(cases.begin(), cases.end(), effect_kind(simple).name) != cases.end();
 }
 
+std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits, const std::vector<double>& gains,
+                        std::size_t best) {
+  const Hypothesis& winner = search.hypotheses()[fits[best].hypothesis];
+  const double enough = nearly_special(fits[best]) ? 0.0 : winner.kind().simpler_gain * gains[best];
+  std::optional<std::size_t> simpler;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const Hypothesis& other = search.hypotheses()[fits[k].hypothesis];
+    if (other.joint != winner.joint || !holds(winner.id, other.id) || gains[k] < enough) continue;
+    if (!simpler || gains[k] > gains[*simpler]) simpler = k;
+  }
+  return simpler.value_or(best);
+}
+
 std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
                             const std::function<bool(const Fit&)>& counts) {
-  std::optional<Fit> best, simpler;
   double best_worth = 0;
+  std::size_t best = 0;
   std::vector<Fit> fits;
+  std::vector<double> gains;
   const auto order = best_of(search, state, kRefined);
   search.refine_all(state, order);
   for (const std::size_t h : order) {
     Fit fit = search.refine(state, h);
     if (!counts(fit)) continue;
     const double worth = search.worth(h, fit.gain, state);
-    if (!best || worth > best_worth) {
+    if (fits.empty() || worth > best_worth) {
       best_worth = worth;
-      best = fit;
+      best = fits.size();
     }
+    gains.push_back(fit.gain);
     fits.push_back(std::move(fit));
   }
-  if (!best) return best;
-  // The forms of the catalogue are not exact: a richer one must not win by following what is wrong with a simpler one.
-  const auto& hypotheses = search.hypotheses();
-  const Hypothesis& winner = hypotheses[best->hypothesis];
-  for (Fit& fit : fits) {
-    const Hypothesis& other = hypotheses[fit.hypothesis];
-    if (other.joint != winner.joint || !holds(winner.id, other.id)) continue;
-    if (fit.gain < effect_kind(winner.id).simpler_gain * best->gain && !nearly_special(*best)) continue;
-    if (!simpler || fit.gain > simpler->gain) simpler = std::move(fit);
-  }
-  return simpler ? simpler : best;
+  if (fits.empty()) return std::nullopt;
+  return std::move(fits[simpler_one(search, fits, gains, best)]);
 }
 
 bool near_rest(const SearchContext& context, const Fit& fit) {

@@ -58,14 +58,9 @@ std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots
     gain[k] = 2 * (search.noise_beside(with, &estimate.noise).log_likelihood - reference) -
               search.hypotheses()[candidates[k].hypothesis].freedom() * std::log(rows);
   });
-  std::optional<Fit> best;
-  double most = kProvisional;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (gain[k] <= most) continue;
-    most = gain[k];
-    best = candidates[k];
-  }
-  return best;
+  const auto best = static_cast<std::size_t>(std::max_element(gain.begin(), gain.end()) - gain.begin());
+  if (gain.empty() || gain[best] <= kProvisional) return std::nullopt;
+  return std::move(candidates[simpler_one(search, candidates, gain, best)]);
 }
 
 /// \param material  smallest share of the noise variance

@@ -106,6 +106,27 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
   }
 }
 
+// A spring between base and arm is of the machine: no zero and no factor of the positions, which follow its torque to some extent.
+TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  const std::vector<Log> sound = recorded(*robot);
+  for (const double share : {0.1, 0.3, 1.0}) {  // of the drive's largest torque, over its range
+    for (const bool all : {false, true}) {
+      std::vector<Log> logs = sound;
+      const double range = sound[0].q.col(0).maxCoeff() - sound[0].q.col(0).minCoeff();
+      const double stiffness = share * sound[0].tau.col(0).cwiseAbs().maxCoeff() / range;
+      for (Log& log : logs) {
+        for (Eigen::Index j = 0; j < (all ? 3 : 1); ++j) log.tau.col(j).array() += stiffness * (log.q.col(j).array() - 0.3);
+      }
+      const GateResult result = examine(*robot, logs);
+      for (const LogFinding& f : result.findings) {
+        EXPECT_NE(f.level, FindingLevel::fault) << share << (all ? ", all: " : ", one: ") << f.text;
+        EXPECT_NE(f.level, FindingLevel::mended) << share << (all ? ", all: " : ", one: ") << f.text;
+      }
+    }
+  }
+}
+
 // Stops, a log that begins at rest, and high rates are no fault, alone and beside a planned motion.
 TEST_P(LogGate, LeavesPickAndPlaceAndStandstillAlone) {
   const auto robot = make_robot(delta_description(GetParam()));
