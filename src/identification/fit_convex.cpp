@@ -46,7 +46,7 @@ ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, con
   const auto rows = std::min<Eigen::Index>(A_.rows(), n);
   square.topRows(rows) = A_.topRows(rows) * scale_.head(n).asDiagonal();
   rhs.head(rows) = b_.head(rows);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
   singular_ = svd.singularValues();
   V_ = svd.matrixV();
   target_ = svd.matrixU().transpose() * rhs;

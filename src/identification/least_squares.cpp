@@ -89,7 +89,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     Eigen::VectorXd norm = A_B.colwise().norm().cwiseMax(1e-300);
     const double largest = norm.maxCoeff();
     A_B *= norm.cwiseInverse().asDiagonal();
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(A_B, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A_B, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd& s = svd.singularValues();
     out.condition_number = s(0) / std::max(s(s.size() - 1), 1e-300);
     std::string unseen;

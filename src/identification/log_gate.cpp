@@ -182,7 +182,8 @@ class Gate {
           "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives explains it",
           100 * judgement.as_given.unreachable);
       f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
-    } else if (judgement.as_given.residual > kUnexplained && !coarse_) {
+    } else if (judgement.as_given.residual > kUnexplained && judgement.with_springs > kHalf * judgement.as_given.residual &&
+               !coarse_) {
       f.level = judgement.as_given.residual > kNoiseOnly * torque_noise_ ? FindingLevel::fault : FindingLevel::warning;
       f.key = "unexplained";
       f.text = fmt::format(

@@ -22,17 +22,17 @@ double Prediction::rms_torque(int drive, bool with_reversals) const {
 }
 
 Prediction predict(const Robot& robot, const PreparedLog& log, const Eigen::VectorXd& p, int threads) {
-  constexpr Eigen::Index kRowsPerBlock = 256;
+  constexpr Eigen::Index rows_per_block = 256;
   const int n = robot.drives();
   Prediction out;
   out.t_s.resize(log.rows);
   for (Eigen::MatrixXd* m : {&out.tau, &out.model, &out.q, &out.qd, &out.qdd}) m->resize(log.rows, n);
   out.use.resize(log.rows, n);
-  const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
+  const Eigen::Index blocks = (log.rows + rows_per_block - 1) / rows_per_block;
   const auto predict_block = [&](Eigen::Index k) {
     RowBlock block;
-    const Eigen::Index first = k * kRowsPerBlock;
-    const Eigen::Index count = std::min(kRowsPerBlock, log.rows - first);
+    const Eigen::Index first = k * rows_per_block;
+    const Eigen::Index count = std::min(rows_per_block, log.rows - first);
     read_rows(robot, log, first, count, block);
     out.tau.middleRows(first, count) = block.tau;
     out.use.middleRows(first, count) = block.use;

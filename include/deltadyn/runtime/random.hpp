@@ -109,9 +109,9 @@ class UniformIndex {
     std::uint64_t high, low;
   };
   static Product times(std::uint64_t a, std::uint64_t b) {
-    constexpr std::uint64_t kHalf = 0xFFFFFFFFU;
-    const std::uint64_t low = (a & kHalf) * (b & kHalf), left = (a >> 32U) * (b & kHalf), right = (a & kHalf) * (b >> 32U);
-    const std::uint64_t middle = (low >> 32U) + (left & kHalf) + (right & kHalf);
+    constexpr std::uint64_t kLow32 = 0xFFFFFFFFU;
+    const std::uint64_t low = (a & kLow32) * (b & kLow32), left = (a >> 32U) * (b & kLow32), right = (a & kLow32) * (b >> 32U);
+    const std::uint64_t middle = (low >> 32U) + (left & kLow32) + (right & kLow32);
     return {(a >> 32U) * (b >> 32U) + (left >> 32U) + (right >> 32U) + (middle >> 32U), a * b};
   }
 

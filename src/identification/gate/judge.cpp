@@ -49,6 +49,7 @@ class Judge {
     const Reading given = Reading::as_given(n);
     std::optional<Explanation> as_given = plain(given);
     if (as_given) out.as_given = *as_given;
+    out.with_springs = with_springs_;
     out.as_given.unreachable = unreachable_;
     out.sound = as_given && unreachable_ <= kOutOfReach && as_given->residual < kSoundResidual &&
                 as_given->residual < kSoundRatio * alone_ + 0.002;

@@ -29,6 +29,7 @@ struct Explanation {
 
 struct Judgement {
   Explanation as_given;
+  double with_springs = 1;           ///< residual as given with a spring on every drive
   bool sound = true;                 ///< as given
   std::vector<Explanation> winners;  ///< empty: nothing explains the log clearly better than as it is
 };
