@@ -19,7 +19,7 @@ constexpr double kLetter = 7.2;         // mean width of a letter of the legend
 constexpr double kLegendSample = 46.0;  // its piece of line and the spaces around
 constexpr double kLargest = 1e300;      // gnuplot takes larger values for undefined
 
-constexpr std::array<const char*, 8> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+constexpr std::array<const char*, 8> kHexOfColor{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                              "#E69F00", "#56B4E9", "#222222", "#7F7F7F"};
 // The order in which curves without a colour of their own get one.
 constexpr std::array<PlotColor, 8> kOrder{PlotColor::blue,  PlotColor::vermillion, PlotColor::green, PlotColor::purple,
@@ -360,7 +360,7 @@ class ScriptWriter {
       line("END_OF_DATA");
       commands += fmt::format("{}{} using {} {} {}", commands.empty() ? "plot " : ", ", name, bars ? "1:2:3" : "1:2",
                               series.label.empty() ? "notitle" : "title " + quote(series.label),
-                              plot_style(series, kColors[static_cast<std::size_t>(color)]));
+                              plot_style(series, kHexOfColor[static_cast<std::size_t>(color)]));
     }
     if (commands.empty()) {
       line("set label 'no data' at graph 0.5, graph 0.5 center textcolor rgb '#444444'");
