@@ -23,6 +23,7 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "given_effects.hpp"
 #include "log_gate.hpp"
 #include "parameter_tables.hpp"
 #include "processing_flags.hpp"
@@ -94,7 +95,7 @@ class Diagnose {
     const auto robot = make_robot(description, layout);
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-    const std::vector<Effect> known = effect_file_.empty() ? std::vector<Effect>() : read_effects(effect_file_, description);
+    const std::vector<Effect> known = tools::given_effects(effect_file_, table, description);
     const GateResult gate = check(*robot, log_files_, run);
     const ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, tools::all_findings(gate)};
     if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-diagnose");
@@ -202,7 +203,15 @@ class Diagnose {
 
   /// The improved parameters; without a named effect those of the model, so that a chain of tools always finds a file.
   void write_improved(const Robot& robot, const ParameterTable& before, const Diagnosis& result) const {
-    write_parameters(params_out_, result.improved ? tools::parameter_table(robot, *result.improved) : before);
+    ParameterTable table = result.improved ? tools::parameter_table(robot, *result.improved) : before;
+    if (!result.effects.empty()) {
+      table.effects = !effects_out_.empty() ? effects_out_ : (result.improved ? kEffectsNotWritten : effect_file_);
+      if (table.effects == kEffectsNotWritten) {
+        fmt::print(stderr, "warning: {} holds only together with the effects that were found: give --effects-out FILE, too\n",
+                   params_out_);
+      }
+    }
+    write_parameters(params_out_, table);
   }
 
   void plan_next(const Robot& robot, const Diagnosis& result, const Eigen::VectorXd& p, const ToolRun& run) const {

@@ -22,6 +22,7 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "fine_delay.hpp"
+#include "given_effects.hpp"
 #include "identified_extras.hpp"
 #include "layout_flags.hpp"
 #include "log_gate.hpp"
@@ -92,8 +93,7 @@ class Identify {
     const auto robot = make_robot(description, parameter_options(description));
     const IdentificationOptions options = identification_options(run);
     const tools::Prior prior = tools::read_prior(*robot, prior_file_);
-    std::vector<Effect> effects;
-    if (!effect_file_.empty()) effects = read_effects(effect_file_, description);
+    std::vector<Effect> effects = tools::given_effects(effect_file_, prior.table, description);
     if (holds_timing(effects)) gate_.keep_delays();
     if (!effects.empty()) gate_.leave_offsets();
     const GateResult gate = gate_.run(*robot, processing_.read_logs(log_files_, description), prior.value, prior.std,
@@ -128,6 +128,7 @@ class Identify {
     weigh_findings(findings, assessment);
     ParameterTable table = tools::parameter_table(*robot, result);
     if (assessment.verdict == Verdict::bad) table.remark = "NOT TO BE TRUSTED. " + assessment.headline;
+    if (!effects.empty()) table.effects = effects_out_.empty() ? effect_file_ : effects_out_;
     write_parameters(output_, table);
     if (!base_file_.empty()) write_base(result);
     if (!report_file_.empty()) write_file(report_file_, identification_report(*robot, result, training, survey, context));

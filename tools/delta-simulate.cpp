@@ -19,6 +19,7 @@
 #include "deltadyn/simulation/simulate.hpp"
 
 #include "effects_of_rows.hpp"
+#include "given_effects.hpp"
 #include "simulate/effect_flag.hpp"
 #include "tool_support.hpp"
 
@@ -102,9 +103,7 @@ class Simulate {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
     std::vector<Effect> effects = tools::effects_of_rows(table, description);
-    if (!effects_file_.empty()) {
-      for (Effect& effect : read_effects(effects_file_, description)) effects.push_back(std::move(effect));
-    }
+    for (Effect& effect : tools::given_effects(effects_file_, table, description)) effects.push_back(std::move(effect));
     for (const std::string& text : effects_) effects.push_back(tools::parse_effect(text, description));
     complete_options(description, run);
     const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);

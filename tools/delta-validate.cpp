@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/identification/effect_columns.hpp"
 #include "deltadyn/identification/residual_structure.hpp"
 #include "deltadyn/identification/written_model.hpp"
-#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/extra_rows.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -22,6 +20,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "fine_delay.hpp"
+#include "given_effects.hpp"
 #include "log_gate.hpp"
 #include "processing_flags.hpp"
 #include "tool_support.hpp"
@@ -66,13 +65,10 @@ class Validate {
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     WrittenModel model;
     model.p = match.value;
-    if (!effect_file_.empty()) model.effects = read_effects(effect_file_, description);
+    model.effects = tools::given_effects(effect_file_, table, description);
     model.presliding = presliding_of(table, description);
     model.presliding_damping_s = presliding_damping_of(table, description);
     model.ripples = ripples_of(table, description);
-    if (!model.effects.empty() && !processing_.options().filter) {
-      throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
-    }
     if (holds_timing(model.effects)) gate_.keep_delays();
     if (!model.effects.empty()) gate_.leave_offsets();
     // The model under test is no prior: a wrong one must show in the residual, not in the check of the logs.
@@ -86,7 +82,6 @@ class Validate {
     if (written.fine_delay) findings.push_back(tools::tell_fine_delay(*written.fine_delay, run.summary));
     const std::vector<Log>& logs = written.logs;
     Validation& result = written.validation;
-    if (!model.effects.empty()) add_effects(*robot, logs, result);
     if (!output_.empty()) write_residuals(description, logs, result);
     if (!report_file_.empty()) write_file(report_file_, validation_report(*robot, result, match.value, context));
     Assessment assessment = assess_validation(*robot, result);
@@ -99,22 +94,6 @@ class Validate {
                               {robot_file_, parameter_file_, {}, log_files_.front(), processing_.reading_flags()});
     run.summary.add("structure_left", assessment.structure ? "yes" : "no");
     return gate.fault() ? ExitCode::not_trusted : ExitCode::done;
-  }
-
-  /// The effects' torque was taken off the measured one for the residual: give it back to both, so that the tables show the torque as
-  /// it was measured beside the whole model.
-  static void add_effects(const Robot& robot, const std::vector<Log>& logs, Validation& result) {
-    for (std::size_t k = 0; k < logs.size(); ++k) {
-      const Eigen::MatrixXd measured = low_passed_rows_of(robot, logs[k], result.processing);
-      Prediction& prediction = result.logs[k].prediction;
-      prediction.model += measured - prediction.tau;
-      prediction.tau = measured;
-    }
-  }
-
-  static Eigen::MatrixXd low_passed_rows_of(const Robot& robot, const Log& log, const ProcessingOptions& processing) {
-    const PreparedLog prepared = prepare_log(robot, log, processing);
-    return low_passed_rows(prepared, prepared.tau);
   }
 
   void write_residuals(const RobotDescription& robot, const std::vector<Log>& logs, const Validation& result) const {

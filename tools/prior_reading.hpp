@@ -16,18 +16,19 @@ namespace deltadyn::tools {
 
 struct Prior {
   Eigen::VectorXd value, std;  ///< one value a parameter of the robot
+  ParameterTable table;        ///< of the file
 };
 
 /// \param file  parameters (CSV), or empty: nominal values
 inline Prior read_prior(const Robot& robot, const std::string& file) {
   const NominalParameters nominal = nominal_parameters(robot, PartShapes(robot.description()));
-  Prior out{nominal.value, nominal.std};
+  Prior out{nominal.value, nominal.std, {}};
   if (file.empty()) {
     fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
     return out;
   }
-  const ParameterMatch match =
-      match_parameters(read_parameters(file, robot.description()), robot.parameter_names(), robot.parameter_units());
+  out.table = read_parameters(file, robot.description());
+  const ParameterMatch match = match_parameters(out.table, robot.parameter_names(), robot.parameter_units());
   out.value = match.value;
   for (Eigen::Index k = 0; k < out.value.size(); ++k) {
     const double std = match.std(k);

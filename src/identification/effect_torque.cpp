@@ -123,7 +123,8 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
   const EffectModel model(robot);
   std::vector<Log> out = logs;
   ProcessingOptions options;
-  options.cutoff_hz = cutoff_hz;
+  options.filter = cutoff_hz > 0;
+  options.cutoff_hz = options.filter ? cutoff_hz : options.cutoff_hz;
   options.motion_over_pass = 1;
   int number = 0;
   for (Log& log : out) {
@@ -201,7 +202,8 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
 
 Validation validate_with_effects(const Robot& robot, const std::vector<Log>& logs, const std::vector<Effect>& effects,
                                  const VectorXd& p, const ProcessingOptions& processing, int threads) {
-  const std::vector<Log> rest = without_effects(robot, logs, p, effects, processing.motion_over_pass * processing.cutoff_hz);
+  const double motion_hz = processing.filter ? processing.motion_over_pass * processing.cutoff_hz : 0;
+  const std::vector<Log> rest = without_effects(robot, logs, p, effects, motion_hz);
   Validation out = validate(robot, rest, p, processing, threads);
   if (effects.empty()) return out;
   for (std::size_t l = 0; l < logs.size(); ++l) {

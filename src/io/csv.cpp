@@ -120,6 +120,13 @@ std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std
   return static_cast<std::size_t>(found - columns.begin());
 }
 
+std::optional<std::string> comment_of(const std::vector<std::string>& comments, std::string_view key) {
+  for (const std::string& comment : comments) {
+    if (comment.compare(0, key.size(), key) == 0) return std::string(trimmed(std::string_view(comment).substr(key.size())));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string place(std::string_view path, long line, std::string_view column) {
@@ -133,6 +140,7 @@ struct CsvReader::Impl {
   std::string path;
   detail::CheckedSource::Findings findings;
   std::unique_ptr<io::LineReader> lines;
+  std::vector<std::string> comments;  ///< above the header, without the mark
   std::vector<std::string> columns;
   std::vector<std::string_view> fields;
 
@@ -144,7 +152,9 @@ struct CsvReader::Impl {
       while (const char* raw = lines->next_line()) {
         refuse_damage();
         text = trimmed(raw);
-        if (!text.empty() && text.front() != '#') return true;
+        if (text.empty()) continue;
+        if (text.front() != '#') return true;
+        if (columns.empty()) comments.emplace_back(trimmed(text.substr(1)));
       }
     } catch (const io::error::base&) {
       throw Error("the line is too long for a CSV file", place(path, line() + 1), "check that this is a CSV file");
@@ -207,6 +217,9 @@ const std::vector<std::string>& CsvReader::columns() const {
 std::optional<std::size_t> CsvReader::find(std::string_view column) const {
   return index_of(impl_->columns, column);
 }
+std::optional<std::string> CsvReader::comment(std::string_view key) const {
+  return comment_of(impl_->comments, key);
+}
 long CsvReader::line() const {
   return impl_->line();
 }
@@ -243,6 +256,10 @@ double CsvReader::number_or_nan(std::size_t column) const {
   return parsed == Parsed::number ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
+std::optional<std::string> CsvTable::comment(std::string_view key) const {
+  return comment_of(comments_, key);
+}
+
 std::optional<std::size_t> CsvTable::find(std::string_view column) const {
   return index_of(columns_, column);
 }
@@ -274,6 +291,7 @@ CsvTable read_csv(const std::string& path) {
   CsvReader reader(path);
   CsvTable table;
   table.path_ = path;
+  table.comments_ = reader.impl_->comments;
   table.columns_ = reader.columns();
   while (reader.next_row()) {
     table.lines_.push_back(reader.line());

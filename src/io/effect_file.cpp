@@ -1,11 +1,12 @@
 #include "deltadyn/io/effect_file.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fmt/format.h>
-#include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "deltadyn/io/csv.hpp"
@@ -19,16 +20,14 @@ namespace {
 using Eigen::Index;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kVersion = "deltadyn effects";  // begins the comment on top
 
-/// The version in the comment on top; -1 if there is none (a file written by hand).
-int version_of(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  int version = -1;
-  while (std::getline(file, line) && !line.empty() && line[0] == '#') {
-    if (std::sscanf(line.c_str(), "# deltadyn effects %d", &version) == 1) return version;
-  }
-  return -1;
+/// Refuses a file of another version. One without the comment was written by hand.
+void check_version(const CsvReader& table) {
+  const auto version = table.comment(kVersion);
+  if (!version || *version == std::to_string(kEffectFileVersion)) return;
+  throw Error(fmt::format("the effect file is of version {}, this program reads version {}", *version, kEffectFileVersion),
+              place(table.path(), 1), "run delta-diagnose again with --effects-out to write it anew");
 }
 
 /// Place of a parameter among shapes and amplitudes.
@@ -58,89 +57,120 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
   return slots;
 }
 
+/// An effect while its rows come in, with the line of each parameter.
+struct ReadEffect {
+  Effect effect;
+  std::map<std::string, long, std::less<>> lines;
+
+  [[nodiscard]] double& value(const Slot& slot) { return (slot.amplitude ? effect.amplitude : effect.shape)(slot.index); }
+};
+
+ReadEffect nothing_of(const EffectKind& kind, int joint) {
+  ReadEffect out;
+  out.effect.id = kind.id;
+  out.effect.joint = joint;
+  out.effect.amplitude = out.effect.amplitude_std = Eigen::VectorXd::Constant(static_cast<Index>(kind.amplitudes.size()), kNone);
+  out.effect.shape = out.effect.shape_std = Eigen::VectorXd::Constant(static_cast<Index>(kind.shapes.size()), kNone);
+  return out;
+}
+
+/// The columns of the file.
+class EffectTable {
+ public:
+  explicit EffectTable(const std::string& path) : rows(path) { check_version(rows); }
+  [[nodiscard]] std::string_view text(std::size_t column) const { return rows.text(column); }
+  [[nodiscard]] std::string here(const char* column) const { return place(rows.path(), rows.line(), column); }
+
+  CsvReader rows;
+  std::size_t effect = require("effect"), joint = require("joint"), parameter = require("parameter"), value = require("value"),
+              unit = require("unit");
+  std::optional<std::size_t> deviation = rows.find("std");
+
+ private:
+  [[nodiscard]] std::size_t require(const char* name) const {
+    if (const auto found = rows.find(name)) return *found;
+    throw Error(fmt::format("the column '{}' is missing", name), rows.path(),
+                "write the columns effect,joint,parameter,value,unit,std");
+  }
+};
+
+const EffectKind& kind_in(const EffectTable& table) {
+  const EffectKind* kind = find_effect_kind(table.text(table.effect));
+  if (kind != nullptr) return *kind;
+  throw Error(fmt::format("there is no effect '{}' in the catalogue", table.text(table.effect)), table.here("effect"),
+              "delta-diagnose --list-effects shows the names; a file of an older version must be written anew");
+}
+
+void read_parameter(const EffectTable& table, const EffectKind& kind, const RobotDescription& robot, ReadEffect& into) {
+  const auto slots = slots_of(kind, into.effect.joint, robot);
+  const std::string name(table.text(table.parameter));
+  const Slot* slot = find_slot(slots, name);
+  if (slot == nullptr) {
+    std::string choice;
+    for (const auto& entry : slots) choice += (choice.empty() ? "" : ", ") + entry.first;
+    throw Error(fmt::format("the effect {} has no parameter '{}'", kind.name, name), table.here("parameter"),
+                "its parameters are " + choice);
+  }
+  const auto [before, fresh] = into.lines.emplace(name, table.rows.line());
+  if (!fresh) {
+    throw Error(fmt::format("{} of {} at {} is there twice, first in line {}", name, kind.name,
+                            effect_joint_name(kind.id, into.effect.joint), before->second),
+                table.here("parameter"), "leave one of the rows out: there is one effect of a kind at a joint");
+  }
+  if (table.text(table.unit) != slot->unit) {
+    throw Error(fmt::format("the unit '{}' is not that of the parameter", table.text(table.unit)), table.here("unit"),
+                "give the value in '" + slot->unit + "'");
+  }
+  into.value(*slot) = table.rows.number(table.value);
+  if (table.deviation && !table.text(*table.deviation).empty())
+    (slot->amplitude ? into.effect.amplitude_std : into.effect.shape_std)(slot->index) = table.rows.number(*table.deviation);
+}
+
+/// Fills in what may be left out, and refuses what may not, and sizes that cannot be.
+void complete(const std::string& path, const RobotDescription& robot, ReadEffect& read) {
+  Effect& effect = read.effect;
+  const EffectKind& kind = effect_kind(effect.id);
+  if (kind.tied) effect.shape(0) = effect.amplitude(0);
+  for (Index k = 0; k < effect.shape.size(); ++k) {
+    if (std::isnan(effect.shape(k))) effect.shape(k) = kind.shapes[static_cast<std::size_t>(k)].otherwise;
+  }
+  for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
+    if (!std::isnan(read.value(slot))) continue;
+    const std::string joint = effect_joint_name(effect.id, effect.joint);
+    throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, joint), place(path, read.lines.begin()->second),
+                fmt::format("add a row {},{},{},VALUE,{},", kind.name, joint, name, slot.unit));
+  }
+  const auto where = [&](std::string_view name) {
+    const auto line = read.lines.find(name);
+    return place(path, line == read.lines.end() ? read.lines.begin()->second : line->second, "value");
+  };
+  check_sizes(effect, where, ExitCode::bad_input);
+}
+
 }  // namespace
 
 std::vector<Effect> read_effects(const std::string& path, const RobotDescription& robot) {
-  const int version = version_of(path);
-  if (version != -1 && version != kEffectFileVersion) {
-    throw Error(fmt::format("the effect file is of version {}, this program reads version {}", version, kEffectFileVersion),
-                place(path, 1), "run delta-diagnose again with --effects-out to write it anew");
+  EffectTable table(path);
+  std::vector<ReadEffect> found;
+  while (table.rows.next_row()) {
+    const EffectKind& kind = kind_in(table);
+    const int joint = effect_joint(kind.id, table.text(table.joint), robot, table.here("joint"));
+    auto one = std::find_if(found.begin(), found.end(),
+                            [&](const ReadEffect& read) { return read.effect.id == kind.id && read.effect.joint == joint; });
+    if (one == found.end()) one = found.insert(found.end(), nothing_of(kind, joint));
+    read_parameter(table, kind, robot, *one);
   }
   std::vector<Effect> effects;
-  std::map<std::pair<EffectId, int>, std::size_t> known;
-  CsvReader table(path);
-  const auto require = [&](const char* name) {
-    const auto found = table.find(name);
-    if (!found) {
-      throw Error(fmt::format("the column '{}' is missing", name), path,
-                  "write the columns effect,joint,parameter,value,unit,std");
-    }
-    return *found;
-  };
-  const std::size_t effect_column = require("effect"), joint_column = require("joint"), parameter_column = require("parameter");
-  const std::size_t value_column = require("value"), unit_column = require("unit");
-  const auto std_column = table.find("std");
-  while (table.next_row()) {
-    const std::string name(table.text(effect_column));
-    const EffectKind* kind = find_effect_kind(name);
-    if (kind == nullptr) {
-      throw Error("there is no effect '" + name + "' in the catalogue", place(path, table.line(), "effect"),
-                  "delta-diagnose --list-effects shows the names; a file of an older version must be written anew");
-    }
-    const int joint = effect_joint(kind->id, table.text(joint_column), robot, place(path, table.line(), "joint"));
-    const auto key = std::make_pair(kind->id, joint);
-    if (known.find(key) == known.end()) {
-      known[key] = effects.size();
-      Effect effect;
-      effect.id = kind->id;
-      effect.joint = joint;
-      effect.amplitude = effect.amplitude_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->amplitudes.size()), kNone);
-      effect.shape = effect.shape_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->shapes.size()), kNone);
-      effects.push_back(effect);
-    }
-    Effect& effect = effects[known[key]];
-    const auto slots = slots_of(*kind, joint, robot);
-    const Slot* slot = find_slot(slots, table.text(parameter_column));
-    if (slot == nullptr) {
-      std::string choice;
-      for (const auto& entry : slots) choice += (choice.empty() ? "" : ", ") + entry.first;
-      throw Error(fmt::format("the effect {} has no parameter '{}'", name, table.text(parameter_column)),
-                  place(path, table.line(), "parameter"), "its parameters are " + choice);
-    }
-    double& value = (slot->amplitude ? effect.amplitude : effect.shape)(slot->index);
-    if (!std::isnan(value)) {
-      throw Error(fmt::format("{} of {} is there twice", table.text(parameter_column), name),
-                  place(path, table.line(), "parameter"), "leave one of the rows out");
-    }
-    if (table.text(unit_column) != slot->unit) {
-      throw Error(fmt::format("the unit '{}' is not that of the parameter", table.text(unit_column)),
-                  place(path, table.line(), "unit"), "give the value in '" + slot->unit + "'");
-    }
-    value = table.number(value_column);
-    if (std_column && !table.text(*std_column).empty()) {
-      (slot->amplitude ? effect.amplitude_std : effect.shape_std)(slot->index) = table.number(*std_column);
-    }
-  }
-  for (Effect& effect : effects) {
-    const EffectKind& kind = effect_kind(effect.id);
-    if (kind.tied) effect.shape(0) = effect.amplitude(0);
-    for (Index k = 0; k < effect.shape.size(); ++k) {
-      if (std::isnan(effect.shape(k))) effect.shape(k) = kind.shapes[static_cast<std::size_t>(k)].otherwise;
-    }
-    for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
-      if (std::isnan((slot.amplitude ? effect.amplitude : effect.shape)(slot.index))) {
-        throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, effect_joint_name(effect.id, effect.joint)), path,
-                    "add a row for it");
-      }
-    }
-    check_sizes(effect, path, ExitCode::bad_input);
+  for (ReadEffect& read : found) {
+    complete(path, robot, read);
+    effects.push_back(std::move(read.effect));
   }
   return effects;
 }
 
 void write_effects(const std::string& path, const std::vector<Effect>& effects, const RobotDescription& robot) {
   OutputFile file(path);
-  file.print("# deltadyn effects {}\neffect,joint,parameter,value,unit,std\n", kEffectFileVersion);
+  file.print("# {} {}\neffect,joint,parameter,value,unit,std\n", kVersion, kEffectFileVersion);
   for (const Effect& effect : effects) {
     const EffectKind& kind = effect_kind(effect.id);
     for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {

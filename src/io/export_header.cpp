@@ -1,8 +1,14 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <utility>
 
+#include "deltadyn/firmware/effect_set.hpp"
+#include "deltadyn/identification/effect_torque.hpp"
+#include "deltadyn/runtime/changed_machine.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
 #include "export_parts.hpp"
@@ -32,11 +38,33 @@ std::string identifier(const std::string& words) {
   return name + "_model";
 }
 
-const char* type_name(const RobotDescription& robot) {
-  if (robot.type == Delta3::kName) return "Delta3";
-  if (robot.type == LinearDelta3::kName) return "LinearDelta3";
-  if (robot.type == Delta4::kName) return "Delta4";
-  if (robot.type == Axis::kName) return robot.drive_kind == DriveKind::prismatic ? "LinearAxis" : "Axis";
+constexpr int kMostEffects = 64;  // in one header; each costs time in every tick
+
+/// Moves those that a controller cannot feed forward to what is left out, with the reason that the controller itself gives.
+template <class R>
+void refuse_effects(const RobotDescription& robot, model_export::Parts& parts) {
+  ChangedGeometry<float, R> machine(geometry_of<float, R>(robot));
+  EffectSet<float, R, kMostEffects> set;
+  std::vector<Effect> accepted;
+  for (const Effect& effect : parts.effects) {
+    const EffectRefusal refusal = set.add({effect.id, effect.joint, shape_of(effect), amplitudes_of(effect)}, machine);
+    if (refusal == EffectRefusal::none) {
+      accepted.push_back(effect);
+    } else {
+      parts.left_out.push_back(fmt::format("{}: {}", model_export::describe(effect, robot), message(refusal)));
+    }
+  }
+  parts.effects = std::move(accepted);
+}
+
+/// work(R(), "name of R") with the robot's type in the core.
+void with_type(const RobotDescription& robot, const auto& work) {
+  const bool slides = robot.drive_kind == DriveKind::prismatic;
+  if (robot.type == Delta3::kName) return work(Delta3(), "Delta3");
+  if (robot.type == LinearDelta3::kName) return work(LinearDelta3(), "LinearDelta3");
+  if (robot.type == Delta4::kName) return work(Delta4(), "Delta4");
+  if (robot.type == Axis::kName && slides) return work(LinearAxis(), "LinearAxis");
+  if (robot.type == Axis::kName) return work(Axis(), "Axis");
   throw Error(fmt::format("robots of type {} cannot be written as a header", robot.type), robot.name, "");
 }
 
@@ -44,14 +72,82 @@ const char* type_name(const RobotDescription& robot) {
 struct Check {
   Eigen::VectorXd q, qd, qdd, tau;
 };
-Check check_of(const Robot& robot, const Eigen::VectorXd& p) {
+
+/// The machine is changed where effects change it; all other effects are what the columns of the fit say, here of a robot that stays
+/// at one state.
+Eigen::VectorXd check_torque(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects, const Check& at) {
+  ChangedMachine machine(robot.description());
+  std::vector<Effect> laws;
+  for (const Effect& effect : effects) {
+    visit_effect(effect.id, [&](auto type) {
+      using E = decltype(type);
+      if constexpr (kIs<E, MachineChange>) {
+        E::change(machine, effect.joint, amplitudes_of(effect), shape_of(effect));
+      } else {
+        laws.push_back(effect);
+      }
+    });
+  }
+  const auto changed = make_robot(machine.description, robot.parameter_options());
+  constexpr int kSamples = 7;  // enough for differences
+  PreparedLog log;
+  log.file = robot.description().name;
+  log.rate_hz = 1;
+  log.t_s.setZero(kSamples);
+  log.q = (at.q + machine.home_offset).transpose().replicate(kSamples, 1);
+  log.qd = at.qd.transpose().replicate(kSamples, 1);
+  log.qdd = at.qdd.transpose().replicate(kSamples, 1);
+  const EffectModel model(*changed);
+  EffectSignals signals = model.signals(log, p);
+  signals.q = at.q.transpose().replicate(kSamples, 1);
+  return (signals.torque + effect_torque(model, signals, laws, 1)).row(0);
+}
+
+Check check_of(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
   const int n = robot.drives();
   Check check{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
   WorkspaceSampler sampler(robot);
   sampler.next(check.q, check.qd, check.qdd);
-  if (robot.inverse_dynamics(check.q, check.qd, check.qdd, p, check.tau) != Status::ok)
+  if (!effects.empty()) {
+    check.tau = check_torque(robot, p, effects, check);
+  } else if (robot.inverse_dynamics(check.q, check.qd, check.qdd, p, check.tau) != Status::ok) {
     throw Error("no regular state was found", robot.description().name, "check the lengths in the robot file");
+  }
   return check;
+}
+
+std::string list(const auto& numbers, std::size_t count) {
+  std::string words;
+  for (std::size_t k = 0; k < count; ++k) words += (k > 0 ? ", " : "") + model_export::text(numbers[k]);
+  return "{" + words + "}";
+}
+
+/// The controller's type, and the table of effects if there are some.
+std::string model_text(const RobotDescription& robot, const std::vector<Effect>& effects) {
+  const std::string model = "\ntemplate <class T>\nusing Model = deltadyn::";
+  if (effects.empty()) return model + "FeedForward<T, Robot, kSharing>;\n";
+  std::string rows, names;
+  std::vector<EffectId> listed;
+  for (const Effect& effect : effects) {
+    const EffectKind& kind = effect_kind(effect.id);
+    const std::string name = fmt::format("deltadyn::effect_named(\"{}\")", kind.name);
+    std::string columns;
+    for (const AmplitudeTraits& one : kind.amplitudes)
+      columns += fmt::format(" {} [{}],", one.name, effect_unit(one.unit, effect.joint, robot));
+    const std::string shape = effect_shape_text(effect, robot);
+    rows += fmt::format("    {{{}, {}, {}, {}}},  // at {}:{} {}\n", name, effect.joint,
+                        list(shape_of(effect), kind.shapes.size()), list(amplitudes_of(effect), kind.amplitudes.size()),
+                        effect_joint_name(effect.id, effect.joint), columns, shape);
+    while (rows.ends_with(" \n") || rows.ends_with(",\n")) rows.replace(rows.size() - 2, 2, "\n");
+    if (std::find(listed.begin(), listed.end(), effect.id) != listed.end()) continue;
+    listed.push_back(effect.id);
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return fmt::format(
+      "\n// What the rigid model misses: effect, drive from 0 (-1: not on one drive), shape, amplitudes.\n"
+      "inline constexpr deltadyn::EffectRow kEffects[] = {{\n{}}};\ninline constexpr int kEffectCount = {};\n"
+      "using Effects = deltadyn::SomeEffects<{}>;\n{}EffectFeedForward<T, Robot, kSharing, kEffectCount, Effects>;\n",
+      rows, effects.size(), names, model);
 }
 
 constexpr const char* kFunctions = R"(
@@ -86,10 +182,10 @@ deltadyn::Vector<T, Layout::kColumns> parameters() {
   return p;
 }
 
-/// Keep one for the life of the controller; see firmware/feed_forward.hpp.
+/// Keep one for the life of the controller.
 template <class T>
-deltadyn::FeedForward<T, Robot, kSharing> feed_forward() {
-  return deltadyn::FeedForward<T, Robot, kSharing>(geometry<T>(), parameters<T>());
+Model<T> feed_forward() {
+  return Model<T>(geometry<T>(), parameters<T>()@EFFECTS@);
 }
 
 /// Largest difference of a torque, computed here, to what the identifying program computed [N m | N]; negative if the
@@ -102,7 +198,8 @@ T self_check() {
     qd(i) = static_cast<T>(kCheckVelocity[i]);
     qdd(i) = static_cast<T>(kCheckAcceleration[i]);
   }
-  if (feed_forward<T>().from_drives(q, qd, qdd, tau) != deltadyn::Status::ok) return T(-1);
+  Model<T> model = feed_forward<T>();@COMPLETE@
+  if (model.from_drives(q, qd, qdd, tau) != deltadyn::Status::ok) return T(-1);
   T worst = T(0);
   for (int i = 0; i < Robot::kDrives; ++i) {
     const T difference = tau(i) - static_cast<T>(kCheckTorque[i]);
@@ -116,8 +213,13 @@ T self_check() {
 }  // namespace
 
 ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
-  const model_export::Parts parts = model_export::collect(robot, p, effects);
+  model_export::Parts parts = model_export::collect(robot, p, effects);
   const RobotDescription& description = robot.description();
+  std::string type;
+  with_type(description, [&](auto robot_type, const char* name) {
+    type = name;
+    refuse_effects<decltype(robot_type)>(description, parts);
+  });
   // The firmware's layout has every column; those that were not identified are zero there.
   ParameterOptions options;
   options.individual_limbs = robot.parameter_options().individual_limbs;
@@ -126,7 +228,7 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
   const auto full = make_robot(description, options);
   Eigen::VectorXd values(full->parameters());
   for (int k = 0; k < full->parameters(); ++k) values(k) = parts.value(full->parameter_names()[static_cast<std::size_t>(k)]);
-  const Check check = check_of(*full, values);
+  const Check check = check_of(*full, values, parts.effects);
   const std::string space = identifier(description.name.empty() ? description.type : description.name);
 
   std::string text = fmt::format(
@@ -136,10 +238,10 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
   text += fmt::format(
       "//\n//   auto model = {0}::feed_forward<float>();\n//   if (model.from_drives(q, qd, qdd, tau) == deltadyn::Status::ok) "
       "...\n\n"
-      "#include <deltadyn/firmware/feed_forward.hpp>\n\nnamespace {0} {{\n\nusing Robot = deltadyn::{1};\n"
+      "#include <deltadyn/firmware/{3}feed_forward.hpp>\n\nnamespace {0} {{\n\nusing Robot = deltadyn::{1};\n"
       "inline constexpr deltadyn::Limbs kSharing = deltadyn::Limbs::{2};\n"
       "using Layout = deltadyn::ParameterLayout<Robot, kSharing>;\n\n",
-      space, type_name(description), options.individual_limbs ? "individual" : "shared");
+      space, type, options.individual_limbs ? "individual" : "shared", parts.effects.empty() ? "" : "effect_");
   text += "struct Limb {\n  double azimuth, p_WD[3], axis_L[3], p_DE_0[3], strut, strut_spacing, p_BA[3], elbow;\n};\n";
   text += "inline constexpr Limb kLimbs[] = {\n";
   for (const auto& limb : description.limbs) {
@@ -177,9 +279,16 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       text += fmt::format("static_assert(kParameters[{}] > 0, \"{} must have mass\");\n", column,
                           full->parameter_names()[static_cast<std::size_t>(column)]);
   }
-  text += kFunctions;
+  text += model_text(description, parts.effects);
+  std::string functions = kFunctions;
+  const auto fill_in = [&](const std::string& mark, const std::string& words) {
+    functions.replace(functions.find(mark), mark.size(), parts.effects.empty() ? "" : words);
+  };
+  fill_in("@EFFECTS@", ", kEffects");
+  fill_in("@COMPLETE@", "\n  if (model.effects() != kEffectCount) return T(-1);");
+  text += functions;
   text += fmt::format("\n}}  // namespace {}\n", space);
-  return {text, parts.left_out};
+  return {text, parts.left_out, static_cast<int>(parts.effects.size())};
 }
 
 }  // namespace deltadyn

@@ -108,7 +108,7 @@ class Mjcf {
     root_->InsertEndChild(actuator_);
     tinyxml2::XMLPrinter printer;
     document_.Print(&printer);
-    return {printer.CStr(), parts_.left_out};
+    return {printer.CStr(), parts_.left_out, 0};
   }
 
  private:
@@ -333,7 +333,9 @@ class Mjcf {
 }  // namespace
 
 ExportedModel export_mjcf(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
-  return Mjcf(robot, model_export::collect(robot, p, effects)).run();
+  Parts parts = model_export::collect(robot, p, effects);
+  model_export::leave_effects_out(robot.description(), parts);
+  return Mjcf(robot, std::move(parts)).run();
 }
 
 }  // namespace deltadyn

@@ -46,7 +46,7 @@ Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Ef
     parts.values[name] = p(k);
   }
   for (const Effect& effect : effects) {
-    if (!add_as_parameter(effect, parts.values)) parts.left_out.push_back(describe(effect, robot.description()));
+    if (!add_as_parameter(effect, parts.values)) parts.effects.push_back(effect);
   }
   for (const std::string& name : names) {
     const auto dot = name.rfind(".m");
@@ -64,6 +64,12 @@ std::string describe(const Effect& effect, const RobotDescription& robot) {
   const std::string shape = effect_shape_text(effect, robot);
   return fmt::format("effect {} at {}{}", effect_kind(effect.id).name, effect_joint_name(effect.id, effect.joint),
                      shape.empty() ? "" : " (" + shape + ")");
+}
+
+void leave_effects_out(const RobotDescription& robot, Parts& parts) {
+  for (const Effect& effect : parts.effects)
+    parts.left_out.push_back(describe(effect, robot) +
+                             ": the format holds viscous and Coulomb friction, offsets and rotors only");
 }
 
 std::string text(double value) {

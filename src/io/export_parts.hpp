@@ -15,7 +15,8 @@ namespace deltadyn::model_export {
 
 struct Parts {
   NamedValues values;                 ///< parameters, with the effects that are one added
-  std::vector<std::string> left_out;  ///< effects that are no parameter
+  std::vector<Effect> effects;        ///< those that are no parameter
+  std::vector<std::string> left_out;  ///< what the format does not hold, one line each
 
   [[nodiscard]] double value(const std::string& name) const;
   /// The ten parameters of a body: of its own name ("strut2") if the set has individual limbs, else of the shared one ("strut").
@@ -27,6 +28,9 @@ struct Parts {
 
 /// "effect NAME at drive2 (...)".
 [[nodiscard]] std::string describe(const Effect& effect, const RobotDescription& robot);
+
+/// For a format that has no place for effects: adds them all to what is left out.
+void leave_effects_out(const RobotDescription& robot, Parts& parts);
 
 /// The number of a text that reads back exactly; no "-0" in a file that people read.
 [[nodiscard]] std::string text(double value);

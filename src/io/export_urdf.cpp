@@ -57,6 +57,7 @@ void drop_bodies_without_mass(model_export::Parts& parts) {
 ExportedModel export_urdf(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
   model_export::Parts parts = model_export::collect(robot, p, effects);
   const RobotDescription& description = robot.description();
+  model_export::leave_effects_out(description, parts);
   add_rotor_inertias(description, parts);
   drop_bodies_without_mass(parts);
   for (int drive = 1; drive <= description.drives(); ++drive) {
@@ -71,7 +72,7 @@ ExportedModel export_urdf(const Robot& robot, const Eigen::VectorXd& p, const st
     const auto place = text.find("<robot");
     text.insert(place, "<!--\n" + model_export::left_out_comment(parts.left_out, "  ") + "-->\n");
   }
-  return {text, parts.left_out};
+  return {text, parts.left_out, 0};
 }
 
 }  // namespace deltadyn

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
@@ -20,7 +21,19 @@
 namespace deltadyn {
 namespace {
 
+namespace fs = std::filesystem;
+
 const std::string kPresliding = "presliding";  // not a column of the regressor: the shape of a joint's Coulomb friction
+
+const std::string kEffects = "effects:";  // begins the comment that names the effect file
+
+/// A file's name as the folder of another one sees it.
+std::string seen_from(const std::string& path, const std::string& file) {
+  if (file == kEffectsNotWritten) return file;
+  const fs::path folder = fs::absolute(path).parent_path();
+  const fs::path relative = fs::absolute(file).lexically_normal().lexically_relative(folder.lexically_normal());
+  return relative.empty() ? file : relative.generic_string();
+}
 
 bool is_presliding(const std::string& name) {
   return name.ends_with("." + kPresliding);
@@ -118,6 +131,8 @@ ParameterTable read_parameters(const std::string& path) {
 
   ParameterTable table;
   table.file = path;
+  if (const auto effects = csv.comment(kEffects); effects && !effects->empty())
+    table.effects = *effects == kEffectsNotWritten ? *effects : (fs::path(path).parent_path() / *effects).string();
   std::unordered_map<std::string, long> seen;
   for (std::size_t row = 0; row < csv.rows(); ++row) {
     ParameterEntry entry;
@@ -174,6 +189,20 @@ ParameterTable read_parameters(const std::string& path, const RobotDescription& 
   return table;
 }
 
+std::string missing_effects(const ParameterTable& table, const std::string& effects_given) {
+  if (table.effects.empty() || !effects_given.empty()) return {};
+  if (table.effects == kEffectsNotWritten) {
+    return table.file +
+           " holds only together with effects that were not written: run delta-diagnose again with --effects-out FILE, and give "
+           "--effects FILE";
+  }
+  std::error_code ignored;
+  const std::string text = fmt::format("{} holds only together with the effects of {}", table.file, table.effects);
+  if (fs::exists(table.effects, ignored)) return fmt::format("{}: give --effects {}", text, table.effects);
+  return fmt::format("{}, which is not there: give --effects with the place of {}", text,
+                     fs::path(table.effects).filename().string());
+}
+
 void write_parameters(const std::string& path, const ParameterTable& table) {
   struct Extra {
     const char* column;
@@ -188,6 +217,7 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
                              [&](const ParameterEntry& entry) { return !std::isnan(entry.*extra.member); });
   }
   std::string text = table.remark.empty() ? "" : "# " + table.remark + "\n";
+  if (!table.effects.empty()) text += fmt::format("# {} {}\n", kEffects, seen_from(path, table.effects));
   text += "name,value,unit";
   for (const Extra& extra : extras) {
     if (extra.used) text += fmt::format(",{}", extra.column);

@@ -79,7 +79,7 @@ std::array<double, kMostAmplitudes> amplitudes_of(const Effect& effect) {
   return out;
 }
 
-void check_sizes(const Effect& effect, const std::string& where, ExitCode code) {
+void check_sizes(const Effect& effect, const std::function<std::string(std::string_view)>& where, ExitCode code) {
   const EffectKind& kind = effect_kind(effect.id);
   const auto amplitude = amplitudes_of(effect);
   const Shape<double> shape = shape_of(effect);
@@ -87,14 +87,16 @@ void check_sizes(const Effect& effect, const std::string& where, ExitCode code) 
     const AmplitudeTraits& one = kind.amplitudes[k];
     const double value = amplitude[k];
     if (one.positive() && value < 0)
-      throw Error(fmt::format("{} of {} cannot be negative", one.name, kind.name), where, "give a positive number", code);
+      throw Error(fmt::format("{} of {} cannot be negative", one.name, kind.name), where(one.name), "give a positive number",
+                  code);
     if (std::abs(value) > one.largest)
-      throw Error(fmt::format("{} of {} is {}, beyond its largest size", one.name, kind.name, value), where,
+      throw Error(fmt::format("{} of {} is {}, beyond its largest size", one.name, kind.name, value), where(one.name),
                   fmt::format("give a number up to {}", one.largest), code);
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
     if (kind.shapes[k].positive && !(shape[k] > 0))
-      throw Error(fmt::format("{} of {} must be positive", kind.shapes[k].name, kind.name), where, "give a number above 0", code);
+      throw Error(fmt::format("{} of {} must be positive", kind.shapes[k].name, kind.name), where(kind.shapes[k].name),
+                  "give a number above 0", code);
   }
 }
 

@@ -90,7 +90,8 @@ class Builder {
     const std::vector<int> joints = effect_joints(effect.id, machine_.description);
     if (std::find(joints.begin(), joints.end(), effect.joint) == joints.end())
       refuse(effect, "this robot has no such place for the effect", "look at delta-simulate --list-effects");
-    check_sizes(effect, std::string(effect_kind(effect.id).name), ExitCode::usage);
+    check_sizes(
+        effect, [&effect](std::string_view) { return std::string(effect_kind(effect.id).name); }, ExitCode::usage);
     if (pushes_plate(effect.id)) parts_.plate_forces.push_back(effect);
     const std::size_t springs = machine_.springs.size();
     visit_effect(effect.id, [&](auto type) {

@@ -415,6 +415,89 @@ std::vector<Row> robots() {
   };
 }
 
+/// delta-validate with an effect file of these rows.
+Words with_effects(const W& w, const std::string& rows, const std::string& top = "") {
+  return w.validate() + Words{"--effects", w.write("bad.csv", top + "effect,joint,parameter,value,unit,std\n" + rows)};
+}
+
+std::vector<Row> effects() {
+  const std::string bend = "stribeck,drive2,rate,0.25,rad/s,\nstribeck,drive2,exponent,2,,\n";
+  return {
+      {"UnknownEffect",
+       [](const W& w) { return with_effects(w, "gremlin,drive1,size,2,N,\n"); },
+       3,
+       {"bad\\.csv, line 2, column effect", "no effect 'gremlin'", "mend: .*--list-effects"}},
+      {"EffectAtWrongPlace",
+       [](const W& w) { return with_effects(w, "hose_force,drive2,force_x,2,N,\n"); },
+       3,
+       {"bad\\.csv, line 2, column joint", "cannot act at 'drive2'", "mend: give one of these: platform"}},
+      {"EffectAtDriveThatIsNotThere",
+       [](const W& w) { return with_effects(w, "torque_offset,drive5,offset,2,N*m,\n"); },
+       3,
+       {"bad\\.csv, line 2, column joint", "cannot act at 'drive5'", "mend: give one of these: drive1, drive2, drive3, drive4"}},
+      {"EffectKeyMissing",
+       [=](const W& w) { return with_effects(w, bend); },
+       3,
+       {"bad\\.csv, line 2", "friction of stribeck at drive2 is missing",
+        "mend: add a row stribeck,drive2,friction,VALUE,N\\*m,"}},
+      {"EffectKeyUnknown",
+       [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,speed,2,N*m,\n"); },
+       3,
+       {"bad\\.csv, line 4, column parameter", "no parameter 'speed'", "mend: its parameters are friction, rate, exponent"}},
+      {"EffectOfWrongSign",
+       [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,friction,-2,N*m,\n"); },
+       3,
+       {"bad\\.csv, line 4, column value", "friction of stribeck cannot be negative", "mend: give a positive number"}},
+      {"EffectShapeNotPositive",
+       [](const W& w) {
+         return with_effects(w, "stribeck,drive2,friction,2,N*m,\nstribeck,drive2,rate,0,rad/s,\nstribeck,drive2,exponent,2,,\n");
+       },
+       3,
+       {"bad\\.csv, line 3, column value", "rate of stribeck must be positive", "mend: give a number above 0"}},
+      {"EffectBeyondItsRange",
+       [](const W& w) { return with_effects(w, "saturation,drive2,level,20,N*m,\nsaturation,drive2,share,1.5,,\n"); },
+       3,
+       {"bad\\.csv, line 3, column value", "share of saturation is 1\\.5, beyond", "mend: give a number up to 1"}},
+      {"EffectNotFinite",
+       [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,friction,nan,N*m,\n"); },
+       3,
+       {"bad\\.csv, line 4, column value", "'nan' is not a finite number", "mend:"}},
+      {"EffectInAnotherUnit",
+       [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,friction,2,N,\n"); },
+       3,
+       {"bad\\.csv, line 4, column unit", "unit 'N'", "mend: give the value in 'N\\*m'"}},
+      {"TwoEffectsOfAKindAtOneJoint",
+       [=](const W& w) {
+         const std::string size = "stribeck,drive2,friction,2,N*m,\n";
+         return with_effects(w, bend + size + size);
+       },
+       3,
+       {"bad\\.csv, line 5, column parameter", "friction of stribeck at drive2 is there twice, first in line 4",
+        "mend: leave one of the rows out"}},
+      {"EffectFileOfOlderForm",
+       [](const W& w) { return with_effects(w, "torque_offset,drive1,offset,2,N*m,\n", "# deltadyn effects 0\n"); },
+       3,
+       {"bad\\.csv, line 1", "is of version 0, this program reads version 1",
+        "mend: run delta-diagnose again with --effects-out"}},
+      {"EffectFileWithoutColumns",
+       [](const W& w) {
+         return w.validate() + Words{"--effects", w.path("prior.csv")};
+       },
+       3,
+       {"prior\\.csv", "column 'effect' is missing", "mend: write the columns effect,joint,parameter,value,unit,std"}},
+      {"EffectFileMissing",
+       [](const W& w) {
+         return w.validate() + Words{"--effects", w.path("none.csv")};
+       },
+       3,
+       {"none\\.csv", "cannot open the file", "mend:"}},
+      {"EffectWithoutRates",
+       [](const W& w) { return with_effects(w, "torque_offset,drive1,offset,2,N*m,\n") + Words{"--no-filter"}; },
+       3,
+       {"log\\.csv", "column qd1_rad_s is missing", "mend:"}},
+  };
+}
+
 class BadInput : public ::testing::TestWithParam<Row> {};
 
 TEST_P(BadInput, IsRefusedWithAMessageAndLeavesNothingBehind) {
@@ -425,6 +508,7 @@ INSTANTIATE_TEST_SUITE_P(Files, BadInput, ::testing::ValuesIn(files()), name_of)
 INSTANTIATE_TEST_SUITE_P(Times, BadInput, ::testing::ValuesIn(times()), name_of);
 INSTANTIATE_TEST_SUITE_P(Motions, BadInput, ::testing::ValuesIn(motions()), name_of);
 INSTANTIATE_TEST_SUITE_P(Priors, BadInput, ::testing::ValuesIn(priors()), name_of);
+INSTANTIATE_TEST_SUITE_P(Effects, BadInput, ::testing::ValuesIn(effects()), name_of);
 INSTANTIATE_TEST_SUITE_P(Robots, BadInput, ::testing::ValuesIn(robots()), name_of);
 
 }  // namespace

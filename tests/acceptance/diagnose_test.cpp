@@ -75,6 +75,7 @@ TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
   ASSERT_EQ(effects.size(), 1U);
   EXPECT_EQ(effects[0].id, effect_id<effects::ShearThinning>);
 
+  EXPECT_EQ(folder.read("improved.csv").substr(0, 23), "# effects: effects.csv\n");
   const ToolResult again = succeed(diagnose("improved.csv", {"--effects", path("effects.csv")}));
   EXPECT_EQ(summary().at("verdict"), "nothing-missing") << again.out << read_text(path("diagnosis.csv")).substr(0, 1500);
 }

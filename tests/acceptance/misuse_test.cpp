@@ -240,6 +240,29 @@ TEST_P(Misuse, IsRefusedWithAMessageAndLeavesNothingBehind) {
   expect_refused(GetParam());
 }
 
+// Parameters that were found together with effects hold only with them.
+TEST(MissingEffects, AreToldByEveryToolWithTheFlagThatMendsIt) {
+  const Workshop w;
+  const std::string params = w.write("improved.csv", "# effects: effects.csv\n" + to_text(W::prior()));
+  const std::string effects = w.path("effects.csv"), given = "improved.csv holds only together with the effects of " + effects;
+  const Words convert = {"delta-model", "convert", w.path("robot.urdf"), "--params", params, "--to",
+                         "header",      "-o",      w.path("m.hpp")};
+  const Words tools[] = {w.validate("", "", params),
+                         w.identify("", "", params),
+                         convert,
+                         {"delta-diagnose", w.path("robot.urdf"), w.path("log.csv"), "--params", params, "-o", w.path("d.csv")}};
+  const auto told = [](const Words& words) { return run(words).err; };
+  EXPECT_NE(told(convert).find(given + ", which is not there: give --effects with the place of effects.csv"), std::string::npos);
+  (void)w.write("effects.csv", "effect,joint,parameter,value,unit,std\ntorque_offset,drive1,offset,0.1,N*m,\n");
+  for (const Words& words : tools) {
+    EXPECT_NE(told(words).find("warning: " + params + " holds only together with the effects of " + effects +
+                               ": give --effects " + effects),
+              std::string::npos)
+        << words[0] << told(words);
+    EXPECT_EQ(told(words + Words{"--effects", effects}).find("holds only"), std::string::npos) << words[0];
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Outputs, Misuse, ::testing::ValuesIn(outputs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Flags, Misuse, ::testing::ValuesIn(flags()), name_of);
 

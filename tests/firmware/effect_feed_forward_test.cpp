@@ -96,6 +96,16 @@ TYPED_TEST(EffectFeedForwardOf, AddsUpEffects) {
   EXPECT_THAT((bench.template run<double>(control)), IsNear(expected, 1e-12 * expected.cwiseAbs().maxCoeff()));
 }
 
+TYPED_TEST(EffectFeedForwardOf, TakesATableOfRows) {
+  auto& bench = this->bench_;
+  auto one_by_one = bench.template control<double, 3>();
+  const EffectRow wrong = {EffectId{-1}, 0, {}, {}}, rows[] = {this->bristles(), wrong, this->bristles(0.5, 0.02)};
+  for (const EffectRow& row : rows) (void)one_by_one.add(row);
+  typename EffectBench<TypeParam>::template Control<double, 3> at_once(bench.geometry, bench.p, rows);
+  EXPECT_EQ(at_once.effects(), 2);
+  EXPECT_EQ((bench.template run<double>(at_once)), (bench.template run<double>(one_by_one)));
+}
+
 TYPED_TEST(EffectFeedForwardOf, SaysWhyAnEffectCannotAct) {
   auto& bench = this->bench_;
   std::map<std::string, EffectRefusal> refused;

@@ -29,6 +29,15 @@ TEST(Csv, ReadsCommentsBlanksByteOrderMarkAndWindowsLineEnds) {
   EXPECT_EQ(table.line(1), 6);
 }
 
+TEST(Csv, TellsTheCommentsAboveTheHeader) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.csv", "\xEF\xBB\xBF# made by hand\n\n#  version 2 \nx\n# below: 3\n1\n");
+  EXPECT_EQ(read_csv(path).comment("version"), "2");
+  EXPECT_EQ(CsvReader(path).comment("made"), "by hand");
+  EXPECT_EQ(CsvReader(path).comment("by hand"), std::nullopt);
+  EXPECT_EQ(read_csv(path).comment("below:"), std::nullopt);
+}
+
 TEST(Csv, ReadsEveryNumberExactlyAndTheLastLineWithoutLineFeed) {
   const TemporaryFolder folder;
   const CsvTable table = read_csv(folder.write("a.csv", "x\n0.1\n1e308\n4.9e-324\n-0\n1e-400\n123456789.123456789"));

@@ -56,6 +56,17 @@ TEST_F(EffectFile, TakesTheAliasAndTheBareNumberOfADrive) {
   EXPECT_EQ(effects[0].joint, 2);
 }
 
+TEST_F(EffectFile, RefusesSizesThatCannotBe) {
+  const std::string header = "effect,joint,parameter,value,unit,std\n", rest = "stribeck,drive1,exponent,2,,\n";
+  refuses(header + rest + "stribeck,drive1,rate,0.2,rad/s,\nstribeck,drive1,friction,-1,N*m,\n",
+          "line 4, column value: friction of stribeck cannot be negative");
+  refuses(header + rest + "stribeck,drive1,rate,0,rad/s,\nstribeck,drive1,friction,1,N*m,\n",
+          "line 3, column value: rate of stribeck must be positive");
+  refuses(header + "saturation,drive2,level,20,N*m,\nsaturation,drive2,share,1.5,,\n",
+          "line 3, column value: share of saturation is 1.5, beyond its largest size");
+  refuses(header + "hysteresis,drive1,torque,inf,N*m,\n", "line 2, column value: 'inf' is not a finite number");
+}
+
 TEST_F(EffectFile, RefusesWhatItDoesNotKnow) {
   const std::string header = "effect,joint,parameter,value,unit,std\n";
   refuses("# deltadyn effects 99\n" + header + "torque_offset,drive1,offset,1,N*m,\n", "version 99");
@@ -63,8 +74,10 @@ TEST_F(EffectFile, RefusesWhatItDoesNotKnow) {
   refuses(header + "stribeck,drive7,friction,1,N*m,\n", "cannot act at 'drive7'");
   refuses(header + "stribeck,drive1,speed,1,N*m,\n", "no parameter 'speed'");
   refuses(header + "stribeck,drive1,friction,1,N,\n", "unit 'N'");
-  refuses(header + "stribeck,drive1,friction,1,N*m,\n", "rate of stribeck at drive1 is missing");
-  refuses(header + "torque_offset,drive1,offset,1,N*m,\ntorque_offset,drive1,offset,1,N*m,\n", "there twice");
+  refuses(header + "stribeck,drive1,friction,1,N*m,\n",
+          "line 2: rate of stribeck at drive1 is missing\n  mend: add a row stribeck,drive1,rate,VALUE,rad/s,");
+  refuses(header + "hose_force,drive1,force_x,1,N,\n", "line 2, column joint: the effect hose_force cannot act at 'drive1'");
+  refuses(header + "torque_offset,drive1,offset,1,N*m,\ntorque_offset,drive1,offset,1,N*m,\n", "there twice, first in line 2");
   refuses("effect,joint,value,unit\n", "column 'parameter' is missing");
 }
 

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <tinyxml2.h>
 
+#include "deltadyn/firmware/effect_refusal.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
@@ -87,28 +88,70 @@ TEST(ModelExport, PutsTheRotorOnTheAxisInUrdf) {
   EXPECT_NEAR(Iyy, sample.at("upper_arm.Iyy") + 0.0625, 1e-12);
 }
 
+/// All amplitudes and shapes alike.
+Effect effect_of(const char* name, int joint, double amplitude, double shape = 0.5) {
+  const EffectKind& kind = *find_effect_kind(name);
+  Effect effect;
+  effect.id = kind.id;
+  effect.joint = joint;
+  effect.amplitude = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(kind.amplitudes.size()), amplitude);
+  effect.shape = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(kind.shapes.size()), shape);
+  return effect;
+}
+
 TEST(ModelExport, ListsWhatItLeavesOut) {
   Sample sample;
   sample.at("drive2.offset") = 0.75;
-  Effect stribeck;
-  stribeck.id = effect_id<effects::Stribeck>;
-  stribeck.joint = 1;
-  stribeck.amplitude = Eigen::VectorXd::Constant(1, 2.0);
-  stribeck.shape = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(effect_kind(stribeck.id).shapes.size()), 0.5);
-  Effect rotor;
-  rotor.id = effect_id<effects::RotorInertia>;
-  rotor.joint = 0;
-  rotor.amplitude = Eigen::VectorXd::Constant(1, 1.0);
+  const Effect stribeck = effect_of("stribeck", 1, 2.0), rotor = effect_of("rotor_inertia", 0, 1.0);
   const ExportedModel mjcf = export_mjcf(*sample.robot, sample.p, {stribeck, rotor});
   ASSERT_THAT(mjcf.left_out, SizeIs(1));
-  EXPECT_THAT(mjcf.left_out[0], AllOf(HasSubstr("stribeck"), HasSubstr("drive2")));
+  EXPECT_THAT(mjcf.left_out[0], AllOf(HasSubstr("effect stribeck at drive2"), HasSubstr("friction, offsets and rotors only")));
   EXPECT_THAT(mjcf.text, AllOf(HasSubstr(mjcf.left_out[0]), HasSubstr("armature=\"1.0625\"")));
   const ExportedModel urdf = export_urdf(*sample.robot, sample.p, {stribeck});
   ASSERT_THAT(urdf.left_out, SizeIs(3));  // the effect, the offset, the loops for plain readers
   EXPECT_THAT(urdf.text, HasSubstr("drive2.offset = 0.75"));
-  const ExportedModel header = export_header(*sample.robot, sample.p, {stribeck, rotor});
-  ASSERT_THAT(header.left_out, SizeIs(1));
-  EXPECT_THAT(header.text, AllOf(HasSubstr("1.0625,  // drive1.rotor_inertia"), HasSubstr("0.75,  // drive2.offset")));
+}
+
+TEST(ModelExport, HandsEffectsToTheController) {
+  Sample sample;
+  sample.at("drive2.offset") = 0.75;
+  const ExportedModel none = export_header(*sample.robot, sample.p, {effect_of("rotor_inertia", 0, 1.0)});
+  EXPECT_EQ(none.effects, 0);
+  EXPECT_THAT(none.left_out, IsEmpty());
+  EXPECT_THAT(none.text, AllOf(HasSubstr("1.0625,  // drive1.rotor_inertia"), HasSubstr("0.75,  // drive2.offset"),
+                               HasSubstr("<deltadyn/firmware/feed_forward.hpp>"), Not(HasSubstr("kEffects"))));
+  const ExportedModel some = export_header(*sample.robot, sample.p,
+                                           {effect_of("stribeck", 1, 2.0), effect_of("stribeck", 0, 3.0),
+                                            effect_of("hose_force", -1, 4.0), effect_of("rotor_inertia", 0, 1.0)});
+  EXPECT_EQ(some.effects, 3);
+  EXPECT_THAT(some.left_out, IsEmpty());
+  EXPECT_THAT(some.text,
+              AllOf(HasSubstr("<deltadyn/firmware/effect_feed_forward.hpp>"), HasSubstr("kEffectCount = 3;"),
+                    HasSubstr("{deltadyn::effect_named(\"stribeck\"), 1, {0.5, 0.5}, {2}},  // at drive2: friction [N*m]"),
+                    HasSubstr("SomeEffects<deltadyn::effect_named(\"stribeck\"), deltadyn::effect_named(\"hose_force\")>"),
+                    HasSubstr("{deltadyn::effect_named(\"hose_force\"), -1, {}, {4, 4, 4, 4, 4, 4}}")));
+}
+
+TEST(ModelExport, SaysWhyAControllerCannotTakeAnEffect) {
+  Sample sample;
+  const std::pair<Effect, EffectRefusal> rows[] = {
+      {effect_of("current_lag", -1, 1e-3), EffectRefusal::of_the_record},
+      {effect_of("joint_elasticity", 0, 1e-3), EffectRefusal::spring},
+      {effect_of("payload", -1, 1.0, 1), EffectRefusal::of_one_log},
+      {effect_of("stribeck", 4, 1.0), EffectRefusal::no_such_place},
+      {effect_of("stribeck", 0, 1.0, 1e-60), EffectRefusal::bad_number},  // 0 in float
+  };
+  for (const auto& [effect, refusal] : rows) {
+    const ExportedModel header = export_header(*sample.robot, sample.p, {effect});
+    EXPECT_EQ(header.effects, 0);
+    ASSERT_THAT(header.left_out, SizeIs(1));
+    EXPECT_THAT(header.left_out[0], AllOf(HasSubstr(std::string(effect_kind(effect.id).name)), HasSubstr(message(refusal))));
+    EXPECT_THAT(header.text, AllOf(HasSubstr(header.left_out[0]), Not(HasSubstr("kEffects"))));
+  }
+  const ExportedModel many = export_header(*sample.robot, sample.p, std::vector<Effect>(70, effect_of("stribeck", 0, 0.1)));
+  EXPECT_EQ(many.effects, 64);
+  ASSERT_THAT(many.left_out, SizeIs(6));
+  EXPECT_THAT(many.left_out[5], HasSubstr(message(EffectRefusal::no_room)));
 }
 
 TEST(ModelExport, GivesARobotWithoutToolABodyThatTurns) {

@@ -1,6 +1,7 @@
 #include "deltadyn/io/parameter_file.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <gmock/gmock.h>
 #include <random>
 
@@ -45,6 +46,34 @@ TEST(ParameterFile, ReadsBackExactly) {
     }
     EXPECT_TRUE(std::isnan(back.entries[i].prior));
   }
+}
+
+TEST(ParameterFile, NamesTheEffectsThatItBelongsTo) {
+  const TemporaryFolder folder;
+  namespace fs = std::filesystem;
+  for (const char* name : {"here", "moved"}) fs::create_directory(folder.path(name));
+  ParameterTable table;
+  table.remark = "a remark";
+  table.entries.push_back({"upper_arm.m", 1, "kg"});
+  EXPECT_EQ(missing_effects(table, ""), "");
+  table.effects = folder.path("effects.csv");
+  write_parameters(folder.path("here/p.csv"), table);
+  EXPECT_THAT(folder.read("here/p.csv"), HasSubstr("# effects: ../effects.csv\nname,value,unit\n"));
+  const ParameterTable back = read_parameters(folder.path("here/p.csv"));
+  EXPECT_EQ(back.effects, folder.path("here/../effects.csv"));
+  EXPECT_THAT(missing_effects(back, ""), HasSubstr("effects.csv, which is not there: give --effects"));
+  (void)folder.write("effects.csv", "effect,joint,parameter,value,unit\n");
+  EXPECT_THAT(missing_effects(back, ""), ::testing::EndsWith("give --effects " + folder.path("here/../effects.csv")));
+  EXPECT_EQ(missing_effects(back, "any.csv"), "");
+  fs::rename(folder.path("here/p.csv"), folder.path("p.csv"));
+  EXPECT_THAT(missing_effects(read_parameters(folder.path("p.csv")), ""), HasSubstr("which is not there"));
+  // Written elsewhere, it still names the same file.
+  write_parameters(folder.path("moved/p.csv"), back);
+  EXPECT_TRUE(fs::equivalent(read_parameters(folder.path("moved/p.csv")).effects, folder.path("effects.csv")));
+
+  table.effects = kEffectsNotWritten;
+  write_parameters(folder.path("q.csv"), table);
+  EXPECT_THAT(missing_effects(read_parameters(folder.path("q.csv")), ""), HasSubstr("delta-diagnose again with --effects-out"));
 }
 
 TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {

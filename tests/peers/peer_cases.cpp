@@ -2,17 +2,22 @@
 /// Writes robots, parameters, states and a closed-loop motion for the tests against other people's simulators:
 ///     peer_cases FOLDER
 /// For each type: TYPE.urdf, TYPE_params.csv, TYPE_states.csv (drives, joints of the tree, torques, mass matrix), TYPE_motion.csv.
+/// For the delta4 effects and a trajectory, too: delta4_effects.csv, delta4_trajectory.csv.
 
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
 #include <string>
+#include <vector>
 
 #include "deltadyn/dynamics/forward_dynamics.hpp"
+#include "deltadyn/effects/some_effects.hpp"
+#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/io/trajectory_file.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/workspace.hpp"
@@ -61,7 +66,50 @@ class Case {
     write_motion();
   }
 
+  /// Friction that differs by direction, friction that bends, and a hose; a motion that shows them, with reversals.
+  void write_effects_and_trajectory() {
+    std::vector<Effect> effects(3);
+    const auto choose = [&effects](std::size_t k, const char* name, int joint, std::vector<double> amplitude,
+                                   std::vector<double> shape) {
+      effects[k].id = effect_named(name);
+      effects[k].joint = joint;
+      effects[k].amplitude = Eigen::Map<Eigen::VectorXd>(amplitude.data(), static_cast<Eigen::Index>(amplitude.size()));
+      effects[k].shape = Eigen::Map<Eigen::VectorXd>(shape.data(), static_cast<Eigen::Index>(shape.size()));
+    };
+    choose(0, "asymmetric_viscous", 0, {0.7}, {});
+    choose(1, "stribeck", 1, {2}, {0.25, 2});
+    choose(2, "hose_force", -1, {3, -2, 1, 25, 18, 8}, {});
+    deltadyn::write_effects(path("_effects.csv"), effects, description_);
+    TrajectorySamples samples;
+    constexpr int kSamples = 4000;
+    for (Eigen::MatrixXd* of : {&samples.z, &samples.zd, &samples.zdd}) of->setZero(kSamples, N);
+    samples.t_s = Eigen::VectorXd::LinSpaced(kSamples, 0, (kSamples - 1) * kTick);
+    const WorkspaceSampler sampler(*robot_);
+    for (int k = 0; k < kSamples; ++k) {
+      for (const double speed : {1.0, 0.37}) {  // the ratio of a motion that does not repeat
+        const TaskState task = task_at(sampler, speed * samples.t_s(k));
+        samples.z.row(k) += 0.5 * task.z.transpose();
+        samples.zd.row(k) += 0.5 * speed * task.zd.transpose();
+        samples.zdd.row(k) += 0.5 * speed * speed * task.zdd.transpose();
+      }
+    }
+    complete_drives(*robot_, samples);
+    write_trajectory(path("_trajectory.csv"), samples, description_);
+  }
+
  private:
+  static TaskState task_at(const WorkspaceSampler& sampler, double t) {
+    TaskState task{Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N)};
+    const double amplitude[] = {0.1, 0.08, 0.05, 2.0}, omega[] = {12, 15, 18, 14};
+    for (int i = 0; i < N; ++i) {
+      const double angle = omega[i] * t + 0.7 * i;
+      task.z(i) = amplitude[i] * std::sin(angle) + (i < 3 ? sampler.ball().centre(i) : 0);
+      task.zd(i) = amplitude[i] * omega[i] * std::cos(angle);
+      task.zdd(i) = -amplitude[i] * omega[i] * omega[i] * std::sin(angle);
+    }
+    return task;
+  }
+
   [[nodiscard]] std::string path(const std::string& ending) const { return folder_ + "/" + R::kName + ending; }
 
   /// Nominal parameters, made crooked by a point mass on every body, with friction and rotor inertias.
@@ -117,14 +165,7 @@ class Case {
   void write_motion() {
     const WorkspaceSampler sampler(*robot_);
     const auto set_point = [&](double t, Eigen::VectorXd& q, Eigen::VectorXd& qd, Eigen::VectorXd& tau) {
-      TaskState task{Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N)};
-      const double amplitude[] = {0.1, 0.08, 0.05, 2.0}, omega[] = {12, 15, 18, 14};
-      for (int i = 0; i < N; ++i) {
-        const double angle = omega[i] * t + 0.7 * i;
-        task.z(i) = amplitude[i] * std::sin(angle) + (i < 3 ? sampler.ball().centre(i) : 0);
-        task.zd(i) = amplitude[i] * omega[i] * std::cos(angle);
-        task.zdd(i) = -amplitude[i] * omega[i] * omega[i] * std::sin(angle);
-      }
+      const TaskState task = task_at(sampler, t);
       Eigen::VectorXd qdd(N);
       if (robot_->to_drives(task, q, qd, qdd) != Status::ok || robot_->inverse_dynamics(q, qd, qdd, values_, tau) != Status::ok)
         throw std::runtime_error("the motion leaves the workspace");
@@ -194,7 +235,9 @@ int main(int argc, char** argv) {
   try {
     Case<Delta3>(argv[1]).write();
     Case<LinearDelta3>(argv[1]).write();
-    Case<Delta4>(argv[1]).write();
+    Case<Delta4> delta4(argv[1]);
+    delta4.write();
+    delta4.write_effects_and_trajectory();
   } catch (const std::exception& e) {
     std::fprintf(stderr, "peer_cases: %s\n", e.what());
     return 1;

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/io/effect_file.hpp"
 #include "deltadyn/io/model_export.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/parameter_file.hpp"
@@ -15,6 +14,7 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "effects_of_rows.hpp"
+#include "given_effects.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
@@ -26,10 +26,13 @@ class Convert {
         *app.add_subcommand("convert", "Hand an identified robot on: MuJoCo (MJCF), URDF readers, firmware (C++ header).");
     set_example(c,
                 "delta-model convert robot.urdf --params params.csv --to mjcf -o robot.xml\n"
-                "  delta-model convert robot.urdf --params params.csv --to header -o robot_model.hpp");
+                "  delta-model convert robot.urdf --params params.csv --effects effects.csv --to header -o robot_model.hpp");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     c.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
-    c.add_option("--effects", effect_file_, "effects of delta-diagnose (CSV); those that the format holds travel along")
+    c.add_option(
+         "--effects", effect_file_,
+         "effects of delta-diagnose (CSV); those that the format holds travel along: in a header all that a controller can feed "
+         "forward, else offsets and rotor inertias")
         ->type_name("FILE");
     c.add_option("--to", format_,
                  "mjcf: MuJoCo, loops closed by equality constraints; urdf: Pinocchio, Gazebo, RViz; header: C++17 for firmware")
@@ -48,16 +51,16 @@ class Convert {
     const ParameterMatch match = match_parameters(table, robot->parameter_names(), robot->parameter_units());
     for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     std::vector<Effect> effects = effects_of_rows(table, description);
-    if (!effect_file_.empty()) {
-      for (Effect& effect : read_effects(effect_file_, description)) effects.push_back(std::move(effect));
-    }
+    for (Effect& effect : given_effects(effect_file_, table, description)) effects.push_back(std::move(effect));
     const auto convert = format_ == "mjcf" ? export_mjcf : format_ == "urdf" ? export_urdf : export_header;
     const ExportedModel model = convert(*robot, match.value, effects);
     write_file(output_, model.text);
     for (const std::string& line : model.left_out) fmt::print("left out: {}\n", line);
+    if (model.effects > 0) fmt::print("effects that the controller feeds forward: {}\n", model.effects);
     fmt::print("wrote {}\n", output_);
     run.summary.add("format", format_);
     run.summary.add("parameters", robot->parameters());
+    run.summary.add("effects", model.effects);
     run.summary.add("left_out", static_cast<int>(model.left_out.size()));
   }
 

@@ -132,7 +132,8 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
       throw Error(key.name + " of the effect " + name + " is missing", where, "give all of " + known, ExitCode::usage);
   }
   if (kind->tied) effect.shape(0) = effect.amplitude(0);
-  check_sizes(effect, where, ExitCode::usage);
+  check_sizes(
+      effect, [&where](std::string_view) { return where; }, ExitCode::usage);
   return effect;
 }
 

@@ -26,8 +26,17 @@ class EffectFeedForward {
 
   EffectFeedForward(const Geometry<T, Robot>& geometry, const Parameters& p) : machine_(geometry), p_(p), given_(p) {}
 
+  /// With the effects of a table, as a converted header holds it; effects() tells how many of them act.
+  template <std::size_t kRows>
+  EffectFeedForward(const Geometry<T, Robot>& geometry, const Parameters& p, const EffectRow (&rows)[kRows])
+      : EffectFeedForward(geometry, p) {
+    for (const EffectRow& row : rows) static_cast<void>(add(row));
+  }
+
   /// Adds an effect, before the loop begins. What cannot act is refused with a reason and changes nothing.
   [[nodiscard]] EffectRefusal add(const EffectRow& row) { return effects_.add(row, machine_); }
+
+  [[nodiscard]] int effects() const { return effects_.count(); }
 
   /// Width of a reversal: Coulomb's friction and all laws that turn with the sign of a rate take rate / sqrt(rate^2 + width^2) for it,
   /// so that a set point which stops takes no jump of the torque. 0, the value at first: the sign itself.

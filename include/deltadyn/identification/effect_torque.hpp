@@ -18,7 +18,7 @@ namespace deltadyn {
 
 /// The logs with the effects' torque taken off, so that everything made for a model without effects serves.
 /// \param p          parameters for the effects that need the model's torque
-/// \param cutoff_hz  of the motion that the effects are computed from
+/// \param cutoff_hz  of the motion that the effects are computed from; 0: the log's own q, qd and qdd
 [[nodiscard]] std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
                                                const std::vector<Effect>& effects, double cutoff_hz);
 

@@ -13,6 +13,8 @@
 
 namespace deltadyn {
 
+class CsvTable;
+
 /// Reads a CSV file row by row in constant memory.
 class CsvReader {
  public:
@@ -27,6 +29,8 @@ class CsvReader {
   [[nodiscard]] const std::vector<std::string>& columns() const;
   /// Index of a column, if there is one of this name.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const;
+  /// What follows `key` in the first comment above the header that begins with it: of "# version 2" with the key "version" it is "2".
+  [[nodiscard]] std::optional<std::string> comment(std::string_view key) const;
 
   /// Moves to the next data row; false at the end. Throws Error(bad_input) if the row has not as many fields as the header.
   bool next_row();
@@ -40,6 +44,7 @@ class CsvReader {
   [[nodiscard]] double number_or_nan(std::size_t column) const;
 
  private:
+  friend CsvTable read_csv(const std::string& path);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -47,6 +52,8 @@ class CsvReader {
 /// A whole CSV file in memory.
 class CsvTable {
  public:
+  /// As CsvReader::comment.
+  [[nodiscard]] std::optional<std::string> comment(std::string_view key) const;
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   [[nodiscard]] std::size_t rows() const { return lines_.size(); }
@@ -64,7 +71,7 @@ class CsvTable {
  private:
   friend CsvTable read_csv(const std::string& path);
   std::string path_;
-  std::vector<std::string> columns_;
+  std::vector<std::string> comments_, columns_;
   std::vector<long> lines_;
   std::string text_;
   std::vector<std::size_t> ends_;  ///< of each field in text_

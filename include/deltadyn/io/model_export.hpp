@@ -18,6 +18,7 @@ namespace deltadyn {
 struct ExportedModel {
   std::string text;                   ///< of the file
   std::vector<std::string> left_out;  ///< one line each: what, where, and why
+  int effects = 0;                    ///< that the file holds as effects; those that became parameters do not count
 };
 
 /// MJCF: the tree of the robot file with its loops closed by `connect` constraints, as many as the mechanism has to lose and no
@@ -32,7 +33,8 @@ struct ExportedModel {
 /// file again. Rotor inertias go into the bodies on the drive's axis, as thin rings about it: exact for drives fixed on the base.
 [[nodiscard]] ExportedModel export_urdf(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects = {});
 
-/// A C++17 header with geometry and parameters as constants, for firmware/feed_forward.hpp.
+/// A C++17 header with geometry and parameters as constants, for firmware/feed_forward.hpp; with effects that a controller can feed
+/// forward, a table of them, too, for firmware/effect_feed_forward.hpp.
 [[nodiscard]] ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects = {});
 
 }  // namespace deltadyn

@@ -23,9 +23,14 @@ struct ParameterEntry {
   long line = 0;                                                 ///< in the file; 0 if not read from one
 };
 
+/// In place of the name of an effect file that was not written.
+inline constexpr const char* kEffectsNotWritten = "not written";
+
 struct ParameterTable {
-  std::string file;    ///< where it came from, for messages
-  std::string remark;  ///< one line, written as a comment above the header; not read back
+  std::string file;     ///< where it came from, for messages
+  std::string remark;   ///< one line, written as a comment above the header; not read back
+  std::string effects;  ///< effect file that the parameters were found with, from the working folder; empty: none. The comment
+                        ///< `# effects: NAME` holds it relative to the parameter file, so that both may move together
   std::vector<ParameterEntry> entries;
 
   /// Null if there is no such name.
@@ -39,6 +44,11 @@ struct ParameterTable {
 /// The same for a robot, in the numbers that one of its size can have: throws Error(bad_input) with the line for masses in grams,
 /// moments in kg mm^2, negative masses or friction (runtime/plausibility.hpp).
 [[nodiscard]] ParameterTable read_parameters(const std::string& path, const RobotDescription& robot);
+
+/// What to tell somebody who uses the parameters without the effects that they were found with, and the flag that mends it.
+/// \param effects_given  the effect file that is given; empty: none
+/// \return empty if nothing is missing
+[[nodiscard]] std::string missing_effects(const ParameterTable& table, const std::string& effects_given);
 
 /// Writes the table; the columns std, prior and data_share appear if any row has them. Numbers read back exactly.
 /// Throws Error(bad_input) if the disk is full; then nothing is left behind.
