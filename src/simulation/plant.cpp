@@ -117,7 +117,6 @@ struct Plant::Impl : detail::JointDynamics {
       if (direction[at(j)] != 0) note_turn(j, scratch);
       direction[at(j)] = 0;
       held_until[at(j)] = now + kHoldUndecided;
-      ++counts.undecided;
     }
     settle(false);
   }
@@ -157,7 +156,6 @@ struct Plant::Impl : detail::JointDynamics {
       const bool done = step(h, next, rate_next, error);
       const double size = done ? relative(error, next) : 1e6;
       if (!(size <= 1)) {
-        ++counts.rejected_steps;
         step_size = h * std::clamp(0.9 * std::pow(size, -0.2), 0.1, 0.9);
         if (step_size < kShortestStep) lost(done ? "cannot be integrated on" : "leaves its reach or meets a singular pose");
         continue;
