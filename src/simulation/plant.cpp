@@ -12,7 +12,6 @@
 namespace deltadyn {
 namespace {
 
-using detail::Coordinates;
 using detail::State;
 
 constexpr double kShortestStep = 1e-13;  // [s]
@@ -323,7 +322,7 @@ double Plant::energy() const {
   double energy = 0;
   if (m.terms_at(m.x, terms) != Status::ok) return std::nan("");
   if (m.parts.mechanism->potential_energy(m.x.head(m.n), energy) != Status::ok) return std::nan("");
-  const Coordinates yd = m.x.segment(m.coordinates(), m.coordinates());
+  const detail::Coordinates yd = m.x.segment(m.coordinates(), m.coordinates());
   energy += 0.5 * yd.dot(terms.M * yd);
   for (int e = 0; e < m.soft; ++e) {
     const detail::SoftDrive& spring = m.parts.soft[Impl::at(e)];
