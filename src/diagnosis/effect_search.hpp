@@ -1,8 +1,7 @@
 #pragma once
 
 /// \file
-/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs, backward
-/// (diagnosis page, steps 3, 5, 7, 8).
+/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs, backward.
 
 #include <Eigen/Core>
 #include <map>

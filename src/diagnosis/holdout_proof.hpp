@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The proof on a log that took no part (diagnosis page, step 10): its residuals without and with what was found.
+/// The proof on a log that took no part: its residuals without and with what was found.
 
 #include <cstdint>
 #include <vector>

@@ -25,10 +25,7 @@ std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, 
     if (status != Status::ok) throw Error(message(status), log.file, "check that the robot file belongs to this machine");
     for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
       Y.col(coulomb[joint]) *= log.coulomb_share(k, static_cast<Index>(joint));
-    for (Index c = 0; c < b; ++c) {
-      const auto column = base.independent[static_cast<std::size_t>(c)];
-      for (Index j = 0; j < n; ++j) raw(k, j * b + c) = Y(j, column);
-    }
+    for (Index j = 0; j < n; ++j) raw.row(k).segment(j * b, b) = Y.row(j)(base.independent);
   }
   const MatrixXd rows = low_passed_rows(log, raw);
   std::vector<MatrixXd> out;

@@ -18,7 +18,7 @@ namespace deltadyn {
 struct LogRows {
   PreparedLog log;
   int number = 1;                  ///< among the training logs, from 1
-  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x base parameters (and further columns, see append)
+  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x base parameters
   Eigen::MatrixXd tau;             ///< rows x drives, without the torque of the known ripples
   Eigen::MatrixXd ripple;          ///< rows x drives: that torque; empty: none
   std::vector<RowMask> usable;     ///< for each drive: rows with no reversal and no repaired sample in reach
@@ -31,7 +31,7 @@ struct LogRows {
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
 
-/// Rows of the base columns alone, low-passed, with the bristles' share of Coulomb's friction: for each drive rows x base parameters. For any motion in place of the log's own.
+/// Rows of the base columns alone, low-passed, with the bristles' share of Coulomb's friction: for each drive rows x base parameters.
 [[nodiscard]] std::vector<Eigen::MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log);
 
 /// \param number  of the log among the training logs, from 1

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Noise of every drive and log (diagnosis page, step 3): the residual of the base model, the effects accepted so far, and as much of
+/// Noise of every drive and log: the residual of the base model, the effects accepted so far, and as much of
 /// the generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than it is.
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 
 /// \file
 /// Correlated noise of a torque residual as an autoregression.
-/// Without it, on noise with a correlation of 0.9, a test "finds" an effect in every clean log (diagnosis page, step 3).
+/// Without it, on noise with a correlation of 0.9, a test "finds" an effect in every clean log.
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What the scores are when nothing is missing: the whole pipeline on simulated clean logs (diagnosis page, step 6).
+/// What the scores are when nothing is missing: the whole pipeline on simulated clean logs.
 ///
 /// Encoder noise enters the position and passes the zero-phase filter, the differentiation, the regressor, the low pass and the
 /// whitening; torque noise enters as the fitted autoregression. Encoder noise alone fakes Stribeck and elasticity otherwise.

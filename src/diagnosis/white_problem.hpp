@@ -2,7 +2,7 @@
 
 /// \file
 /// The regression of all logs and drives in white, unit-variance rows, with the base model projected out: a candidate counts only by
-/// its part orthogonal to what a re-fit of the base parameters would absorb (diagnosis page, steps 2, 3, 5).
+/// its part orthogonal to what a re-fit of the base parameters would absorb.
 
 #include <Eigen/Core>
 #include <vector>

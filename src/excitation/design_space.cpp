@@ -16,9 +16,10 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kTriesPerState = 400;  // before the limits count as leaving nothing
-constexpr int kFewest = 50;          // states that a design can start from
-constexpr int kEarlyTries = 20000;   // after which fewer than that are a hopeless case,
-constexpr int kFewOfEarly = 1000;    // and fewer than these a reason to look at slower states
+constexpr int kTriesPerPlace = 100000;
+constexpr int kFewest = 50;         // states that a design can start from
+constexpr int kEarlyTries = 20000;  // after which fewer than that are a hopeless case,
+constexpr int kFewOfEarly = 1000;   // and fewer than these a reason to look at slower states
 
 class StateDraw {
  public:
@@ -28,31 +29,18 @@ class StateDraw {
   /// From now on all rates of a state are made smaller by a factor of its own, velocities less than accelerations.
   void slow_down() { slow_ = true; }
 
-  /// False if the pose is out of reach.
+  /// False if the pose is out of reach. Throws if the workspace seems to hold no pose that the limits allow.
   bool next(VectorXd& x) {
-    const bool plate = !robot_.description().parts.empty();
-    for (int i = 0; i < n_; ++i) {
-      // Beyond the plate's place a task coordinate is that of its drive.
-      double lower = limits_.z_lower(i), upper = limits_.z_upper(i);
-      if (plate && i < 3) {
-        lower = std::max(lower, limits_.region->lower()(i));
-        upper = std::min(upper, limits_.region->upper()(i));
-      } else {
-        lower = std::max(lower, limits_.q_lower(i));
-        upper = std::min(upper, limits_.q_upper(i));
-      }
-      z_(i) = uniform(lower, upper);
-    }
-    for (int i = 0; i < n_; ++i) {
-      qd_(i) = draw(limits_.qd(i));
-      qdd_(i) = draw(limits_.qdd(i));
-    }
     VectorXd zd(n_), zdd(n_);
-    for (int i = 0; i < n_; ++i) {
-      zd(i) = draw(limits_.zd(i));
-      zdd(i) = draw(limits_.zdd(i));
-    }
-    if (plate && !limits_.region->contains(z_.head<3>())) return next(x);
+    int tries = 0;
+    do {
+      if (++tries > kTriesPerPlace) {
+        throw Error(fmt::format("of {} random places in the ranges of the task coordinates none lies in the workspace ({})",
+                                kTriesPerPlace, limits_.region->text()),
+                    "limits", "widen these ranges or move the workspace into them", ExitCode::bad_input);
+      }
+      draw_state(zd, zdd);
+    } while (has_plate() && !limits_.region->contains(z_.head<3>()));
     if (robot_.inverse_kinematics(z_, q_) != Status::ok) return false;
     TaskState task;
     if (robot_.to_task(q_, qd_, qdd_, task) != Status::ok) return false;
@@ -71,6 +59,24 @@ class StateDraw {
   }
 
  private:
+  [[nodiscard]] bool has_plate() const { return !robot_.description().parts.empty(); }
+  void draw_state(VectorXd& zd, VectorXd& zdd) {
+    for (int i = 0; i < n_; ++i) {
+      // Beyond the plate's place a task coordinate is that of its drive.
+      const bool of_plate = has_plate() && i < 3;
+      const double lower = std::max(limits_.z_lower(i), of_plate ? limits_.region->lower()(i) : limits_.q_lower(i));
+      const double upper = std::min(limits_.z_upper(i), of_plate ? limits_.region->upper()(i) : limits_.q_upper(i));
+      z_(i) = uniform(lower, upper);
+    }
+    for (int i = 0; i < n_; ++i) {
+      qd_(i) = draw(limits_.qd(i));
+      qdd_(i) = draw(limits_.qdd(i));
+    }
+    for (int i = 0; i < n_; ++i) {
+      zd(i) = draw(limits_.zd(i));
+      zdd(i) = draw(limits_.zdd(i));
+    }
+  }
   double uniform(double lower, double upper) { return lower + (upper - lower) * unit_of_53_bits(random_); }
   double draw(double limit) {
     const double share = uniform(-1, 1);

@@ -130,13 +130,11 @@ std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits
 /// The limits as the search takes them, which the final check agrees with: Coulomb friction always on the side of the rest of the
 /// torque, as if it took its share of the limit away.
 MotionLimits without_friction(const Robot& robot, MotionLimits limits) {
-  for (Index k = 0; k < limits.parameters.size(); ++k) {
-    const std::string& name = robot.parameter_names()[static_cast<std::size_t>(k)];
-    if (!name.ends_with(".coulomb")) continue;
-    for (int i = 0; i < robot.drives(); ++i) {
-      const double left = limits.tau(i) - std::abs(limits.parameters(k));
-      if (name == fmt::format("drive{}.coulomb", i + 1) && left > 0) limits.tau(i) = left;
-    }
+  if (limits.parameters.size() == 0) return limits;
+  for (const Index k : coulomb_columns(robot)) {
+    const int drive = robot.parameter_ids()[static_cast<std::size_t>(k)].number - 1;
+    const double friction = std::abs(limits.parameters(k));
+    if (drive >= 0 && limits.tau(drive) > friction) limits.tau(drive) -= friction;
     limits.parameters(k) = 0;
   }
   return limits;
@@ -368,7 +366,7 @@ namespace {
 /// All stages for one segment: random starts, kicks of the best, polishing.
 std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options, const Clock& clock,
                                         double slice_end_s, int starts, std::uint64_t seed,
-                                        const std::optional<FourierSeries>& incumbent, Excitation& result, RunCount& run,
+                                        const std::optional<FourierSeries>& incumbent, RunCount& run,
                                         const std::function<void(const Candidate&)>& first) {
   const double begin = clock.seconds();
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
@@ -433,10 +431,6 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
     if (no_time(slice_end_s)) return;
     attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true, slice_end_s);
   });
-  for (int k = 0; k < starts; ++k) {
-    const auto& candidate = found[static_cast<std::size_t>(k)];
-    result.start_efficiency.push_back(candidate ? candidate->value : -std::numeric_limits<double>::infinity());
-  }
   for (const std::size_t k : ranked(found)) {
     // Checked more finely, the room between the samples turns out larger.
     const auto safe = fitted(search.space(), search.limits(), found[k]->series, kLargestStretch, kVerifySamples);
@@ -512,7 +506,7 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
         result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
       const long evaluations_before = run.evaluations;
-      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], result, run, first);
+      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], run, first);
       evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
         const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);

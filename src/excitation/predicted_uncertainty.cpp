@@ -19,12 +19,12 @@ VectorXd predicted_std(const Robot& robot, const std::vector<int>& base_columns,
     throw Error("the torque noise needs one positive number a drive", "--torque-noise", fmt::format("give {} numbers", n),
                 ExitCode::usage);
   if (every < 1) throw Error("every how manieth sample counts must be 1 or more", "", "", ExitCode::usage);
-  MatrixXd information = MatrixXd::Zero(p, p), Y(n, robot.parameters()), A(n, p);
+  MatrixXd information = MatrixXd::Zero(p, p), Y(n, robot.parameters());
   for (Index row = 0; row < samples.samples(); row += every) {
     if (robot.regressor(samples.q.row(row).transpose(), samples.qd.row(row).transpose(), samples.qdd.row(row).transpose(), Y) !=
         Status::ok)
       continue;
-    for (Index k = 0; k < p; ++k) A.col(k) = Y.col(base_columns[static_cast<std::size_t>(k)]).cwiseQuotient(torque_noise);
+    const MatrixXd A = Y(Eigen::all, base_columns).array().colwise() / torque_noise.array();
     information.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose(), static_cast<double>(every));
   }
   information = MatrixXd(information.selfadjointView<Eigen::Lower>());

@@ -53,7 +53,7 @@ class TaskRegressorOf final : public TaskRegressor {
         full.col(Layout::coulomb(joint)) = f.rate / std::hypot(f.rate, sign_width(joint)) * f.J.transpose();
       }
     }
-    for (std::size_t k = 0; k < columns_.size(); ++k) Y.col(static_cast<Eigen::Index>(k)) = full.col(columns_[k]);
+    Y = full(Eigen::all, columns_);
     out << motion.posture.q, motion.qd, motion.qdd;
     return Status::ok;
   }

@@ -94,9 +94,7 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
     base.expressions.push_back(expression(base.B.row(i), independent, robot.parameter_names()));
     base.units.push_back(robot.parameter_units()[static_cast<std::size_t>(independent)]);
   }
-  Eigen::MatrixXd W_B(W.rows(), rank);
-  for (Eigen::Index i = 0; i < rank; ++i) W_B.col(i) = W.col(base.independent[static_cast<std::size_t>(i)]);
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(W_B).singularValues();
+  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(W(Eigen::all, base.independent)).singularValues();
   base.condition_number = s(0) / s(rank - 1);
   return base;
 }

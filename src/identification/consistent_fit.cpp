@@ -19,30 +19,24 @@ namespace deltadyn {
 namespace {
 
 using fit::Block;
+using fit::BlockKind;
 using fit::ConvexProblem;
 using fit::Layout;
-using fit::BlockKind;
 using Clock = std::chrono::steady_clock;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Fitted entries of a block from its variables, with dy/dpi when asked for.
 Eigen::VectorXd fitted_entries(const Block& block, const double* variables, Eigen::MatrixXd* jacobian) {
-  Eigen::VectorXd y(block.fitted());
   if (!block.is_body()) {
     const bool positive = block.shape == BlockKind::positive;
-    y(0) = positive ? std::exp(variables[0]) : variables[0];
-    if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, positive ? y(0) : 1.0);
-    return y;
+    const double y = positive ? std::exp(variables[0]) : variables[0];
+    if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, positive ? y : 1.0);
+    return Eigen::VectorXd::Constant(1, y);
   }
   const LogCholeskyVector<double> pi = Eigen::Map<const LogCholeskyVector<double>>(variables);
   const InertialVector<double> p = from_log_cholesky(pi);
-  for (int i = 0; i < block.fitted(); ++i) y(i) = p(block.entries[static_cast<std::size_t>(i)]);
-  if (jacobian != nullptr) {
-    const Matrix<double, 10, 10> J = log_cholesky_jacobian(pi);
-    jacobian->resize(block.fitted(), 10);
-    for (int i = 0; i < block.fitted(); ++i) jacobian->row(i) = J.row(block.entries[static_cast<std::size_t>(i)]);
-  }
-  return y;
+  if (jacobian != nullptr) *jacobian = log_cholesky_jacobian(pi)(block.entries, Eigen::all);
+  return p(block.entries);
 }
 
 /// First term of (15): A y(pi) - b over all blocks at once.
@@ -170,45 +164,45 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
       1 / (options.prior_relative_std * options.prior_relative_std);  // the prior is not trusted beyond its word
   double lowest = kSmallestLambda * highest;
   const Eigen::VectorXd start = fit::convex_start(layout);
-  auto solve = [&](FitMetric solved_metric, double lambda) -> Eigen::VectorXd {
+  // Nothing where the fit does not converge.
+  const auto solve = [&](FitMetric solved_metric, double lambda) -> std::optional<Eigen::VectorXd> {
     const ConvexProblem::Result result = convex.minimise(solved_metric, lambda, start);
-    if (!result.converged) {
-      throw Error(fmt::format("the fit did not converge at a regularisation of {:g}", lambda), "consistent fit",
-                  "give --regularization a value", ExitCode::no_convergence);
-    }
-    return result.x.head(layout.fitted);
+    return result.converged ? std::optional<Eigen::VectorXd>(result.x.head(layout.fitted)) : std::nullopt;
   };
-  auto visit = [&](double lambda) {
-    const Eigen::VectorXd y = solve(metric, lambda);
-    summary.l_curve.push_back({lambda, convex.data_cost(y), convex.regularization_cost(metric, y)});
+  const auto visit = [&](double lambda) -> std::optional<double> {
+    const std::optional<Eigen::VectorXd> y = solve(metric, lambda);
+    if (!y) return std::nullopt;
+    summary.l_curve.push_back({lambda, convex.data_cost(*y), convex.regularization_cost(metric, *y)});
     return summary.l_curve.back().data_cost;
   };
-  const auto try_visit = [&](double lambda) -> std::optional<double> {
-    try {
-      return visit(lambda);
-    } catch (const Error&) {
-      return std::nullopt;
-    }
+  const auto refuse = [](double lambda) {
+    throw Error(fmt::format("the fit did not converge at a regularisation of {:g}", lambda), "consistent fit",
+                "give --regularization a value", ExitCode::no_convergence);
   };
   // Short logs leave directions that neither data nor prior hold at the smallest lambda: then begin at a larger one.
-  std::optional<double> smallest = try_visit(lowest);
-  for (; !smallest && 10 * lowest < highest; smallest = try_visit(lowest)) lowest *= 10;
-  if (!smallest) smallest = visit(highest);  // throws with its reason
+  std::optional<double> smallest = visit(lowest);
+  for (; !smallest && 10 * lowest < highest; smallest = visit(lowest)) lowest *= 10;
+  if (!smallest) smallest = visit(highest);
+  if (!smallest) refuse(kSmallestLambda * highest);
   summary.data_cost_min = *smallest;
   if (lowest > 2 * kSmallestLambda * highest) {
     summary.notes.emplace_back("the logs hold some parameters so weakly that the prior must hold them");
   }
   // the minimum of chi^2 on the cones does not depend on the metric: take it where the problem is convex
-  if (metric == FitMetric::riemannian) summary.data_cost_min = convex.data_cost(solve(FitMetric::relative, lowest));
+  if (metric == FitMetric::riemannian) {
+    const std::optional<Eigen::VectorXd> y = solve(FitMetric::relative, lowest);
+    if (!y) refuse(lowest);
+    summary.data_cost_min = convex.data_cost(*y);
+  }
   const double limit = summary.data_cost_min + options.data_misfit_rise;
   double low = std::log(lowest), high = std::log(highest);
   double chosen = low;
   // Where the largest lambda does not converge, data and prior contradict each other: it costs more than is admitted.
-  const std::optional<double> largest = try_visit(highest);
+  const std::optional<double> largest = visit(highest);
   if (largest && *largest <= limit) chosen = low = high;
   while (high - low > 0.1) {
     const double middle = 0.5 * (low + high);
-    const std::optional<double> cost = try_visit(std::exp(middle));
+    const std::optional<double> cost = visit(std::exp(middle));
     if (cost && *cost > limit) {
       high = middle;
     } else {
@@ -280,12 +274,10 @@ void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOpt
   const int n = layout.fitted;
   summary.std = problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
   summary.data_share = Eigen::VectorXd::Zero(layout.parameters);
-  Eigen::VectorXd prior_std(n);
   const Eigen::VectorXd move = (summary.p - problem.prior).cwiseAbs();
   double square = 0, inertial = 0;
   const auto is_inertial = [&problem](Eigen::Index parameter) {
-    const std::string& name = problem.names[static_cast<std::size_t>(parameter)];
-    return name.rfind("drive", 0) != 0 && name.rfind("telescope.", 0) != 0;
+    return problem.parameters[static_cast<std::size_t>(parameter)].kind == ParameterKind::inertial;
   };
   for (int i = 0; i < n; ++i) {
     const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
@@ -297,7 +289,7 @@ void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOpt
   for (Eigen::Index k = 0; k < summary.std.size(); ++k) {
     summary.std(k) = std::max(summary.std(k) * (is_inertial(k) ? widening : 1.0), move(k));
   }
-  for (int i = 0; i < n; ++i) prior_std(i) = summary.std(layout.y_to_p[static_cast<std::size_t>(i)]);
+  const Eigen::VectorXd prior_std = summary.std(layout.y_to_p);
   // in units of the prior's width: covariance = (A^T A + I)^{-1}, share = 1 - its diagonal
   Eigen::MatrixXd stacked(A.rows() + n, n);
   stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);
@@ -344,13 +336,12 @@ ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& probl
   const Layout layout = fit::make_layout(problem, options.set);
   const int n = layout.fitted;
   ConsistentFitSummary summary;
-  summary.names = problem.names;
+  summary.parameters = problem.parameters;
   summary.prior = problem.prior;
   summary.notes = layout.notes;
   summary.variables = layout.variables;
 
-  Eigen::MatrixXd A(problem.A.rows(), n);
-  for (int i = 0; i < n; ++i) A.col(i) = problem.A.col(layout.y_to_p[static_cast<std::size_t>(i)]);
+  Eigen::MatrixXd A = problem.A(Eigen::all, layout.y_to_p);
   Eigen::VectorXd b = problem.b;
   double constant = 0;  // the part of b that no parameter reaches; kept apart, it would only cost digits
   if (A.rows() > n) {

@@ -29,10 +29,10 @@ std::string ConsistentFitSummary::full_report() const {
   fmt::format_to(out, "Ceres: {}\n", message);
   for (const std::string& note : notes) fmt::format_to(out, "note: {}\n", note);
   fmt::format_to(out, "{:<24}{:>14}{:>14}{:>12}{:>8}\n", "parameter", "prior", "value", "std", "data");
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    fmt::format_to(out, "{:<24}{:>14.6g}{:>14.6g}{:>12.2e}{:>7.0f}%{}\n", names[i], prior(k), p(k), std(k), 100 * data_share(k),
-                   fitted[i] ? "" : "  not fitted");
+    fmt::format_to(out, "{:<24}{:>14.6g}{:>14.6g}{:>12.2e}{:>7.0f}%{}\n", parameter_name(parameters[i]), prior(k), p(k), std(k),
+                   100 * data_share(k), fitted[i] ? "" : "  not fitted");
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include "deltadyn/core/sign.hpp"
 #include "deltadyn/effects/side_load.hpp"
 #include "deltadyn/runtime/changed_machine.hpp"
+#include "deltadyn/runtime/drive_inertia.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/differentiate.hpp"
@@ -24,22 +25,6 @@ constexpr double kLag = 1e-4;  // [rad | m], as small
 [[noreturn]] void refuse(const PreparedLog& log, Index sample, Status status) {
   throw Error(fmt::format("{} at t_s = {:.6g}", message(status), log.t_s(sample)), log.file,
               "check that the robot file belongs to this machine, and zero, sign and unit of the drive positions");
-}
-
-/// Inertia of each drive with the others held, in the middle of the workspace.
-VectorXd drive_inertia(const Robot& robot, const VectorXd& p) {
-  const Index n = robot.drives();
-  VectorXd q = VectorXd::Zero(n);
-  for (Index j = 0; j < n; ++j) {
-    const DriveLimits& limits = robot.description().limits[static_cast<std::size_t>(j)];
-    if (std::isfinite(limits.lower + limits.upper)) q(j) = 0.5 * (limits.lower + limits.upper);
-  }
-  MatrixXd M(n, n);
-  if (robot.mass_matrix(q, p, M) != Status::ok && robot.mass_matrix(VectorXd::Zero(n), p, M) != Status::ok) {
-    throw Error("the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
-                robot.description().name, "mend the limits of the drives in the robot file");
-  }
-  return M.diagonal().cwiseMax(1e-12);
 }
 
 /// Places for the columns of one effect.
@@ -217,11 +202,10 @@ std::vector<MachineDifference> differences_of(EffectList<Effects...>, const Robo
 }  // namespace
 
 EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effect_states(robot.description())) {
-  for (std::size_t k = 0; k < robot.parameter_names().size(); ++k) {
-    const std::string& name = robot.parameter_names()[k];
-    if (name.rfind("drive", 0) == 0) own_friction_.push_back(static_cast<int>(k));
-    if (name.find(".viscous") != std::string::npos || name.find(".coulomb") != std::string::npos)
-      friction_.push_back(static_cast<int>(k));
+  for (int k = 0; k < robot.parameters(); ++k) {
+    const ParameterId& id = robot.parameter_ids()[static_cast<std::size_t>(k)];
+    if (id.kind != ParameterKind::inertial && id.number > 0) own_friction_.push_back(k);
+    if (id.is_friction()) friction_.push_back(k);
   }
   gravity_ = gravity_of_limbs(robot.description());
   differences_ = differences_of(AllEffects(), robot);

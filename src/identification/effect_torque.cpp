@@ -71,7 +71,7 @@ AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, con
       y.conservativeResize(row + count);
       for (Index k = 0; k < prepared.rows; ++k) {
         if (!counts(k)) continue;
-        for (Index c = 0; c < b; ++c) X(row, c) = block.Y[drive](k, base.independent[static_cast<std::size_t>(c)]);
+        X.row(row).head(b) = block.Y[drive].row(k)(base.independent);
         X.row(row).tail(e) = extra[drive].row(k).cwiseProduct((1 - out.fixed.array()).matrix().transpose());
         y(row) = block.tau(k, j) - extra[drive].row(k).dot(out.fixed.cwiseProduct(start));
         ++row;

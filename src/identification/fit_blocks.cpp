@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <string_view>
 
 #include "deltadyn/runtime/error.hpp"
 
@@ -27,33 +26,24 @@ constexpr double kTiny = 1e-3;      // a prior below this part of its natural sc
 
 /// What section VI keeps of a body.
 struct Reduction {
-  std::string_view body;
   BlockKind shape;
   std::vector<int> entries, variables;
   int axes[2];
   int inertia;
 };
 
-const std::vector<Reduction>& reductions() {
+const Reduction& reduction_of(Body body) {
   using namespace log_cholesky;
   static const std::vector<Reduction> table = {
-      {"upper_arm", BlockKind::planar, {kM, kMcx, kMcz, kIyy}, {kD1, kD3, kT1, kT3}, {0, 2}, kIyy},
-      {"strut", BlockKind::spatial, {kM, kMcx, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT1}, {0, 0}, 0},
-      {"platform", BlockKind::point, {kM}, {kAlpha}, {0, 0}, 0},
-      {"tool", BlockKind::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
-      {"telescope_upper", BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
-      {"telescope_lower", BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
+      // in the order of Body
+      {BlockKind::planar, {kM, kMcx, kMcz, kIyy}, {kD1, kD3, kT1, kT3}, {0, 2}, kIyy},
+      {BlockKind::spatial, {kM, kMcx, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT1}, {0, 0}, 0},
+      {BlockKind::point, {kM}, {kAlpha}, {0, 0}, 0},
+      {BlockKind::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
+      {BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
+      {BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
   };
-  return table;
-}
-
-const Reduction* find_reduction(const std::string& body) {
-  const auto digits = body.find_last_not_of("0123456789");
-  const std::string kind = digits == std::string::npos ? body : body.substr(0, digits + 1);
-  for (const Reduction& reduction : reductions()) {
-    if (reduction.body == kind) return &reduction;
-  }
-  return nullptr;
+  return table.at(static_cast<std::size_t>(body));
 }
 
 /// Rules that hold for the inertia about any point: mass and triangle inequality.
@@ -219,10 +209,8 @@ void make_matrices(Block& block) {
     if (block.has_reference) add_scalar(block.metric);
   }
   if (block.metric.size == 0) return;
-  Eigen::VectorXd y(block.fitted());
-  for (int i = 0; i < block.fitted(); ++i) y(i) = block.anchor(block.entries[static_cast<std::size_t>(i)]);
   const int n = block.metric.size;
-  const Eigen::MatrixXd reference = block.metric(y).topLeftCorner(n, n);
+  const Eigen::MatrixXd reference = block.metric(block.anchor(block.entries)).topLeftCorner(n, n);
   const Eigen::LLT<Eigen::MatrixXd> factor(reference);
   block.metric_root.topLeftCorner(n, n) = factor.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
 }
@@ -241,11 +229,11 @@ Vector10 natural_scale(const Vector10& anchor) {
 }
 
 void check_sizes(const ConsistentFitProblem& problem) {
-  const auto P = static_cast<Eigen::Index>(problem.names.size());
+  const auto P = static_cast<Eigen::Index>(problem.parameters.size());
   auto require = [](bool good, const std::string& what, const std::string& where) {
-    if (!good) throw Error(what, "consistent fit, " + where, "give one entry for each parameter name");
+    if (!good) throw Error(what, "consistent fit, " + where, "give one entry for each parameter");
   };
-  require(P > 0, "there are no parameters", "names");
+  require(P > 0, "there are no parameters", "parameters");
   require(problem.A.cols() == P, fmt::format("{} columns for {} parameters", problem.A.cols(), P), "A");
   require(problem.A.rows() > 0 && problem.b.size() == problem.A.rows(),
           fmt::format("{} values for {} rows of A", problem.b.size(), problem.A.rows()), "b");
@@ -256,7 +244,7 @@ void check_sizes(const ConsistentFitProblem& problem) {
     throw Error("a value is not finite", "consistent fit, A or b", "look for gaps or overflows in the log");
   }
   for (Eigen::Index i = 0; i < P; ++i) {
-    const std::string& name = problem.names[static_cast<std::size_t>(i)];
+    const std::string name = parameter_name(problem.parameters[static_cast<std::size_t>(i)]);
     if (!std::isfinite(problem.prior(i))) throw Error("the prior is not a finite number", "prior, " + name, "give a number");
     if (problem.prior_std.size() > 0 && !(problem.prior_std(i) > 0)) {
       throw Error("the prior's standard deviation must be positive", "prior, " + name, "give a number above 0");
@@ -264,18 +252,16 @@ void check_sizes(const ConsistentFitProblem& problem) {
   }
 }
 
-Block make_body(const ConsistentFitProblem& problem, int column, const std::string& name, ParameterSet set, Layout& layout) {
-  const Reduction* reduction = find_reduction(name);
-  if (reduction == nullptr) {
-    throw Error(fmt::format("there is no body '{}'", name), "consistent fit, names",
-                "bodies are upper_arm, strut, platform, tool, telescope_upper, telescope_lower, with the limb number behind");
-  }
-  for (int i = 0; i < kInertialParameters; ++i) {
-    const auto index = static_cast<std::size_t>(column + i);
-    if (index >= problem.names.size() || problem.names[index] != name + "." + kInertialNames[i]) {
+Block make_body(const ConsistentFitProblem& problem, int column, ParameterSet set, Layout& layout) {
+  ParameterId id = problem.parameters[static_cast<std::size_t>(column)];
+  const Body body = id.body;
+  const std::string name = owner_name(id);
+  for (id.entry = 0; id.entry < kInertialParameters; ++id.entry) {
+    const auto index = static_cast<std::size_t>(column + id.entry);
+    if (index >= problem.parameters.size() || problem.parameters[index] != id) {
       throw Error(
-          fmt::format("the ten parameters of body '{}' do not stand together, '{}' is not in its place", name, kInertialNames[i]),
-          "consistent fit, names", "keep the order m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz");
+          fmt::format("the ten parameters of body '{}' do not stand together, '{}' is not in its place", name, quantity_name(id)),
+          "consistent fit, parameters", "keep the order m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz");
     }
   }
   const Vector10 prior = problem.prior.segment<10>(column);
@@ -290,12 +276,13 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
       block.variables.push_back(i);
     }
   } else {
-    block.shape = reduction->shape;
-    block.entries = reduction->entries;
-    block.variables = reduction->variables;
-    std::copy(reduction->axes, reduction->axes + 2, block.axes);
-    block.inertia = reduction->inertia;
-    block.fixed_alpha = reduction->body == "upper_arm";
+    const Reduction& reduction = reduction_of(body);
+    block.shape = reduction.shape;
+    block.entries = reduction.entries;
+    block.variables = reduction.variables;
+    std::copy(reduction.axes, reduction.axes + 2, block.axes);
+    block.inertia = reduction.inertia;
+    block.fixed_alpha = body == Body::upper_arm;
     if (block.fixed_alpha) {
       // a carriage on a prismatic drive does not turn: only its mass is seen, as for the plate
       const auto seen = [&](int entry) { return problem.A.col(column + entry).cwiseAbs().maxCoeff() > 0; };
@@ -352,18 +339,14 @@ Block make_body(const ConsistentFitProblem& problem, int column, const std::stri
   return block;
 }
 
-Block make_scalar(const ConsistentFitProblem& problem, int column, const std::string& name, Layout& layout) {
+Block make_scalar(const ConsistentFitProblem& problem, int column, Layout& layout) {
+  const ParameterId& id = problem.parameters[static_cast<std::size_t>(column)];
+  const std::string name = parameter_name(id);
   Block block;
   block.name = name;
   block.column = column;
   block.entries = {0};
-  const std::string kind = name.substr(name.find('.') + 1);
-  if (kind == "viscous" || kind == "coulomb" || kind == "rotor_inertia") {
-    block.shape = BlockKind::positive;
-  } else if (kind != "offset") {
-    throw Error(fmt::format("parameter '{}' is unknown", name), "consistent fit, names",
-                "scalars are viscous, coulomb, rotor_inertia and offset of a joint");
-  }
+  if (id.kind != ParameterKind::offset) block.shape = BlockKind::positive;
   const double prior = problem.prior(column);
   if (block.shape == BlockKind::positive && prior < 0) {
     throw Error(fmt::format("the prior {:g} of '{}' is negative", prior, name), "prior, " + name,
@@ -407,17 +390,11 @@ double split_inertia(double mass, double a, double b, double inertia) {
 Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set) {
   check_sizes(problem);
   Layout layout;
-  layout.parameters = static_cast<int>(problem.names.size());
+  layout.parameters = static_cast<int>(problem.parameters.size());
   layout.scale.resize(layout.parameters);
   for (int column = 0; column < layout.parameters;) {
-    const std::string& name = problem.names[static_cast<std::size_t>(column)];
-    const auto dot = name.find('.');
-    if (dot == std::string::npos) {
-      throw Error(fmt::format("parameter '{}' is unknown", name), "consistent fit, names", "names are BODY.m or JOINT.viscous");
-    }
-    const bool body = name.substr(dot + 1) == kInertialNames[0];
-    layout.blocks.push_back(body ? make_body(problem, column, name.substr(0, dot), set, layout)
-                                 : make_scalar(problem, column, name, layout));
+    const bool body = problem.parameters[static_cast<std::size_t>(column)].kind == ParameterKind::inertial;
+    layout.blocks.push_back(body ? make_body(problem, column, set, layout) : make_scalar(problem, column, layout));
     column += body ? kInertialParameters : 1;
   }
   for (Block& block : layout.blocks) {
@@ -430,15 +407,14 @@ Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set) {
   for (Block& block : layout.blocks) {
     if (block.shape == BlockKind::planar) block.split = layout.convex++;
   }
-  layout.prior.resize(layout.fitted);
-  for (int i = 0; i < layout.fitted; ++i) layout.prior(i) = problem.prior(layout.y_to_p[static_cast<std::size_t>(i)]);
+  layout.prior = problem.prior(layout.y_to_p);
   return layout;
 }
 
 Eigen::VectorXd convex_start(const Layout& layout) {
   Eigen::VectorXd x(layout.convex);
   for (const Block& block : layout.blocks) {
-    for (int i = 0; i < block.fitted(); ++i) x(block.y + i) = block.anchor(block.entries[static_cast<std::size_t>(i)]);
+    x.segment(block.y, block.fitted()) = block.anchor(block.entries);
     if (block.split < 0) continue;
     // in the middle of the splits that leave the mass room: Sa / Sb = |a| / |b|
     const double a = std::abs(block.anchor(kMcx + block.axes[0])), b = std::abs(block.anchor(kMcx + block.axes[1]));

@@ -69,7 +69,7 @@ struct Layout {
   std::vector<std::string> notes;
 };
 
-/// Checks sizes, names and prior; throws deltadyn::Error.
+/// Checks sizes, parameters and prior; throws deltadyn::Error.
 [[nodiscard]] Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set);
 
 /// The start of the convex problem: the anchors, strictly inside every cone.

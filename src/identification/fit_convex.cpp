@@ -24,7 +24,7 @@ constexpr int kMaxNewton = 400;
 
 ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
     : layout_(layout), A_(A), b_(b), scale_(layout.convex), centring_(Eigen::VectorXd::Zero(layout.convex)) {
-  for (int i = 0; i < layout.fitted; ++i) scale_(i) = layout.scale(layout.y_to_p[static_cast<std::size_t>(i)]);
+  scale_.head(layout.fitted) = layout.scale(layout.y_to_p);
   for (const Block& block : layout.blocks) {
     if (block.split >= 0) scale_(block.split) = block.anchor(block.inertia);
   }

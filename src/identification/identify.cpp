@@ -230,7 +230,7 @@ class Identifier {
     out_.base_estimate = estimate_base_parameters(out_.base, folds);
     if (options_.robust) {
       folds = reweighted();
-    } else if (options_.compensate_noise && options_.processing.filter && !averages_periods(rows_.prepared)) {
+    } else if (options_.processing.filter && !averages_periods(rows_.prepared)) {
       out_.noise_share = acceleration_noise_share(logs_, rows_.prepared, out_.processing);
       // By about this share noise pulls an inertia down.
       const double best_known = (out_.base_estimate.std().array() / out_.base_estimate.value.array().abs()).minCoeff();
@@ -275,7 +275,7 @@ class Identifier {
 
   void fit(const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std) {
     ConsistentFitProblem problem;
-    problem.names = robot_.parameter_names();
+    problem.parameters = robot_.parameter_ids();
     problem.A = out_.base_estimate.A;
     problem.b = out_.base_estimate.b;
     problem.prior = prior;

@@ -42,12 +42,6 @@ void take_off(const BaseParameters& base, const NoiseBias& bias, const Eigen::Ve
   take_off_noise(base, information, torque, A, b);
 }
 
-Eigen::MatrixXd columns(const Eigen::MatrixXd& A, const std::vector<int>& which) {
-  Eigen::MatrixXd out(A.rows(), static_cast<Index>(which.size()));
-  for (std::size_t k = 0; k < which.size(); ++k) out.col(static_cast<Index>(k)) = A.col(which[k]);
-  return out;
-}
-
 /// Names what a direction of beta-space is made of, for messages.
 std::string weakest(const BaseParameters& base, const Eigen::VectorXd& direction) {
   std::string text;
@@ -63,7 +57,7 @@ std::string weakest(const BaseParameters& base, const Eigen::VectorXd& direction
 Eigen::VectorXd any_parameters(const BaseParameters& base, const Eigen::Ref<const Eigen::VectorXd>& beta,
                                Eigen::Index parameters) {
   Eigen::VectorXd p = Eigen::VectorXd::Zero(parameters);
-  for (Index k = 0; k < beta.size(); ++k) p(base.independent[static_cast<std::size_t>(k)]) = beta(k);
+  p(base.independent) = beta;
   return p;
 }
 
@@ -85,7 +79,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
   for (int pass = 0; pass < 4; ++pass) {
     stack(folds, weight, out.A, out.b);
     if (bias != nullptr) take_off(base, *bias, weight, out.A, out.b);
-    Eigen::MatrixXd A_B = columns(out.A, base.independent);
+    Eigen::MatrixXd A_B = out.A(Eigen::all, base.independent);
     Eigen::VectorXd norm = A_B.colwise().norm().cwiseMax(1e-300);
     const double largest = norm.maxCoeff();
     A_B *= norm.cwiseInverse().asDiagonal();
@@ -110,7 +104,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     const Eigen::VectorXd p = any_parameters(base, out.value, P);
     for (Index j = 0; j < drives; ++j) {
       const DriveFold& fold = folds[static_cast<std::size_t>(j)];
-      const double share = std::min(0.9, weight(j) * weight(j) * (columns(fold.R, base.independent) * root).squaredNorm() /
+      const double share = std::min(0.9, weight(j) * weight(j) * (fold.R(Eigen::all, base.independent) * root).squaredNorm() /
                                              std::max<double>(1.0, static_cast<double>(fold.rows)));
       DriveNoise& noise = out.noise[static_cast<std::size_t>(j)];
       const double floor = 1e-9 * std::max(fold.tau_max, 1e-12);  // noise-free logs
@@ -124,7 +118,7 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
 
 void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covariance, BaseEstimate& estimate) {
   // With A_B^T A_B the information, its inverse plus C has the information A_B^T (1 + A_B C A_B^T)^-1 A_B.
-  const Eigen::MatrixXd A_B = columns(estimate.A, base.independent);
+  const Eigen::MatrixXd A_B = estimate.A(Eigen::all, base.independent);
   const Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(A_B.rows(), A_B.rows()) + A_B * covariance * A_B.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);
   const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(1.0).cwiseSqrt();

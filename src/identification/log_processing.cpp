@@ -23,7 +23,6 @@ constexpr Index kFewestRows = 20;
 constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
-constexpr double kBreakaway_s = 0.02;   // a joint needs about so long to slide again after a reversal
 constexpr double kRest_s = 0.05;        // slow for longer is no reversal but rest, where static friction takes any value
 constexpr double kForgotten = 3.0;      // displacements after which a bristle has forgotten how the log began (5 % left)
 
@@ -117,17 +116,14 @@ std::vector<char> unknown_start(const Eigen::Ref<const Eigen::VectorXd>& rate, d
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
 /// the drives of the limbs (the bar's length does not depend on psi). A joint whose friction builds up over a displacement needs no
 /// sign: there only rest is uncertain.
-/// \param grow  samples on either side that count, too
-void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, Index grow,
-                    PreparedLog& log) {
+void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
   std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
     const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
-    mask.push_back(
-        reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), grow));
+    mask.push_back(reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), 0));
     rest.push_back(rest_of(mask.back(), log.rate_hz));
     if (const double displacement = value_or_none(options.presliding, j); displacement > 0)
       mask.back() = unknown_start(rates.col(j), displacement, log.rate_hz);
@@ -257,7 +253,7 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
     if (out.torque_out.size() > 0) out.torque_out.row(k) = mean.log.torque_out.row(phase);
   }
   out.period_s = period_s;
-  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)) / std::sqrt(static_cast<double>(mean.periods)), 0,
+  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)) / std::sqrt(static_cast<double>(mean.periods)),
                  out);
   out.notes.push_back(fmt::format("{}: periodic, {} periods of {:.6g} s averaged, {} harmonics", log.file, mean.periods, period_s,
                                   mean.series.harmonics));
@@ -292,13 +288,9 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   out.q = std::move(motion.q);
   out.qd = std::move(motion.qd);
   out.qdd = std::move(motion.qdd);
-  out.stride = std::max(1, options.stride);
-  Index reach = 0;
-  if (options.low_pass_torque) {
-    out.low_pass = low_pass_of(out.rate_hz, options);
-    out.stride = out.low_pass->factor();
-    reach = out.low_pass->half_width();
-  }
+  out.low_pass = low_pass_of(out.rate_hz, options);
+  out.stride = out.low_pass->factor();
+  const Index reach = out.low_pass->half_width();
   out.first = std::max(reach, motion.first);
   const Index last = std::min(samples - reach, motion.last);
   out.rows = last > out.first ? (last - out.first + out.stride - 1) / out.stride : 0;
@@ -309,9 +301,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
                 fmt::format("record at least {:.3g} s, or raise the cut-off",
                             static_cast<double>(2 * out.first + kFewestRows * out.stride) / out.rate_hz));
   }
-  // Without the low pass, what follows a reversal (the joint breaking away) is kept out by a margin of its own.
-  const Index grow = options.low_pass_torque ? 0 : static_cast<Index>(std::lround(kBreakaway_s * out.rate_hz));
-  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)), grow, out);
+  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)), out);
   return out;
 }
 
@@ -319,16 +309,6 @@ bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
   const auto begin = log.filled.begin() + (log.filled.empty() ? 0 : first);
   if (!log.filled.empty() && std::find(begin, begin + count, Log::kLeftOut) != begin + count) return true;
   return log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
-}
-
-std::vector<Index> coulomb_columns(const Robot& robot) {
-  std::vector<Index> columns;
-  const std::vector<std::string>& names = robot.parameter_names();
-  for (int joint = 0; joint < robot.friction_joints(); ++joint) {
-    const std::string name = joint < robot.drives() ? fmt::format("drive{}.coulomb", joint + 1) : "telescope.coulomb";
-    columns.push_back(std::find(names.begin(), names.end(), name) - names.begin());
-  }
-  return columns;
 }
 
 void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {

@@ -99,13 +99,7 @@ struct BandRows {
     RowBlock above, below;
     read_rows(robot, wide, 0, wide.rows, above);
     read_rows(robot, narrow, 0, narrow.rows, below);
-    for (std::size_t j = 0; j < above.Y.size(); ++j) {
-      Y.emplace_back(wide.rows, base.count());
-      for (int b = 0; b < base.count(); ++b) {
-        const int column = base.independent[static_cast<std::size_t>(b)];
-        Y.back().col(b) = above.Y[j].col(column) - below.Y[j].col(column);
-      }
-    }
+    for (std::size_t j = 0; j < above.Y.size(); ++j) Y.emplace_back((above.Y[j] - below.Y[j])(Eigen::all, base.independent));
     tau = above.tau - below.tau;
     all = std::move(above.tau);
     use = std::move(below.use);

@@ -35,9 +35,7 @@ struct Products {
 
 /// Base columns of one drive's rows; rows that the fit does not use are zero.
 MatrixXd base_rows(const BaseParameters& base, const RowBlock& block, std::size_t drive, const Eigen::VectorXd& used) {
-  MatrixXd Y(block.rows(), base.count());
-  for (Index c = 0; c < Y.cols(); ++c) Y.col(c) = block.Y[drive].col(base.independent[static_cast<std::size_t>(c)]);
-  return used.asDiagonal() * Y;
+  return used.asDiagonal() * block.Y[drive](Eigen::all, base.independent);
 }
 
 /// The rows that two readings of one log share are made the only ones of both.
@@ -131,8 +129,7 @@ NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::
 
 void take_off_noise(const BaseParameters& base, const MatrixXd& information, const VectorXd& torque, MatrixXd& R, VectorXd& d) {
   const Index count = base.count();
-  MatrixXd R_base(R.rows(), count);
-  for (Index c = 0; c < count; ++c) R_base.col(c) = R.col(base.independent[static_cast<std::size_t>(c)]);
+  const MatrixXd R_base = R(Eigen::all, base.independent);
   const VectorXd scale = R_base.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd G = scale.asDiagonal() * (R_base.transpose() * R_base) * scale.asDiagonal();
   const MatrixXd D = scale.asDiagonal() * information * scale.asDiagonal();

@@ -13,11 +13,7 @@ BaseRows base_rows(const Robot& robot, const BaseParameters& base, const Prepare
   RowBlock block;
   read_rows(robot, log, 0, log.rows, block);
   BaseRows out;
-  for (const MatrixXd& Y : block.Y) {
-    MatrixXd X(Y.rows(), base.count());
-    for (Index c = 0; c < base.count(); ++c) X.col(c) = Y.col(base.independent[static_cast<std::size_t>(c)]);
-    out.X.push_back(std::move(X));
-  }
+  for (const MatrixXd& Y : block.Y) out.X.emplace_back(Y(Eigen::all, base.independent));
   out.tau = std::move(block.tau);
   use = std::move(block.use);
   return out;

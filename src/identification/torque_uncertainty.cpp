@@ -29,10 +29,10 @@ TorqueUncertainty torque_uncertainty(const Robot& robot, const BaseParameters& b
   }
   TorqueUncertainty out;
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(n), square = Eigen::VectorXd::Zero(n);
-  Eigen::MatrixXd Y(n, robot.parameters()), Y_B(n, count);
+  Eigen::MatrixXd Y(n, robot.parameters());
   for (Index k = 0; k < q.rows(); ++k) {
     if (robot.regressor(q.row(k).transpose(), qd.row(k).transpose(), qdd.row(k).transpose(), Y) != Status::ok) continue;
-    for (Index i = 0; i < count; ++i) Y_B.col(i) = Y.col(base.independent[static_cast<std::size_t>(i)]);
+    const Eigen::MatrixXd Y_B = Y(Eigen::all, base.independent);
     variance += (Y_B * covariance).cwiseProduct(Y_B).rowwise().sum().cwiseMax(0.0);
     square += (Y * p).cwiseAbs2();
     ++out.states;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn::model_export {
@@ -48,10 +49,9 @@ Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Ef
   for (const Effect& effect : effects) {
     if (!add_as_parameter(effect, parts.values)) parts.effects.push_back(effect);
   }
-  for (const std::string& name : names) {
-    const auto dot = name.rfind(".m");
-    if (dot == std::string::npos || dot + 2 != name.size()) continue;
-    const std::string body = name.substr(0, dot);
+  for (const ParameterId& id : robot.parameter_ids()) {
+    if (id.kind != ParameterKind::inertial || id.entry != inertial::kM) continue;
+    const std::string body = owner_name(id);
     const InertialVector<double> ten = parts.body(body);
     if (ten.cwiseAbs().maxCoeff() > 0 && !(ten(0) > 0))
       throw Error(fmt::format("body {} has mass {} kg", body, ten(0)), "",

@@ -44,12 +44,10 @@ void add_rotor_inertias(const RobotDescription& robot, model_export::Parts& part
 void drop_bodies_without_mass(model_export::Parts& parts) {
   std::vector<std::string> empty;
   for (const auto& [name, value] : parts.values) {
-    const auto dot = name.rfind('.');
-    if (name.substr(dot) == ".m" && value == 0) empty.push_back(name.substr(0, dot));
+    const auto id = parameter_id(name);
+    if (id && id->kind == ParameterKind::inertial && parts.value(owner_name(*id) + ".m") == 0) empty.push_back(name);
   }
-  for (const std::string& body : empty) {
-    for (const char* inertial : kInertialNames) parts.values.erase(body + "." + inertial);
-  }
+  for (const std::string& name : empty) parts.values.erase(name);
 }
 
 }  // namespace

@@ -66,14 +66,9 @@ std::string canonical_unit(const std::string& unit) {
 std::vector<std::string> plausible_units(const std::string& name) {
   const auto dot = name.rfind('.');
   const std::string quantity = dot == std::string::npos ? name : name.substr(dot + 1);
-  if (quantity == "m") return {"kg"};
-  if (quantity == "mcx" || quantity == "mcy" || quantity == "mcz") return {"kg*m"};
-  for (const char* inertia : {"Ixx", "Iyy", "Izz", "Ixy", "Iyz", "Ixz"}) {
-    if (quantity == inertia) return {"kg*m^2"};
-  }
-  if (quantity == "viscous") return {"N*m*s/rad", "N*s/m"};
-  if (quantity == "coulomb" || quantity == "offset") return {"N*m", "N"};
-  if (quantity == "rotor_inertia") return {"kg*m^2", "kg"};
+  for (int k = 0; k < kInertialParameters; ++k)
+    if (quantity == kInertialNames[k]) return {kInertialUnits[k]};
+  if (const auto id = parameter_id("drive1." + quantity)) return {parameter_unit(*id, true), parameter_unit(*id, false)};
   if (quantity == kPresliding) return {"rad", "m"};
   if (quantity == kPresliding + "_damping") return {"s"};
   if (quantity == "waves") return {"waves/turn", "waves/m", "1/rad", "1/m"};
@@ -87,24 +82,11 @@ bool same_unit(const std::string& a, const std::string& b) {
 
 /// "upper_arm2.m" -> "upper_arm.m"; empty if the name is not one of a single limb.
 std::string shared_name(const std::string& name) {
-  for (const std::string body : {"upper_arm", "strut"}) {
-    if (name.compare(0, body.size(), body) != 0) continue;
-    const auto dot = name.find('.');
-    if (dot == std::string::npos || dot == body.size()) return {};
-    const bool number =
-        std::all_of(name.begin() + static_cast<std::ptrdiff_t>(body.size()), name.begin() + static_cast<std::ptrdiff_t>(dot),
-                    [](unsigned char c) { return std::isdigit(c) != 0; });
-    return number ? body + name.substr(dot) : std::string();
-  }
-  return {};
-}
-
-/// "upper_arm2" -> upper_arm; nothing if it is no body.
-std::optional<Body> body_of(std::string name) {
-  while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back())) != 0) name.pop_back();
-  for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper, Body::telescope_lower})
-    if (name == deltadyn::name(body)) return body;
-  return std::nullopt;
+  std::optional<ParameterId> id = parameter_id(name);
+  if (!id || id->kind != ParameterKind::inertial || id->number == 0) return {};
+  if (id->body != Body::upper_arm && id->body != Body::strut) return {};
+  id->number = 0;
+  return parameter_name(*id);
 }
 
 }  // namespace
@@ -171,21 +153,23 @@ ParameterTable read_parameters(const std::string& path) {
 
 ParameterTable read_parameters(const std::string& path, const RobotDescription& robot) {
   ParameterTable table = read_parameters(path);
-  std::map<std::string, std::pair<InertialVector<double>, long>> bodies;  // with the line of the first row
+  struct FileBody {
+    Body kind;
+    long line;  // of the first row
+    InertialVector<double> p = InertialVector<double>::Zero();
+  };
+  std::map<std::string, FileBody> bodies;
   for (const ParameterEntry& entry : table.entries) {
-    const auto dot = entry.name.rfind('.');
-    if (dot == std::string::npos) continue;
-    const std::string owner = entry.name.substr(0, dot), quantity = entry.name.substr(dot + 1);
-    const auto* place_in_body = std::find(std::begin(kInertialNames), std::end(kInertialNames), quantity);
-    if (place_in_body == std::end(kInertialNames)) {
-      plausibility::require_joint_parameter(quantity, entry.value, entry.name, place(path, entry.line, "value"));
-    } else if (body_of(owner)) {
-      auto& body = bodies.try_emplace(owner, InertialVector<double>(InertialVector<double>::Zero()), entry.line).first->second;
-      body.first(place_in_body - std::begin(kInertialNames)) = entry.value;
+    const auto id = parameter_id(entry.name);
+    if (!id) continue;
+    if (id->kind == ParameterKind::inertial) {
+      bodies.try_emplace(owner_name(*id), FileBody{id->body, entry.line}).first->second.p(id->entry) = entry.value;
+    } else {
+      plausibility::require_joint_parameter(id->kind, entry.value, entry.name, place(path, entry.line, "value"));
     }
   }
   for (const auto& [name, body] : bodies)
-    plausibility::require_body(robot, *body_of(name), body.first, name, place(path, body.second, "value"));
+    plausibility::require_body(robot, body.kind, body.p, name, place(path, body.line, "value"));
   return table;
 }
 
@@ -298,7 +282,10 @@ ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDe
   };
   ParameterOptions options;
   options.individual_limbs = any([](const std::string& name) { return !shared_name(name).empty(); });
-  options.tool = any([](const std::string& name) { return name.compare(0, 5, "tool.") == 0; });
+  options.tool = any([](const std::string& name) {
+    const auto id = parameter_id(name);
+    return id && id->kind == ParameterKind::inertial && id->body == Body::tool;
+  });
   for (int drive = 1; drive <= robot.drives(); ++drive) {
     if (table.find(fmt::format("drive{}.rotor_inertia", drive)) != nullptr) options.rotor_inertia.push_back(drive);
     options.offset = options.offset || table.find(fmt::format("drive{}.offset", drive)) != nullptr;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/report/format.hpp"
 
 #include "assessment_limits.hpp"
@@ -157,7 +158,7 @@ struct SourceCounts {
 
 SourceCounts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
   SourceCounts counts;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     if (!fit.fitted[i]) continue;
     ++counts.fitted;
     switch (decided_by(fit, visibility[i], static_cast<Index>(i))) {
@@ -196,19 +197,15 @@ std::string trusted_values(const ConsistentFitSummary& fit, const std::vector<Vi
 
   std::vector<std::string> names;
   int friction = 0, friction_from_data = 0;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const std::string& name = fit.names[i];
-    if (name.ends_with(".viscous") || name.ends_with(".coulomb")) {
-      ++friction;
-      friction_from_data += measured(i) ? 1 : 0;
-    }
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    if (!fit.parameters[i].is_friction()) continue;
+    ++friction;
+    friction_from_data += measured(i) ? 1 : 0;
   }
   const bool all_friction = friction > 0 && friction == friction_from_data;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const std::string& name = fit.names[i];
-    const bool is_friction = name.ends_with(".viscous") || name.ends_with(".coulomb");
-    if (all_friction && is_friction) continue;
-    if (measured(i)) names.push_back(name);
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    if (all_friction && fit.parameters[i].is_friction()) continue;
+    if (measured(i)) names.push_back(parameter_name(fit.parameters[i]));
   }
   if (all_friction) names.insert(names.begin(), "friction of all joints");
   constexpr std::size_t kNamed = 8;  // more do not fit a line; all stand in the table
@@ -227,12 +224,10 @@ std::vector<std::string> urgent_gaps(const std::vector<PriorGap>& gaps) {
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion || gap.negligible || lines.size() == kNamed) continue;
-      const std::string& first = gap.parameters.front();
-      if (!by_motion && !first.starts_with("m (")) continue;
-      const auto bracket = first.find(" (");
-      const std::string share = first.substr(bracket + 2, first.size() - bracket - 3);
-      lines.push_back(fmt::format("{}.{} {} (data share {}): {}.", gap.owner, first.substr(0, bracket),
-                                  by_motion ? "hardly shows in these logs" : "comes from the prior", share, gap.advice));
+      if (!by_motion && (gap.first.kind != ParameterKind::inertial || gap.first.entry != inertial::kM)) continue;
+      lines.push_back(fmt::format("{} {} (data share {:.0f} %): {}.", parameter_name(gap.first),
+                                  by_motion ? "hardly shows in these logs" : "comes from the prior", 100 * gap.first_share,
+                                  gap.advice));
     }
   }
   return lines;

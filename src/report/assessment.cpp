@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/report/format.hpp"
 
 #include "assessment_limits.hpp"
@@ -37,13 +38,16 @@ Source source_of(double data_share) {
 namespace {
 
 /// What would show a parameter to the drives.
-std::string motion_advice(const std::string& parameter, const std::string& owner) {
-  if (parameter == "viscous") return "record longer stretches at high speed of " + owner;
-  if (parameter == "coulomb") return "record slow stretches of " + owner + " in both directions";
-  if (parameter == "rotor_inertia")
-    return "take it from the data sheet of the motor, or record stronger accelerations of " + owner;
-  if (parameter == "offset") return "record " + owner + " at the same positions in both directions";
-  return "record stronger accelerations and wider motions that move the " + owner;
+std::string motion_advice(const ParameterId& id) {
+  const std::string owner = owner_in_words(id);
+  switch (id.kind) {
+    case ParameterKind::viscous: return "record longer stretches at high speed of " + owner;
+    case ParameterKind::coulomb: return "record slow stretches of " + owner + " in both directions";
+    case ParameterKind::rotor_inertia:
+      return "take it from the data sheet of the motor, or record stronger accelerations of " + owner;
+    case ParameterKind::offset: return "record " + owner + " at the same positions in both directions";
+    default: return "record stronger accelerations and wider motions that move the " + owner;
+  }
 }
 
 }  // namespace
@@ -75,27 +79,27 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
     bool mass = false, centre = false, inertia = false;
   };
   std::vector<Missing> missing;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const double share = fit.data_share(static_cast<Eigen::Index>(i));
     if (!fit.fitted[i] || visibility[i] == Visibility::hidden || source_of(share) != Source::prior) continue;
-    const std::size_t dot = std::min(fit.names[i].find('.'), fit.names[i].size() - 1);
-    const std::string owner = fit.names[i].substr(0, dot), parameter = fit.names[i].substr(dot + 1);
+    const ParameterId& id = fit.parameters[i];
     const double acts = effect(static_cast<Eigen::Index>(i));
     const bool alone = visibility[i] == Visibility::alone, negligible = alone && acts < kNegligibleEffect,
                by_motion = alone && !negligible;
     auto found = std::find_if(gaps.begin(), gaps.end(), [&](const PriorGap& gap) {
-      return gap.owner == owner && gap.by_motion == by_motion && gap.negligible == negligible;
+      return gap.first.same_owner(id) && gap.by_motion == by_motion && gap.negligible == negligible;
     });
     if (found == gaps.end()) {
-      gaps.push_back({owner, {}, by_motion, negligible, by_motion ? motion_advice(parameter, owner_in_words(owner)) : ""});
+      gaps.push_back({id, share, {}, by_motion, negligible, by_motion ? motion_advice(id) : ""});
       missing.emplace_back();
       found = gaps.end() - 1;
     }
-    found->parameters.push_back(fmt::format("{} ({:.0f} %)", parameter, 100 * share));
+    found->parameters.push_back(fmt::format("{} ({:.0f} %)", quantity_name(id), 100 * share));
     Missing& what = missing[static_cast<std::size_t>(found - gaps.begin())];
-    what.mass |= parameter == "m";
-    what.centre |= parameter.starts_with("mc");
-    what.inertia |= parameter.starts_with("I");
+    if (id.kind != ParameterKind::inertial) continue;
+    what.mass |= id.entry == inertial::kM;
+    what.centre |= id.entry >= inertial::kMcx && id.entry <= inertial::kMcz;
+    what.inertia |= id.entry >= inertial::kIxx;
   }
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     if (gaps[k].by_motion) continue;
@@ -105,7 +109,7 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
     }
     const Missing& what = missing[k];
     std::vector<std::string> steps;
-    if (what.mass) steps.push_back("weigh the " + owner_in_words(gaps[k].owner));
+    if (what.mass) steps.push_back("weigh the " + owner_in_words(gaps[k].first));
     if (what.centre)
       steps.emplace_back(what.mass ? "balance it on an edge for its centre of mass"
                                    : "find its centre of mass (balance it on an edge, or CAD)");

@@ -334,11 +334,9 @@ std::vector<std::pair<std::string, std::string>> processing_facts(const Validati
     facts.emplace_back("Filter", "none: torque, positions, velocities and accelerations as in the log");
   } else {
     facts.emplace_back("Cut-off of the motion", fmt::format("{} (zero phase, -3 dB)", format_number(options.cutoff_hz, "Hz", 3)));
-    if (options.low_pass_torque) {
-      facts.emplace_back("Cut-off of torque and regressor",
-                         fmt::format("{} (the same linear-phase low pass, -6 dB)",
-                                     format_number(options.torque_cutoff_ratio * options.cutoff_hz, "Hz", 3)));
-    }
+    facts.emplace_back("Cut-off of torque and regressor",
+                       fmt::format("{} (the same linear-phase low pass, -6 dB)",
+                                   format_number(options.torque_cutoff_ratio * options.cutoff_hz, "Hz", 3)));
   }
   for (const ValidatedLog& log : validation.logs) {
     facts.emplace_back(short_name(log.file), fmt::format("{} samples at {}, {} rows at {}", format_count(log.samples),

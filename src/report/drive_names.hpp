@@ -24,15 +24,12 @@ inline std::string unbroken(const std::string& text) {
   return out;
 }
 
-/// A body or joint in plain words, e.g. "lower part of the telescope bar" for telescope_lower, "drive 2" for drive2.
-inline std::string owner_in_words(const std::string& owner) {
-  if (owner.starts_with("telescope_upper")) return "upper part of the telescope bar";
-  if (owner.starts_with("telescope_lower")) return "lower part of the telescope bar";
-  if (owner == "telescope") return "sliding joint of the telescope bar";
-  const auto digit = owner.find_last_not_of("0123456789") + 1;
-  std::string name = owner.substr(0, digit);
-  for (char& c : name) c = c == '_' ? ' ' : c;
-  return digit < owner.size() ? name + "\u00A0" + owner.substr(digit) : name;
+/// A body or joint in plain words, e.g. "lower part of the telescope bar", "drive 2".
+inline std::string owner_in_words(const ParameterId& id) {
+  if (id.kind != ParameterKind::inertial) return id.number > 0 ? drive_name(id.number - 1) : "sliding joint of the telescope bar";
+  constexpr const char* kWords[] = {
+      "upper arm", "strut", "platform", "tool", "upper part of the telescope bar", "lower part of the telescope bar"};  // of Body
+  return kWords[static_cast<int>(id.body)] + (id.number > 0 ? "\u00A0" + std::to_string(id.number) : "");
 }
 
 inline bool turns(const Robot& robot, int drive) {

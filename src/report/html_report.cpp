@@ -136,9 +136,6 @@ HtmlReport& HtmlReport::paragraph(const std::string& text) {
 HtmlReport& HtmlReport::note(const std::string& text) {
   return element("p", " class=\"note\"", text);
 }
-HtmlReport& HtmlReport::preformatted(const std::string& text) {
-  return element("pre", "", text);
-}
 
 HtmlReport& HtmlReport::list(const std::vector<std::string>& items) {
   if (items.empty()) return *this;

@@ -28,7 +28,7 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
                        tone_of(grade_residual(relative))});
   }
   int fitted = 0, from_prior = 0;
-  for (std::size_t i = 0; i < identification.fit.names.size(); ++i) {
+  for (std::size_t i = 0; i < identification.fit.parameters.size(); ++i) {
     if (!identification.fit.fitted[i]) continue;
     ++fitted;
     from_prior += source_of(identification.fit.data_share(static_cast<Eigen::Index>(i))) == Source::prior ? 1 : 0;

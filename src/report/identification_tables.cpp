@@ -75,18 +75,19 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
                {"shows in the torque", Align::left}});
   Table others({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
   bool any_neither = false;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const auto k = static_cast<Index>(i);
     const std::string unit = unbroken(pretty_unit(robot.parameter_units()[i]));
     if (!fit.fitted[i]) {
-      others.row({fit.names[i], unit, format_number(fit.prior(k)), format_number(fit.p(k)), words_for(visibility[i])});
+      others.row({parameter_name(fit.parameters[i]), unit, format_number(fit.prior(k)), format_number(fit.p(k)),
+                  words_for(visibility[i])});
       continue;
     }
     const Source source = source_of(fit.data_share(k));
     const DecidedBy decided = decided_by(fit, visibility[i], k);
     const bool neither = decided == DecidedBy::neither;
     any_neither |= neither;
-    table.row({fit.names[i], unit, format_number(fit.prior(k)),
+    table.row({parameter_name(fit.parameters[i]), unit, format_number(fit.prior(k)),
                neither ? format_number(fit.p(k), 2) + " (?)" : format_estimate(fit.p(k), kInterval95 * fit.std(k)),
                fmt::format("{:.0f} %", 100 * fit.data_share(k)), words_for(decided), unbroken(words_for(visibility[i]))},
               source != Source::prior               ? Tone::plain
@@ -156,9 +157,9 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion) continue;
-      table.row({gap.owner, unbroken_items(gap.parameters), gap.advice}, by_motion        ? Tone::caution
-                                                                         : gap.negligible ? Tone::muted
-                                                                                          : Tone::plain);
+      table.row({owner_name(gap.first), unbroken_items(gap.parameters), gap.advice}, by_motion        ? Tone::caution
+                                                                                     : gap.negligible ? Tone::muted
+                                                                                                      : Tone::plain);
     }
   }
   report.table(table,

@@ -106,34 +106,26 @@ Ten strut(const RobotDescription& robot, const PartShapes& s) {
   return p;
 }
 
-Ten body_of(const std::string& name, const RobotDescription& robot, const PartShapes& s) {
-  const auto is = [&](Body body) { return name.rfind(deltadyn::name(body), 0) == 0; };  // a limb's own copy has its number behind
-  if (is(Body::upper_arm)) return upper_arm(robot, s);
-  if (is(Body::strut)) return strut(robot, s);
-  if (is(Body::platform)) {
+Ten body_of(Body body, const RobotDescription& robot, const PartShapes& s) {
+  if (body == Body::upper_arm) return upper_arm(robot, s);
+  if (body == Body::strut) return strut(robot, s);
+  if (body == Body::platform) {
     const Vec half(0, 0, s.platform_thickness / 2);
     return round(s.platform_mass, s.platform_diameter, 0, -half, half, "platform");
   }
-  if (is(Body::tool)) return round(s.tool_mass, s.tool_diameter, 0, Vec(0, 0, -s.tool_length), Vec::Zero(), "tool");
+  if (body == Body::tool) return round(s.tool_mass, s.tool_diameter, 0, Vec(0, 0, -s.tool_length), Vec::Zero(), "tool");
   if (!(s.telescope_upper_share > 0 && s.telescope_upper_share < 1))
     refuse("the upper part's share of the telescope's mass must lie between 0 and 1", "the paper's is 0.6");
-  if (is(Body::telescope_upper))
+  if (body == Body::telescope_upper)
     return round(s.telescope_mass * s.telescope_upper_share, s.telescope_upper_diameter, 0, Vec::Zero(),
                  Vec(0, 0, -s.telescope_upper_length), "telescope's upper part");
   return round(s.telescope_mass * (1 - s.telescope_upper_share), s.telescope_lower_outer_diameter,
                s.telescope_lower_inner_diameter, Vec::Zero(), Vec(0, 0, s.telescope_lower_length), "telescope's lower part");
 }
 
-Body kind_of(const std::string& name) {
-  for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper})
-    if (name.rfind(deltadyn::name(body), 0) == 0) return body;
-  return Body::telescope_lower;
-}
-
-double friction_of(const std::string& joint, bool viscous, const RobotDescription& robot, const PartShapes& s) {
-  if (joint == "telescope") return viscous ? s.telescope_viscous : s.telescope_coulomb;
-  if (robot.telescope && joint == fmt::format("drive{}", robot.drives()))
-    return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
+double friction_of(int drive, bool viscous, const RobotDescription& robot, const PartShapes& s) {
+  if (drive == 0) return viscous ? s.telescope_viscous : s.telescope_coulomb;
+  if (robot.telescope && drive == robot.drives()) return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
   return viscous ? s.drive_viscous : s.drive_coulomb;
 }
 
@@ -200,33 +192,29 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
   for (const double friction : {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous,
                                 shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb})
     require_positive(friction, "a friction coefficient");
-  const std::vector<std::string>& names = robot.parameter_names();
   NominalParameters nominal;
   nominal.value = Eigen::VectorXd::Zero(robot.parameters());
   nominal.std = Eigen::VectorXd::Zero(robot.parameters());
-  for (std::size_t k = 0; k < names.size();) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const std::string body = names[k].substr(0, names[k].find('.'));
-    const std::string entry = names[k].substr(body.size() + 1);
-    if (entry == kInertialNames[0]) {  // a body's ten parameters stand together, the mass first
-      const Ten p = body_of(body, robot.description(), shapes);
+  for (int column = 0; column < robot.parameters();) {
+    const ParameterId& id = robot.parameter_ids()[static_cast<std::size_t>(column)];
+    if (id.kind == ParameterKind::inertial) {  // a body's ten parameters stand together, the mass first
+      const Ten p = body_of(id.body, robot.description(), shapes);
       if (!is_physically_consistent<double>(p))
-        refuse(fmt::format("the shapes of {} make no physically consistent body", body), "give every part a thickness");
-      plausibility::require_body(robot.description(), kind_of(body), p, body, "", ExitCode::usage);
+        refuse(fmt::format("the shapes of {} make no physically consistent body", owner_name(id)), "give every part a thickness");
+      plausibility::require_body(robot.description(), id.body, p, owner_name(id), "", ExitCode::usage);
       nominal.value.segment<kInertialParameters>(column) = p.array() + 0.0;  // no -0 in a file that people read
       nominal.std.segment<kInertialParameters>(column) = inertial_std(p, shapes.body_std);
-      k += kInertialParameters;
+      column += kInertialParameters;
       continue;
     }
-    if (entry == "viscous" || entry == "coulomb") {
-      nominal.value(column) = friction_of(body, entry == "viscous", robot.description(), shapes);
-      plausibility::require_joint_parameter(entry, nominal.value(column), names[k], "", ExitCode::usage);
-      nominal.std(column) = shapes.friction_std * nominal.value(column);
-    } else {
-      // Rotor inertia and offset: unknown beforehand, of the size of the drive's own friction.
-      nominal.std(column) = shapes.friction_std * friction_of(body, false, robot.description(), shapes);
+    const double friction = friction_of(id.number, id.kind == ParameterKind::viscous, robot.description(), shapes);
+    if (id.is_friction()) {
+      nominal.value(column) = friction;
+      plausibility::require_joint_parameter(id.kind, friction, parameter_name(id), "", ExitCode::usage);
     }
-    ++k;
+    // Rotor inertia and offset: unknown beforehand, of the size of the drive's own friction.
+    nominal.std(column) = shapes.friction_std * friction;
+    ++column;
   }
   return nominal;
 }

@@ -308,12 +308,14 @@ void require_body(const RobotDescription& robot, Body body, const InertialVector
            fmt::format("it puts {:.3g} kg {:.3g} m from the axis", mass, std::sqrt(inertia / mass)), where, code);
 }
 
-void require_joint_parameter(const std::string& quantity, double value, const std::string& what, const std::string& where,
-                             ExitCode code) {
-  const std::pair<const char*, const Rule*> rules[] = {
-      {"viscous", &kViscous}, {"coulomb", &kCoulomb}, {"rotor_inertia", &kRotor}, {"offset", &kTorqueOffset}};
-  for (const auto& [name, rule] : rules)
-    if (quantity == name) require(*rule, value, what, where, code);
+void require_joint_parameter(ParameterKind kind, double value, const std::string& what, const std::string& where, ExitCode code) {
+  switch (kind) {
+    case ParameterKind::inertial: return;
+    case ParameterKind::viscous: return require(kViscous, value, what, where, code);
+    case ParameterKind::coulomb: return require(kCoulomb, value, what, where, code);
+    case ParameterKind::rotor_inertia: return require(kRotor, value, what, where, code);
+    case ParameterKind::offset: return require(kTorqueOffset, value, what, where, code);
+  }
 }
 
 }  // namespace deltadyn::plausibility

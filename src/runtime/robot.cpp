@@ -6,6 +6,13 @@
 
 namespace deltadyn {
 
+std::vector<Eigen::Index> coulomb_columns(const Robot& robot) {
+  std::vector<Eigen::Index> columns;
+  for (int k = 0; k < robot.parameters(); ++k)
+    if (robot.parameter_ids()[static_cast<std::size_t>(k)].kind == ParameterKind::coulomb) columns.push_back(k);
+  return columns;
+}
+
 std::unique_ptr<Robot> make_robot(const RobotDescription& description, const ParameterOptions& options) {
   description.validate(description.name);
   for (const int drive : options.rotor_inertia) {

@@ -18,48 +18,26 @@
 
 namespace deltadyn::detail {
 
-/// Name and unit of every column of a layout.
-struct ColumnText {
-  std::vector<std::string> names, units;
-};
-
+/// Every column of a layout, in order.
 template <class R, Limbs kSharing>
-ColumnText column_text(const RobotDescription& description) {
+std::vector<ParameterId> layout_ids() {
   using Layout = ParameterLayout<R, kSharing>;
-  ColumnText text;
-  const auto add_body = [&text](const std::string& body) {
-    for (int k = 0; k < kInertialParameters; ++k) {
-      text.names.push_back(body + "." + kInertialNames[k]);
-      text.units.emplace_back(kInertialUnits[k]);
-    }
+  std::vector<ParameterId> ids;
+  const auto add_body = [&ids](Body body, int number) {
+    for (int k = 0; k < kInertialParameters; ++k) ids.push_back({ParameterKind::inertial, number, body, k});
   };
-  const auto number = [](int i, bool always) { return always || i > 0 ? std::to_string(i + 1) : std::string(); };
-  constexpr bool kNumbered = kSharing == Limbs::individual;
-  for (int i = 0; i < Layout::kLimbSets; ++i) add_body(name(Body::upper_arm) + number(i, kNumbered));
-  for (int i = 0; i < Layout::kStruts; ++i) add_body(name(Body::strut) + number(i, kNumbered));
-  for (int k = 0; k < R::kPlateParts; ++k) add_body(name(Body::platform) + number(k, false));
-  if (R::kTelescope) {
-    add_body(name(Body::tool));
-    add_body(name(Body::telescope_upper));
-    add_body(name(Body::telescope_lower));
-  }
-  const auto turns = [&](int joint) { return joint < R::kDrives && description.kind_of_drive(joint) == DriveKind::revolute; };
-  for (int j = 0; j < Layout::kFrictionJoints; ++j) {
-    const std::string joint = j < R::kDrives ? "drive" + std::to_string(j + 1) : "telescope";
-    text.names.push_back(joint + ".viscous");
-    text.units.emplace_back(turns(j) ? "N*m*s/rad" : "N*s/m");
-    text.names.push_back(joint + ".coulomb");
-    text.units.emplace_back(turns(j) ? "N*m" : "N");
-  }
-  for (int j = 0; j < R::kDrives; ++j) {
-    text.names.push_back("drive" + std::to_string(j + 1) + ".rotor_inertia");
-    text.units.emplace_back(turns(j) ? "kg*m^2" : "kg");
-  }
-  for (int j = 0; j < R::kDrives; ++j) {
-    text.names.push_back("drive" + std::to_string(j + 1) + ".offset");
-    text.units.emplace_back(turns(j) ? "N*m" : "N");
-  }
-  return text;
+  const auto of_limb = [](int i) { return kSharing == Limbs::individual ? i + 1 : 0; };
+  for (int i = 0; i < Layout::kLimbSets; ++i) add_body(Body::upper_arm, of_limb(i));
+  for (int i = 0; i < Layout::kStruts; ++i) add_body(Body::strut, of_limb(i));
+  for (int k = 0; k < R::kPlateParts; ++k) add_body(Body::platform, k > 0 ? k + 1 : 0);
+  if (R::kTelescope)
+    for (const Body body : {Body::tool, Body::telescope_upper, Body::telescope_lower}) add_body(body, 0);
+  for (int j = 0; j < Layout::kFrictionJoints; ++j)
+    for (const ParameterKind kind : {ParameterKind::viscous, ParameterKind::coulomb})
+      ids.push_back({kind, j < R::kDrives ? j + 1 : 0});
+  for (const ParameterKind kind : {ParameterKind::rotor_inertia, ParameterKind::offset})
+    for (int j = 0; j < R::kDrives; ++j) ids.push_back({kind, j + 1});
+  return ids;
 }
 
 template <class R, Limbs kSharing>
@@ -71,16 +49,19 @@ class RobotOf final : public Robot {
 
   RobotOf(const RobotDescription& description, const ParameterOptions& options)
       : description_(description), options_(options), geometry_(geometry_of<double, R>(description)) {
-    const ColumnText text = column_text<R, kSharing>(description);
+    const std::vector<ParameterId> all = layout_ids<R, kSharing>();
     columns_ = layout_columns<R, kSharing>(options);
     for (const int column : columns_) {
-      names_.push_back(text.names[static_cast<std::size_t>(column)]);
-      units_.push_back(text.units[static_cast<std::size_t>(column)]);
+      ids_.push_back(all[static_cast<std::size_t>(column)]);
+      names_.push_back(parameter_name(ids_.back()));
+      units_.push_back(parameter_unit(
+          ids_.back(), ids_.back().number > 0 && description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute));
     }
   }
 
   const RobotDescription& description() const override { return description_; }
   const ParameterOptions& parameter_options() const override { return options_; }
+  const std::vector<ParameterId>& parameter_ids() const override { return ids_; }
   const std::vector<std::string>& parameter_names() const override { return names_; }
   const std::vector<std::string>& parameter_units() const override { return units_; }
 
@@ -129,7 +110,7 @@ class RobotOf final : public Robot {
     if (status != Status::ok) return status;
     Matrix<double, N, Layout::kColumns> full;
     deltadyn::regressor<Layout>(geometry_, motion, full);
-    for (std::size_t k = 0; k < columns_.size(); ++k) Y.col(static_cast<Eigen::Index>(k)) = full.col(columns_[k]);
+    Y = full(Eigen::all, columns_);
     return status;
   }
 
@@ -250,6 +231,7 @@ class RobotOf final : public Robot {
   ParameterOptions options_;
   Geometry<double, R> geometry_;
   std::vector<int> columns_;  // of the full layout, in order
+  std::vector<ParameterId> ids_;
   std::vector<std::string> names_, units_;
 };
 

@@ -16,17 +16,6 @@ constexpr double kKaiserBeta = 7.857;       // 80 dB stop band
 constexpr double kTransitionWidth = 5.017;  // (80 - 7.95) / 14.36: transition band times length
 constexpr double kTransitionShare = 1.0;    // transition band as a share of the cut-off
 
-/// Modified Bessel function of the first kind, order 0, by its series.
-double bessel_i0(double x) {
-  double sum = 1.0;
-  double term = 1.0;
-  for (int k = 1; k < 60 && term > 1e-17 * sum; ++k) {
-    term *= (x / (2.0 * k)) * (x / (2.0 * k));
-    sum += term;
-  }
-  return sum;
-}
-
 double sinc(double x) {
   return std::abs(x) < 1e-12 ? 1.0 : std::sin(pi * x) / (pi * x);
 }
@@ -50,7 +39,7 @@ FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor)
   for (Index k = 0; k <= half; ++k) {
     const double x = static_cast<double>(k) / static_cast<double>(half + 1);
     const double tap =
-        2.0 * cutoff * sinc(2.0 * cutoff * static_cast<double>(k)) * bessel_i0(kKaiserBeta * std::sqrt(1.0 - x * x));
+        2.0 * cutoff * sinc(2.0 * cutoff * static_cast<double>(k)) * std::cyl_bessel_i(0, kKaiserBeta * std::sqrt(1.0 - x * x));
     taps_(half + k) = tap;
     taps_(half - k) = tap;
   }

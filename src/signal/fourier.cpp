@@ -17,6 +17,10 @@ namespace {
 using Eigen::Index;
 using std::numbers::pi;
 
+constexpr double kNoiseRatio = 4.0;   // positions one period apart differ by at most this many times their noise,
+constexpr double kRangeRatio = 3e-4;  // or this share of the drive's range (real drives do not repeat to the last count)
+constexpr int kFewestPeriods = 2;     // a period seen fewer times is no period
+
 /// Basis functions at the given times, times x (1 + 2 harmonics).
 Eigen::MatrixXd basis(const Eigen::Ref<const Eigen::VectorXd>& t_s, double base_frequency_hz, int harmonics, int derivative) {
   Eigen::MatrixXd result(t_s.size(), 1 + 2 * harmonics);
@@ -40,8 +44,7 @@ int whole_periods(const Log& log, double period_s) {
 
 struct Mismatch {
   double rms_over_allowed = 0.0;  ///< largest over the drives
-  double rms = 0.0;
-  double shift_s = 0.0;  ///< to be added to the lag, for the best match
+  double shift_s = 0.0;           ///< to be added to the lag, for the best match
 };
 
 /// Positions `lag` samples apart, after the best shift in time below a sample.
@@ -64,7 +67,6 @@ Mismatch mismatch(const Log& log, Index lag, const Eigen::VectorXd& allowed) {
   result.shift_s = square > 0 ? std::clamp(-along / square, -h, h) : 0.0;
   for (Index d = 0; d < log.drives(); ++d) {
     const double rms = root_mean_square(difference(d) + result.shift_s * rate(d));
-    result.rms = std::max(result.rms, rms);
     result.rms_over_allowed = std::max(result.rms_over_allowed, rms / allowed(d));
   }
   return result;
@@ -102,18 +104,12 @@ FourierFit fit_fourier(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen
                 ExitCode::usage);
   }
   fit.coefficients = factor.solve(right);
-  Eigen::VectorXd squares = Eigen::VectorXd::Zero(columns.cols());
-  for (Index from = 0; from < t_s.size(); from += kBlock) {
-    const Index rows = std::min(kBlock, t_s.size() - from);
-    squares += (columns.middleRows(from, rows) - fit.evaluate(t_s.segment(from, rows))).colwise().squaredNorm().transpose();
-  }
-  fit.residual_std = (squares / static_cast<double>(t_s.size() - unknowns)).cwiseSqrt();
   return fit;
 }
 
-std::optional<Period> find_period(const Log& log, const PeriodOptions& options) {
+std::optional<Period> find_period(const Log& log) {
   const Index n = log.samples();
-  const Index longest = n / std::max(2, options.min_periods) + 1;
+  const Index longest = n / kFewestPeriods + 1;
   if (n < 20) return std::nullopt;
   const double h = log.sample_time_s();
   Eigen::VectorXd allowed(log.drives());
@@ -127,7 +123,7 @@ std::optional<Period> find_period(const Log& log, const PeriodOptions& options) 
       continue;
     }
     // The difference of two noisy values has sqrt(2) of the noise.
-    allowed(d) = std::max(options.noise_ratio * std::numbers::sqrt2 * position_noise(q), options.range_ratio * range);
+    allowed(d) = std::max(kNoiseRatio * std::numbers::sqrt2 * position_noise(q), kRangeRatio * range);
     deviation(d) = std::sqrt((q.array() - q.mean()).square().mean());
     fastest(d) = (q.tail(n - 1) - q.head(n - 1)).cwiseAbs().maxCoeff();
   }
@@ -165,7 +161,7 @@ std::optional<Period> find_period(const Log& log, const PeriodOptions& options) 
     const Mismatch match = mismatch(log, lag, allowed);
     if (match.rms_over_allowed < best_score) {
       best_score = match.rms_over_allowed;
-      best = Period{static_cast<double>(lag) * h + match.shift_s, 0, match.rms};
+      best = Period{static_cast<double>(lag) * h + match.shift_s, 0};
     }
   }
   if (!best) return std::nullopt;
@@ -179,7 +175,7 @@ std::optional<Period> find_period(const Log& log, const PeriodOptions& options) 
   const double samples = best->period_s / h;
   if (std::abs(samples - std::round(samples)) < 0.02) best->period_s = std::round(samples) * h;
   best->whole_periods = whole_periods(log, best->period_s);
-  if (best->whole_periods < options.min_periods) return std::nullopt;
+  if (best->whole_periods < kFewestPeriods) return std::nullopt;
   return best;
 }
 
@@ -233,9 +229,8 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   const bool whole_samples = std::abs(period_s / h - static_cast<double>(points)) < 1e-6;
   const Index drives = log.drives();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(points, drives);
-  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(points, drives);
   Eigen::MatrixXd used = Eigen::MatrixXd::Zero(points, drives);
-  const Eigen::RowVectorXd reference = log.tau.colwise().mean();  // squares of small numbers do not cancel
+  const Eigen::RowVectorXd reference = log.tau.colwise().mean();  // stands where no sample does
   for (int period = 0; period < mean.periods; ++period) {
     Eigen::MatrixXd tau;
     const Eigen::VectorXd when = one.t_s.array() + period * period_s;
@@ -249,15 +244,12 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
       if (log.is_filled(nearest)) continue;
       for (Index d = 0; d < drives; ++d) {
         if (log.torque_out.size() > 0 && log.torque_out(nearest, d)) continue;
-        const double difference = tau(i, d) - reference(d);
-        sum(i, d) += difference;
-        squares(i, d) += difference * difference;
+        sum(i, d) += tau(i, d) - reference(d);
         used(i, d) += 1.0;
       }
     }
   }
   one.tau.resize(points, drives);
-  mean.tau_std.resize(points, drives);
   for (Index i = 0; i < points; ++i) {
     if ((used.row(i).array() < 1.0).all()) {
       one.filled.resize(static_cast<std::size_t>(points), Log::kMeasured);
@@ -270,10 +262,6 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
         if (one.torque_out.size() == 0) one.torque_out.setConstant(points, drives, false);
         one.torque_out(i, d) = true;
       }
-      // One sample shows no scatter.
-      const double variance = n > 1.0 ? std::max(0.0, squares(i, d) - sum(i, d) * sum(i, d) / n) / (n - 1.0)
-                                      : std::numeric_limits<double>::infinity();
-      mean.tau_std(i, d) = std::sqrt(variance / n);
     }
   }
   return mean;

@@ -26,7 +26,7 @@ constexpr void (*kChecksOfPart[])(CheckRoom&) = {
 };
 
 /// Rate and jitter of the file, and that nothing was lost if nothing was.
-void add_figures(std::vector<Log>& parts, const LogFindings& findings, double recorded_rate_hz) {
+void add_figures(std::vector<Log>& parts, double largest_jitter, double recorded_rate_hz) {
   Log& first = parts.front();
   const auto add = [&](const char* key, double value, const char* unit, const std::string& text) {
     for (const Log& part : parts) {
@@ -43,8 +43,8 @@ void add_figures(std::vector<Log>& parts, const LogFindings& findings, double re
     first.findings.push_back(std::move(finding));
   };
   add("rate_hz", recorded_rate_hz, "Hz", fmt::format("recorded at {:.6g} Hz", recorded_rate_hz));
-  add("jitter", findings.largest_jitter, "",
-      fmt::format("the time stamps are even to {:.2g} % of the time between samples", 100.0 * findings.largest_jitter));
+  add("jitter", largest_jitter, "",
+      fmt::format("the time stamps are even to {:.2g} % of the time between samples", 100.0 * largest_jitter));
   add("lost_rows", 0.0, "rows", "no row is lost");
   add("held_rows", 0.0, "rows", "no row repeats the one before");
 }
@@ -67,11 +67,10 @@ void LogCheckOptions::validate() const {
   demand(outlier_ratio >= 5, "outlier_ratio must be at least 5");
 }
 
-std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options, LogFindings* findings) {
+std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options) {
   options.validate();
-  LogFindings own;
-  LogFindings& found = findings != nullptr ? *findings : own;
-  CheckRoom room{log, robot, options, found};
+  double largest_jitter = 0;
+  CheckRoom room{log, robot, options, largest_jitter};
   checks::check_counts(room);
   if (!options.motion) {
     checks::refuse_missing_numbers(room);
@@ -86,7 +85,7 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
   std::vector<std::string> carried_notes;
   double recorded_rate_hz = 0;
   for (Log& part : parts) {
-    CheckRoom of_part{part, robot, options, found};
+    CheckRoom of_part{part, robot, options, largest_jitter};
     of_part.stale_positions = room.stale_positions;
     of_part.stale_torques = room.stale_torques;
     of_part.thinning = room.thinning;
@@ -116,18 +115,16 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
   Log& first = usable.front();
   first.notes.insert(first.notes.end(), carried_notes.begin(), carried_notes.end());
   first.findings.insert(first.findings.end(), carried.begin(), carried.end());
-  add_figures(usable, found, recorded_rate_hz);
+  add_figures(usable, largest_jitter, recorded_rate_hz);
   return usable;
 }
 
-LogFindings check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options) {
-  LogFindings findings;
-  std::vector<Log> parts = check_and_split(log, robot, options, &findings);
+void check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options) {
+  std::vector<Log> parts = check_and_split(log, robot, options);
   if (parts.size() > 1) {
     throw Error(fmt::format("the log falls into {} parts", parts.size()), log.file, "use check_and_split() and take the parts");
   }
   log = std::move(parts.front());
-  return findings;
 }
 
 }  // namespace deltadyn

@@ -29,10 +29,8 @@ Controller::Controller(const Robot& robot, const Eigen::VectorXd& p, const Contr
     : robot_(robot), p_(p), rigid_(p), options_(options), period_(period_s) {
   const int n = robot.drives();
   options.validate(n);
-  for (int k = 0; k < robot.parameters(); ++k) {
-    const std::string& name = robot.parameter_names()[static_cast<std::size_t>(k)];
-    if (name.ends_with(".viscous") || name.ends_with(".coulomb")) rigid_(k) = 0;
-  }
+  for (int k = 0; k < robot.parameters(); ++k)
+    if (robot.parameter_ids()[static_cast<std::size_t>(k)].is_friction()) rigid_(k) = 0;
   filter_ = std::exp(-2 * std::numbers::pi * options.rate_filter_hz * period_s);
   const double omega = 2 * std::numbers::pi * options.bandwidth_hz;
   Eigen::VectorXd inertia = Eigen::VectorXd::Ones(n);

@@ -12,7 +12,6 @@
 namespace deltadyn {
 namespace {
 
-using detail::Coordinates;
 using detail::State;
 
 constexpr double kShortestStep = 1e-13;  // [s]
@@ -117,7 +116,6 @@ struct Plant::Impl : detail::JointDynamics {
       if (direction[at(j)] != 0) note_turn(j, scratch);
       direction[at(j)] = 0;
       held_until[at(j)] = now + kHoldUndecided;
-      ++counts.undecided;
     }
     settle(false);
   }
@@ -157,7 +155,6 @@ struct Plant::Impl : detail::JointDynamics {
       const bool done = step(h, next, rate_next, error);
       const double size = done ? relative(error, next) : 1e6;
       if (!(size <= 1)) {
-        ++counts.rejected_steps;
         step_size = h * std::clamp(0.9 * std::pow(size, -0.2), 0.1, 0.9);
         if (step_size < kShortestStep) lost(done ? "cannot be integrated on" : "leaves its reach or meets a singular pose");
         continue;
@@ -325,7 +322,7 @@ double Plant::energy() const {
   double energy = 0;
   if (m.terms_at(m.x, terms) != Status::ok) return std::nan("");
   if (m.parts.mechanism->potential_energy(m.x.head(m.n), energy) != Status::ok) return std::nan("");
-  const Coordinates yd = m.x.segment(m.coordinates(), m.coordinates());
+  const detail::Coordinates yd = m.x.segment(m.coordinates(), m.coordinates());
   energy += 0.5 * yd.dot(terms.M * yd);
   for (int e = 0; e < m.soft; ++e) {
     const detail::SoftDrive& spring = m.parts.soft[Impl::at(e)];

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "deltadyn/runtime/changed_machine.hpp"
+#include "deltadyn/runtime/drive_inertia.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
@@ -14,37 +15,32 @@ namespace {
 
 constexpr double kDampingRatio = 0.05;  // of a gear with its bearings
 
-/// Parameters by name, every limb on its own.
+/// Parameters, every limb on its own.
 class Values {
  public:
   Values(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p)
-      : names_(mechanism_parameter_names(description)), p_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names_.size()))) {
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      for (const std::string& name : {names_[k], shared(names_[k])}) {
-        const auto found = std::find(names.begin(), names.end(), name);
+      : ids_(make_robot(description, mechanism_options(description))->parameter_ids()),
+        p_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(ids_.size()))) {
+    for (std::size_t k = 0; k < ids_.size(); ++k) {
+      ParameterId shared = ids_[k];
+      if (shared.kind == ParameterKind::inertial) shared.number = 0;
+      for (const ParameterId& id : {ids_[k], shared}) {
+        const auto found = std::find(names.begin(), names.end(), parameter_name(id));
         if (found == names.end()) continue;
         p_(static_cast<Eigen::Index>(k)) = p(found - names.begin());
         break;
       }
     }
   }
-  double& operator[](const std::string& name) {
-    const auto found = std::find(names_.begin(), names_.end(), name);
-    if (found == names_.end()) throw Error("the robot has no parameter " + name, "", "", ExitCode::usage);
-    return p_(found - names_.begin());
+  double& operator[](const ParameterId& id) {
+    const auto found = std::find(ids_.begin(), ids_.end(), id);
+    if (found == ids_.end()) throw Error("the robot has no parameter " + parameter_name(id), "", "", ExitCode::usage);
+    return p_(found - ids_.begin());
   }
   [[nodiscard]] const Eigen::VectorXd& all() const { return p_; }
 
  private:
-  /// "strut3.m" -> "strut.m"
-  static std::string shared(const std::string& name) {
-    const auto dot = name.find('.');
-    std::string owner = name.substr(0, dot);
-    if (owner.rfind("drive", 0) == 0) return name;
-    while (!owner.empty() && std::isdigit(static_cast<unsigned char>(owner.back()))) owner.pop_back();
-    return owner + name.substr(dot);
-  }
-  std::vector<std::string> names_;
+  std::vector<ParameterId> ids_;
   Eigen::VectorXd p_;
 };
 
@@ -72,7 +68,7 @@ class Builder {
 
   PlantParts build(const std::vector<Effect>& effects) {
     for (const Effect& effect : effects) change(effect);
-    for (const auto& [name, more] : machine_.parameters) values_[name] += more;
+    for (const auto& [id, more] : machine_.parameters) values_[id] += more;
     MechanismOptions options;
     options.home_offset = machine_.home_offset;
     options.passive_joints = std::any_of(effects.begin(), effects.end(), [](const Effect& effect) {
@@ -108,10 +104,10 @@ class Builder {
   void add_laws(const std::vector<Effect>& effects) {
     const int n = machine_.description.drives(), telescope = parts_.mechanism->telescope_joint();
     for (int j = 0; j < parts_.mechanism->joints(); ++j) {
-      const std::string joint = j < n ? fmt::format("drive{}", j + 1) : "telescope";
+      const int drive = j < n ? j + 1 : 0;
       if (j < n || j == telescope) {
-        parts_.laws.emplace_back(values_[joint + ".viscous"], values_[joint + ".coulomb"],
-                                 j < n ? values_[joint + ".offset"] : 0.0);
+        parts_.laws.emplace_back(values_[{ParameterKind::viscous, drive}], values_[{ParameterKind::coulomb, drive}],
+                                 j < n ? values_[{ParameterKind::offset, drive}] : 0.0);
       } else {
         parts_.laws.emplace_back(0.0, 0.0);
       }
@@ -130,27 +126,9 @@ class Builder {
     }
   }
 
-  /// Inertia of one drive with everything behind it held by the other drives, in the middle of the workspace.
-  double drive_inertia(int drive) {
-    const RobotDescription& robot = machine_.description;
-    DriveVector q = DriveVector::Zero(robot.drives());
-    for (int j = 0; j < robot.drives(); ++j) {
-      const DriveLimits& limits = robot.limits[static_cast<std::size_t>(j)];
-      if (std::isfinite(limits.lower + limits.upper)) q(j) = 0.5 * (limits.lower + limits.upper);
-    }
-    MechanismTerms terms;
-    if (parts_.mechanism->evaluate(q, DriveVector::Zero(q.size()), terms) != Status::ok) {
-      q.setZero();
-      if (parts_.mechanism->evaluate(q, q, terms) != Status::ok) {
-        throw Error("the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
-                    robot.name, "mend the limits of the drives in the robot file", ExitCode::usage);
-      }
-    }
-    return terms.M(drive, drive);
-  }
-
   void add_spring(int drive, const SpringInDrive& spring) {
-    const double inertia = drive_inertia(drive), motor = spring.motor_share * inertia;
+    const std::unique_ptr<Robot> robot = make_robot(machine_.description, mechanism_options(machine_.description));
+    const double inertia = drive_inertia(*robot, values_.all())(drive), motor = spring.motor_share * inertia;
     const double reduced = motor * (inertia - motor) / inertia;
     if (!(reduced > 0)) {
       throw Error(fmt::format("a motor with {} of the inertia of drive {} leaves no load behind its spring or play",

@@ -34,7 +34,7 @@ struct PlantParts {
   std::vector<Effect> plate_forces;  ///< effects that are forces on the plate, by their law
 };
 
-/// Throws deltadyn::Error for parameters that are not physically consistent and effects that the plant cannot have.
+/// Throws deltadyn::Error for effects that the plant cannot have.
 [[nodiscard]] PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names,
                                      const Eigen::VectorXd& p, const std::vector<Effect>& effects);
 

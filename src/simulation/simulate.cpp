@@ -38,8 +38,6 @@ class Recorder {
     result.log.qd = qd;
     result.log.qdd = qdd;
     result.log.tau = recorded_torque(t, tau, effects, options.sensors, options.seed + 0x9e3779b97f4a7c15ULL);
-    result.true_q = q;
-    result.true_tau = tau;
     result.largest_torque = tau.cwiseAbs().colwise().maxCoeff();
   }
 };

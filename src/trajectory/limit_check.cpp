@@ -8,19 +8,6 @@ namespace deltadyn {
 
 using Eigen::Index;
 
-namespace {
-
-/// Columns of Coulomb friction that a model uses.
-std::vector<Index> coulomb_columns(const Robot& robot, const Eigen::VectorXd& parameters) {
-  std::vector<Index> columns;
-  const std::vector<std::string>& names = robot.parameter_names();
-  for (Index k = 0; k < parameters.size(); ++k)
-    if (names[static_cast<std::size_t>(k)].ends_with(".coulomb") && parameters(k) != 0) columns.push_back(k);
-  return columns;
-}
-
-}  // namespace
-
 double LimitCheck::margin() const {
   if (!reachable) return -1;
   return uses.empty() ? 1 : 1 - tightest().load;
@@ -52,7 +39,7 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
   // Coulomb friction jumps where a joint turns back, be it for a moment between two samples. It counts in full, whichever way the
   // joint turns, on the side of the rest of the torque, which is smooth in time: at a reversal both signs occur anyway.
   const bool torque = limits.parameters.size() > 0;
-  const std::vector<Index> columns = torque ? coulomb_columns(robot, limits.parameters) : std::vector<Index>();
+  const std::vector<Index> columns = torque ? coulomb_columns(robot) : std::vector<Index>();
   Eigen::MatrixXd Y(n, robot.parameters());
   LimitedState state;
   state.x.resize(3 * n);

@@ -104,6 +104,16 @@ TEST(DesignSpace, FindsSlowStatesWhereTorqueIsShort) {
   }
 }
 
+TEST(DesignSpace, SaysSoWhereTheRangesMeetTheWorkspaceNowhere) {
+  const auto robot = make_robot(testing_support::delta_description("delta3"));
+  MotionLimits limits = usual_limits(*robot);
+  limits.region->shape = RegionShape::ball;
+  limits.region->radius = 0.1;
+  const Eigen::Vector3d corner = limits.region->centre.array() + 0.09;  // of the box around the ball, which it does not fill
+  limits.z_lower.head<3>() = corner;
+  EXPECT_THAT(message_of(*robot, limits), HasSubstr("none lies in the workspace"));
+}
+
 TEST(DesignSpace, NamesTheLimitThatLeavesNothing) {
   const auto robot = make_robot(testing_support::delta_description("delta4"));
   MotionLimits far = usual_limits(*robot);

@@ -32,13 +32,15 @@ ConsistentFitOptions make_options(ParameterSet set, FitMetric metric) {
 
 void expect_consistent(const ConsistentFitSummary& summary) {
   for (int body = 0; body < kBodies; ++body) {
-    EXPECT_TRUE(is_physically_consistent(body_of(summary.p, body))) << summary.names[static_cast<std::size_t>(10 * body)];
+    EXPECT_TRUE(is_physically_consistent(body_of(summary.p, body)))
+        << owner_name(summary.parameters[static_cast<std::size_t>(10 * body)]);
   }
   EXPECT_GT(summary.p.tail(summary.p.size() - 10 * kBodies).minCoeff(), 0.0);
 }
 
 int index_of(const ConsistentFitSummary& summary, const std::string& name) {
-  return static_cast<int>(std::find(summary.names.begin(), summary.names.end(), name) - summary.names.begin());
+  return static_cast<int>(std::find(summary.parameters.begin(), summary.parameters.end(), parameter_id(name)) -
+                          summary.parameters.begin());
 }
 
 struct Case {
@@ -256,8 +258,9 @@ TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
   NormalDistribution normal;
   const int rows = 400;
   ConsistentFitProblem problem;
-  for (const char* name : kInertialNames) problem.names.push_back(std::string("upper_arm.") + name);
-  for (const char* name : {"drive1.viscous", "drive1.coulomb", "drive1.offset"}) problem.names.emplace_back(name);
+  for (int k = 0; k < kInertialParameters; ++k) problem.parameters.push_back({ParameterKind::inertial, 0, Body::upper_arm, k});
+  for (const ParameterKind kind : {ParameterKind::viscous, ParameterKind::coulomb, ParameterKind::offset})
+    problem.parameters.push_back({kind, 1});
   problem.A = Eigen::MatrixXd::Zero(rows, 13);
   problem.b.resize(rows);
   for (int i = 0; i < rows; ++i) {
@@ -276,7 +279,7 @@ TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
   EXPECT_EQ(summary.variables, 4);
   const std::pair<int, double> expected[] = {{0, 95}, {10, 200}, {11, 20}, {12, -3}};
   for (const auto& [i, value] : expected) {
-    EXPECT_NEAR(summary.p(i), value, 5 * summary.std(i)) << problem.names[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(summary.p(i), value, 5 * summary.std(i)) << parameter_name(problem.parameters[static_cast<std::size_t>(i)]);
     EXPECT_GT(summary.data_share(i), 0.99);
   }
   EXPECT_TRUE(is_physically_consistent<double>(summary.p.head<10>()));
@@ -285,7 +288,7 @@ TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
 
 TEST(ConsistentFit, UncertaintyOfAScalarProblemByHand) {
   ConsistentFitProblem problem;
-  problem.names = {"drive1.viscous", "drive1.coulomb"};
+  problem.parameters = {{ParameterKind::viscous, 1}, {ParameterKind::coulomb, 1}};
   problem.A = Eigen::Vector2d(3.0, 0.0).asDiagonal();  // viscous seen with a standard deviation of 1/3, Coulomb unseen
   problem.b = Eigen::Vector2d(6.0, 0.0);
   problem.prior = Eigen::Vector2d(2.0, 5.0);
@@ -342,7 +345,7 @@ TEST(ConsistentFit, IndividualLimbs) {
   problem.prior.resize(30);
   for (int limb = 0; limb < 3; ++limb) {
     for (int k = 0; k < 10; ++k) {
-      problem.names.push_back("strut" + std::to_string(limb + 1) + "." + kInertialNames[k]);
+      problem.parameters.push_back({ParameterKind::inertial, limb + 1, Body::strut, k});
       problem.prior(10 * limb + k) = strut[static_cast<std::size_t>(k)];
     }
   }
@@ -352,6 +355,18 @@ TEST(ConsistentFit, IndividualLimbs) {
   const ConsistentFitSummary summary = fit_consistent_parameters(problem);
   EXPECT_EQ(summary.variables, 15);
   for (int limb = 0; limb < 3; ++limb) EXPECT_NEAR(summary.p(10 * limb), problem.b(limb) / 1e3, 2e-3);
+}
+
+TEST(ConsistentFit, ThatConvergesNowhereTellsTheFirstCause) {
+  ConsistentFitProblem problem = random_problem(52, kRank, 1e3, 1, true);
+  problem.A *= 1e200;  // its squares are beyond any number
+  try {
+    (void)fit_consistent_parameters(problem);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::no_convergence);
+    EXPECT_THAT(error.what(), HasSubstr("did not converge at a regularisation of 1.11111e-08"));
+  }
 }
 
 // --- what is refused ---------------------------------------------------------------------------
@@ -390,8 +405,8 @@ TEST(ConsistentFitRefuses, PriorsThatNoBodyCanHave) {
   };
   for (const Row& row : rows) {
     ConsistentFitProblem problem = random_problem(50, kRank, 1e3, 1, true);
-    const auto at = std::find(problem.names.begin(), problem.names.end(), row.name) - problem.names.begin();
-    problem.prior(at) = row.value;
+    const auto& ids = problem.parameters;
+    problem.prior(std::find(ids.begin(), ids.end(), parameter_id(row.name)) - ids.begin()) = row.value;
     const std::string message =
         message_of([&] { (void)fit_consistent_parameters(problem, make_options(row.set, FitMetric::relative)); });
     EXPECT_THAT(message, HasSubstr(row.body)) << row.name;
@@ -400,14 +415,14 @@ TEST(ConsistentFitRefuses, PriorsThatNoBodyCanHave) {
   }
 }
 
-TEST(ConsistentFitRefuses, SizesAndNamesThatDoNotFit) {
+TEST(ConsistentFitRefuses, SizesAndParametersThatDoNotFit) {
   const ConsistentFitProblem good = random_problem(51, kRank, 1e3, 1, true);
   struct Row {
     const char* what;
     std::function<void(ConsistentFitProblem&)> damage;
   };
   const Row rows[] = {
-      {"no parameters", [](ConsistentFitProblem& p) { p.names.clear(); }},
+      {"no parameters", [](ConsistentFitProblem& p) { p.parameters.clear(); }},
       {"A", [](ConsistentFitProblem& p) { p.A.conservativeResize(Eigen::NoChange, 70); }},
       {"b", [](ConsistentFitProblem& p) { p.b.conservativeResize(5); }},
       {"prior", [](ConsistentFitProblem& p) { p.prior.conservativeResize(5); }},
@@ -418,10 +433,7 @@ TEST(ConsistentFitRefuses, SizesAndNamesThatDoNotFit) {
          p.prior_std.head(60).setOnes();
        }},
       {"not finite", [](ConsistentFitProblem& p) { p.A(3, 4) = std::numeric_limits<double>::infinity(); }},
-      {"elbow", [](ConsistentFitProblem& p) { p.names[10] = "elbow.m"; }},
-      {"'mcx' is not in its place", [](ConsistentFitProblem& p) { std::swap(p.names[11], p.names[12]); }},
-      {"drive1.stiffness", [](ConsistentFitProblem& p) { p.names[60] = "drive1.stiffness"; }},
-      {"friction", [](ConsistentFitProblem& p) { p.names[60] = "friction"; }},
+      {"'mcx' is not in its place", [](ConsistentFitProblem& p) { std::swap(p.parameters[11], p.parameters[12]); }},
   };
   for (const Row& row : rows) {
     ConsistentFitProblem problem = good;

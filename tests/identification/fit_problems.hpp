@@ -102,7 +102,7 @@ inline ConsistentFitProblem random_problem(unsigned seed, int rank, double preci
   }
   const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(square).householderQ() * Eigen::MatrixXd::Identity(P, rank);
   ConsistentFitProblem problem;
-  for (const NamedValue& named : truth) problem.names.push_back(named.name);
+  for (const NamedValue& named : truth) problem.parameters.push_back(parameter_id(named.name).value());
   problem.A = Q * rows;
   problem.b = problem.A * p;
   for (Eigen::Index i = 0; i < P; ++i) problem.b(i) += noise * normal(random);

@@ -179,7 +179,8 @@ TEST(IdentificationAssessment, OnlyValuesWithSmallIntervalsAreMeasured) {
   ConsistentFitSummary& fit = run.identification.fit;
   const Assessment before = assess(run);
   EXPECT_THAT(before.measured, HasSubstr("friction of all joints"));
-  const auto coulomb = std::find(fit.names.begin(), fit.names.end(), "drive2.coulomb") - fit.names.begin();
+  const auto coulomb =
+      std::find(fit.parameters.begin(), fit.parameters.end(), parameter_id("drive2.coulomb")) - fit.parameters.begin();
   fit.std(coulomb) = 0.11 * std::abs(fit.p(coulomb));
   const Assessment after = assess(run);
   EXPECT_EQ(after.measured.find("friction of all joints"), std::string::npos) << after.measured;
@@ -238,7 +239,8 @@ TEST(PriorGaps, SayWhatToMeasure) {
   EXPECT_THAT(parameter_visibility(base), ::testing::ElementsAre(Visibility::alone, Visibility::combined, Visibility::combined,
                                                                  Visibility::hidden, Visibility::alone));
   ConsistentFitSummary fit;
-  fit.names = {"drive2.viscous", "tool.m", "telescope_lower.mcz", "platform.Ixx", "strut.Ixx"};
+  for (const char* name : {"drive2.viscous", "tool.m", "telescope_lower.mcz", "platform.Ixx", "strut.Ixx"})
+    fit.parameters.push_back(parameter_id(name).value());
   fit.fitted.assign(5, true);
   fit.p = fit.prior = fit.std = Eigen::VectorXd::Ones(5);
   fit.data_share = Eigen::VectorXd::Constant(5, 0.08);
@@ -298,7 +300,8 @@ TEST(IdentificationReport, MarksThePriorAndFoldsAwayWhatWasNotFitted) {
   SyntheticRun run = copy_of(good_run());
   ConsistentFitSummary& fit = run.identification.fit;
   const auto index = [&](const std::string& name) {
-    return static_cast<Eigen::Index>(std::find(fit.names.begin(), fit.names.end(), name) - fit.names.begin());
+    return static_cast<Eigen::Index>(std::find(fit.parameters.begin(), fit.parameters.end(), parameter_id(name)) -
+                                     fit.parameters.begin());
   };
   const auto row_class = [&](const std::string& name) {
     std::string found = "none";

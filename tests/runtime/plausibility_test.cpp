@@ -200,11 +200,11 @@ TEST(Plausibility, LimitsBeyondTheRobotFileAreToldOrRefused) {
 }
 
 TEST(Plausibility, JointParameters) {
-  EXPECT_NO_THROW(plausibility::require_joint_parameter("viscous", 200, "drive1.viscous", ""));
-  EXPECT_THROW(plausibility::require_joint_parameter("viscous", -0.1, "drive1.viscous", ""), Error);
-  EXPECT_THROW(plausibility::require_joint_parameter("coulomb", -4, "drive1.coulomb", ""), Error);
-  EXPECT_THROW(plausibility::require_joint_parameter("coulomb", std::nan(""), "drive1.coulomb", ""), Error);
-  EXPECT_NO_THROW(plausibility::require_joint_parameter("offset", -3, "drive1.offset", ""));
+  EXPECT_NO_THROW(plausibility::require_joint_parameter(ParameterKind::viscous, 200, "drive1.viscous", ""));
+  EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::viscous, -0.1, "drive1.viscous", ""), Error);
+  EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::coulomb, -4, "drive1.coulomb", ""), Error);
+  EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::coulomb, std::nan(""), "drive1.coulomb", ""), Error);
+  EXPECT_NO_THROW(plausibility::require_joint_parameter(ParameterKind::offset, -3, "drive1.offset", ""));
 }
 
 }  // namespace

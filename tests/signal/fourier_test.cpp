@@ -37,7 +37,6 @@ TEST(Fourier, EvaluatesExactDerivatives) {
   for (int derivative = 0; derivative <= 2; ++derivative) {
     EXPECT_LT((fit.evaluate(t, derivative).col(0) - motion.at(t, derivative)).cwiseAbs().maxCoeff(), 1e-10);
   }
-  EXPECT_LT(fit.residual_std(0), 1e-12);
   EXPECT_THROW((void)fit_fourier(t.head(10), motion.at(t, 0).head(10), 0.5, 5), Error);
 }
 
@@ -48,7 +47,6 @@ TEST(FindPeriod, FindsWholeAndBrokenNumbersOfSamples) {
     ASSERT_TRUE(period.has_value()) << base_hz;
     EXPECT_NEAR(period->period_s * base_hz, 1.0, 1e-6);
     EXPECT_EQ(period->whole_periods, static_cast<int>(std::floor(10.0 * base_hz + 1e-6)));
-    EXPECT_LT(period->mismatch_rms, 1e-4);
   }
 }
 
@@ -78,11 +76,10 @@ TEST(AveragePeriods, MeetsTruthFarBelowTheEncoder) {
       EXPECT_LT(rms(mean.log.q.col(d) - motion.at(t, 0, 0.7 * d)), 5e-7);
       EXPECT_LT(rms(mean.log.qd.col(d) - motion.at(t, 1, 0.7 * d)), 5e-6);
       EXPECT_LT(rms(mean.log.qdd.col(d) - motion.at(t, 2, 0.7 * d)), 1e-4);
-      // The scatter of the mean is the noise over the root of the number of periods, and the stated std says so.
+      // The scatter of the mean is the noise over the root of the number of periods.
       const double scatter = rms(mean.log.tau.col(d) - 2.0 * motion.at(t, 2, 0.7 * d));
       const double expected = 0.1 / std::sqrt(mean.periods);
       EXPECT_NEAR(scatter / expected, 1.0, base_hz == 0.5 ? 0.05 : 0.2);  // interpolation between samples smooths a little
-      EXPECT_NEAR(rms(mean.tau_std.col(d)) / scatter, 1.0, 0.05);
     }
   }
 }

@@ -27,10 +27,6 @@ constexpr int kDrives = 4;
 constexpr double kSmallestError = 0.01;  // [%] that a figure shows
 constexpr PlotColor kColors[] = {PlotColor::vermillion, PlotColor::green};
 
-bool is_friction(const std::string& name) {
-  return name.ends_with(".viscous") || name.ends_with(".coulomb");
-}
-
 /// The terms of (1) of one model along a motion; rows are samples.
 struct Terms {
   MatrixXd coriolis, acceleration, gravity;  ///< samples x drives [N m]
@@ -40,7 +36,7 @@ struct Terms {
 
 Terms terms_along(const Robot& robot, VectorXd p, const Log& motion) {
   for (int k = 0; k < robot.parameters(); ++k) {
-    if (is_friction(robot.parameter_names()[static_cast<std::size_t>(k)])) p(k) = 0;
+    if (robot.parameter_ids()[static_cast<std::size_t>(k)].is_friction()) p(k) = 0;
   }
   Terms terms;
   const Index samples = motion.samples();
@@ -94,7 +90,7 @@ VectorXd relative_error(const Terms& nominal, const Terms& found, int i, int j) 
 Errors errors_of(const Robot& robot, const VectorXd& truth, const Terms& nominal, const Case& result) {
   Errors e;
   for (int k = 0; k < robot.parameters(); ++k) {
-    if (is_friction(robot.parameter_names()[static_cast<std::size_t>(k)])) {
+    if (robot.parameter_ids()[static_cast<std::size_t>(k)].is_friction()) {
       e.friction = std::max(e.friction, 100 * std::abs(result.identified(k) / truth(k) - 1));
     }
   }
@@ -215,7 +211,7 @@ ConsistentFitSummary reduced_fit(const Robot& robot, const VectorXd& prior) {
   WorkspaceSampler sampler(robot, 1);
   constexpr int kStates = 60;
   ConsistentFitProblem problem;
-  problem.names = robot.parameter_names();
+  problem.parameters = robot.parameter_ids();
   problem.A.resize(kStates * kDrives, robot.parameters());
   VectorXd q(kDrives), qd(kDrives), qdd(kDrives);
   MatrixXd Y(kDrives, robot.parameters());

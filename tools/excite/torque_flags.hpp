@@ -84,7 +84,7 @@ class TorqueFlags {
   /// Says where a drive's scale is less than its friction in the model.
   static void tell_scale_below_friction(const Robot& robot, const Eigen::VectorXd& parameters, const Eigen::VectorXd& scale) {
     for (int i = 0; i < robot.drives(); ++i) {
-      const double friction = coulomb_of(robot, parameters, i);
+      const double friction = std::abs(parameters(coulomb_columns(robot)[static_cast<std::size_t>(i)]));
       const char* unit = torque_unit(robot.description(), i);
       if (friction > scale(i))
         fmt::print(
@@ -121,7 +121,7 @@ class TorqueFlags {
   void refuse_friction(const Robot& robot, const Eigen::VectorXd& parameters, const Eigen::VectorXd& limits,
                        double margin) const {
     for (int i = 0; i < robot.drives(); ++i) {
-      const double friction = coulomb_of(robot, parameters, i);
+      const double friction = std::abs(parameters(coulomb_columns(robot)[static_cast<std::size_t>(i)]));
       const char* unit = torque_unit(robot.description(), i);
       if (!std::isfinite(limits(i)) || friction < (1 - margin) * limits(i)) continue;
       throw Error(
@@ -132,12 +132,6 @@ class TorqueFlags {
           "check unit and scale of the friction in the model, and of the torque limits; --torque-margin 0 "
           "keeps nothing free");
     }
-  }
-
-  [[nodiscard]] static double coulomb_of(const Robot& robot, const Eigen::VectorXd& parameters, int drive) {
-    const auto& names = robot.parameter_names();
-    const auto at = std::find(names.begin(), names.end(), fmt::format("drive{}.coulomb", drive + 1));
-    return at == names.end() ? 0.0 : std::abs(parameters(at - names.begin()));
   }
 
   std::string params_file_;

@@ -182,8 +182,8 @@ class Info {
     run.summary.add("rank_gap", base.rank_gap);
     run.summary.add("condition_number", base.condition_number);
     std::vector<std::string> bodies;
-    for (const std::string& name : robot.parameter_names()) {
-      const std::string body = name.substr(0, name.find('.'));
+    for (const ParameterId& id : robot.parameter_ids()) {
+      const std::string body = owner_name(id);
       if (bodies.empty() || bodies.back() != body) bodies.push_back(body);
     }
     fmt::print("  groups: {}\n", fmt::join(bodies, " "));

@@ -23,7 +23,7 @@ struct AdmissibleStates {
 
 /// Poses uniform in the workspace, rates uniform in the boxes of their limits; where the task space has no limit of its own, in
 /// the box of the drives. What breaks a limit is thrown away. Same seed, same states.
-/// Throws deltadyn::Error(usage) that names the limit that binds if (nearly) nothing is left: the workspace cannot be reached or
+/// Throws deltadyn::Error that names the limit that binds if (nearly) nothing is left: the workspace cannot be reached or
 /// the limits contradict each other.
 [[nodiscard]] AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regressor, const MotionLimits& limits,
                                                  int count, std::uint64_t seed);

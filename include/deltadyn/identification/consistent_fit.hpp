@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "deltadyn/runtime/parameter_id.hpp"
+
 namespace deltadyn {
 
 /// Which variables are free.
@@ -32,11 +34,11 @@ enum class FitMetric {
 
 /// Data and prior. A has one column a parameter; its rows may be the triangular factor of any amount of folded samples.
 struct ConsistentFitProblem {
-  std::vector<std::string> names;  ///< as in design.md; the ten names of a body stand together and in order
-  Eigen::MatrixXd A;               ///< k x P, divided by the noise standard deviation
-  Eigen::VectorXd b;               ///< k, divided by the noise standard deviation
-  Eigen::VectorXd prior;           ///< P, SI units; 0 where nothing is known
-  Eigen::VectorXd prior_std;       ///< P or empty (then prior_relative_std of the scale of each parameter)
+  std::vector<ParameterId> parameters;  ///< P, e.g. Robot::parameter_ids(); the ten of a body stand together and in order
+  Eigen::MatrixXd A;                    ///< k x P, divided by the noise standard deviation
+  Eigen::VectorXd b;                    ///< k, divided by the noise standard deviation
+  Eigen::VectorXd prior;                ///< P, SI units; 0 where nothing is known
+  Eigen::VectorXd prior_std;            ///< P or empty (then prior_relative_std of the scale of each parameter)
 };
 
 struct ConsistentFitOptions {
@@ -75,7 +77,7 @@ struct OptimalityCertificate {
 };
 
 struct ConsistentFitSummary {
-  std::vector<std::string> names;
+  std::vector<ParameterId> parameters;
   Eigen::VectorXd p;      ///< P, physically consistent; equal to p(pi)
   Eigen::VectorXd pi;     ///< P: log-Cholesky variables (13) of each body, logarithm of positive scalars, offsets as they are
   Eigen::VectorXd prior;  ///< P
@@ -110,7 +112,7 @@ struct ConsistentFitSummary {
 };
 
 /// Solves the problem.
-/// Throws deltadyn::Error for sizes, names or numbers that do not fit, options out of range, and a prior that no body can have
+/// Throws deltadyn::Error for sizes, parameters or numbers that do not fit, options out of range, and a prior that no body can have
 /// (negative mass, broken triangle inequality, first moments too large), naming the body and the rule.
 /// A prior on the boundary (thin rod, point mass) is moved inside by a hair, which the notes say.
 [[nodiscard]] ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem,

@@ -33,7 +33,6 @@ struct IdentificationOptions {
   bool robust = false;  ///< Huber weights: single rows that stand out count less
   /// Waves of the torque over the position become part of the model; only where reversals are automatic.
   bool find_ripples = true;
-  bool compensate_noise = true;  ///< take what encoder noise adds to the regressor out of the normal equations
   BaseParameterOptions base;
   ConsistentFitOptions fit;
   int threads = 0;                       ///< 0: all

@@ -42,7 +42,6 @@ struct ProcessingOptions {
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
-  bool low_pass_torque = true;           ///< false: torque as recorded beside a filtered motion (only to compare cut-offs)
   int stride = 0;                        ///< use every stride-th sample; 0: what the pass band asks for
 
   /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
@@ -99,9 +98,6 @@ struct RowBlock {
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
-
-/// Column of the Coulomb friction of each joint with friction: drives, then the telescope.
-[[nodiscard]] std::vector<Eigen::Index> coulomb_columns(const Robot& robot);
 
 /// Computes rows [first_row, first_row + count). Blocks are independent of each other: call from several threads at will.
 void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);

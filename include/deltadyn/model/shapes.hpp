@@ -38,12 +38,6 @@ template <class T>
   return from_pseudo_inertia<T>(half.lazyProduct(X.transpose()));
 }
 
-/// Two parts of one body, seen from the same frame.
-template <class T>
-[[nodiscard]] InertialVector<T> add(const InertialVector<T>& a, const InertialVector<T>& b) {
-  return a + b;
-}
-
 /// The round shape that lies along z around the origin, moved so that it reaches from `from` to `to`.
 /// A shape of no length (from = to) keeps its direction.
 template <class T>
@@ -62,14 +56,6 @@ template <class T>
   R.col(0) = x / sqrt(x.squaredNorm());
   R.col(1) = R.col(2).cross(R.col(0));
   return translated<T>(rotated<T>(along_z, R), centre);
-}
-
-/// All mass in one point.
-template <class T>
-[[nodiscard]] InertialVector<T> point_mass(T mass, const Vector3<T>& place) {
-  InertialVector<T> p = InertialVector<T>::Zero();
-  p(inertial::kM) = mass;
-  return translated<T>(p, place);
 }
 
 /// Hollow cylinder along z, centre at the origin: Izz = m (Ro^2 + Ri^2) / 2, Ixx = Iyy = m (L^2 + 3 (Ro^2 + Ri^2)) / 12.
@@ -100,18 +86,6 @@ template <class T>
 template <class T>
 [[nodiscard]] InertialVector<T> solid_cylinder(T mass, T radius, const Vector3<T>& from, const Vector3<T>& to) {
   return hollow_cylinder<T>(mass, radius, T(0), from, to);
-}
-
-/// Flat disc in the xy plane, centre at the origin; the thickness counts.
-template <class T>
-[[nodiscard]] InertialVector<T> plate_disc(T mass, T radius, T thickness) {
-  return solid_cylinder<T>(mass, radius, thickness);
-}
-
-/// Rod without thickness between two points: from the origin along x, Iyy = Izz = m L^2 / 3.
-template <class T>
-[[nodiscard]] InertialVector<T> slender_rod(T mass, const Vector3<T>& from, const Vector3<T>& to) {
-  return hollow_cylinder<T>(mass, T(0), T(0), from, to);
 }
 
 /// Mass of a tube [kg] from its density [kg/m^3]; inner radius 0 for a solid one.

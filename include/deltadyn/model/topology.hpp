@@ -49,10 +49,6 @@ struct LinearAxis : Axis {
   static constexpr DriveKind kDrive = DriveKind::prismatic;
 };
 
-/// Dimension of the task coordinates z: (r, theta or psi) for a Delta, q itself for an axis.
-template <class Robot>
-inline constexpr int kTask = Robot::kDrives;
-
 /// Coordinates of the plate that the limbs hold: r, and theta if the plate turns.
 template <class Robot>
 inline constexpr int kPlateCoordinates = Robot::kPlateParts == 0 ? 0 : (Robot::kPlateTurns ? 4 : 3);

@@ -56,7 +56,8 @@ enum class Source { data, both, prior };
 
 /// What is left to the prior in one body or joint, and what would replace it.
 struct PriorGap {
-  std::string owner;                    ///< "tool", "drive2", ...
+  ParameterId first;                    ///< of the parameters, all of one body or joint
+  double first_share = 0;               ///< data share of that
   std::vector<std::string> parameters;  ///< "m (8 %)": name and data share
   bool by_motion = false;               ///< another motion of the drives would do
   bool negligible = false;              ///< a motion could show it, but it acts too little on the torques to matter

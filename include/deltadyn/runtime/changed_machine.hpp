@@ -4,13 +4,13 @@
 /// A robot with the changes that effects make of a machine: the Machine of effects/kinds.hpp.
 
 #include <Eigen/Core>
-#include <fmt/format.h>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/effects/kinds.hpp"
+#include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/runtime/parameter_id.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -18,7 +18,7 @@ namespace deltadyn {
 struct ChangedMachine {
   RobotDescription description;
   Eigen::VectorXd home_offset;                             ///< true drive coordinate minus the one that the encoder knows
-  std::vector<std::pair<std::string, double>> parameters;  ///< what is added to parameters, by name
+  std::vector<std::pair<ParameterId, double>> parameters;  ///< what is added to parameters, each limb with its own
   std::vector<std::pair<int, SpringInDrive>> springs;      ///< by drive from 0
 
   explicit ChangedMachine(const RobotDescription& robot)
@@ -36,11 +36,11 @@ struct ChangedMachine {
   }
   void lengthen_strut(int limb, double by) { description.limbs.at(static_cast<std::size_t>(limb)).strut += by; }
   void add_to_arm(int limb, double moment, double inertia) {
-    parameters.emplace_back(fmt::format("upper_arm{}.mcx", limb + 1), moment);
-    parameters.emplace_back(fmt::format("upper_arm{}.Iyy", limb + 1), inertia);
+    parameters.push_back({{ParameterKind::inertial, limb + 1, Body::upper_arm, inertial::kMcx}, moment});
+    parameters.push_back({{ParameterKind::inertial, limb + 1, Body::upper_arm, inertial::kIyy}, inertia});
   }
-  void add_rotor(int drive, double inertia) { parameters.emplace_back(fmt::format("drive{}.rotor_inertia", drive + 1), inertia); }
-  void add_to_plate(double mass) { parameters.emplace_back("platform.m", mass); }
+  void add_rotor(int drive, double inertia) { parameters.push_back({{ParameterKind::rotor_inertia, drive + 1}, inertia}); }
+  void add_to_plate(double mass) { parameters.push_back({{ParameterKind::inertial, 0, Body::platform}, mass}); }
   void soften(int drive, const SpringInDrive& spring) { springs.emplace_back(drive, spring); }
 };
 

@@ -13,6 +13,7 @@
 #include "deltadyn/model/body.hpp"
 #include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/parameter_id.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn::plausibility {
@@ -71,8 +72,8 @@ void require_limits(const RobotDescription& robot, int drive, const DriveLimits&
 void require_body(const RobotDescription& robot, Body body, const InertialVector<double>& p, const std::string& what,
                   const std::string& where, ExitCode code = ExitCode::bad_input);
 
-/// Any other parameter by the last part of its name: viscous, coulomb, rotor_inertia, offset.
-void require_joint_parameter(const std::string& quantity, double value, const std::string& what, const std::string& where,
+/// Any other parameter.
+void require_joint_parameter(ParameterKind kind, double value, const std::string& what, const std::string& where,
                              ExitCode code = ExitCode::bad_input);
 
 }  // namespace deltadyn::plausibility

@@ -11,6 +11,7 @@
 
 #include "deltadyn/core/status.hpp"
 #include "deltadyn/runtime/dynamics_terms.hpp"
+#include "deltadyn/runtime/parameter_id.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -23,7 +24,7 @@ struct ParameterOptions {
   bool offset = false;             ///< driveK.offset
 };
 
-/// Kinematic and dynamic state of a robot in double precision; all vectors have one entry a drive (= task coordinate).
+/// Motion in task coordinates, one entry a drive in each vector: position, rate, acceleration.
 struct TaskState {
   Eigen::VectorXd z, zd, zdd;
 };
@@ -39,7 +40,9 @@ class Robot {
   [[nodiscard]] virtual const RobotDescription& description() const = 0;
   [[nodiscard]] virtual const ParameterOptions& parameter_options() const = 0;
   [[nodiscard]] int drives() const { return description().drives(); }
-  /// Names of the columns of the regressor, e.g. "strut.Iyy", "drive1.viscous"; paper (4) order in each body.
+  /// What each column of the regressor is, the bodies first; paper (4) order in each body.
+  [[nodiscard]] virtual const std::vector<ParameterId>& parameter_ids() const = 0;
+  /// Their names, e.g. "strut.Iyy", "drive1.viscous".
   [[nodiscard]] virtual const std::vector<std::string>& parameter_names() const = 0;
   /// Unit of each parameter, e.g. "kg*m^2".
   [[nodiscard]] virtual const std::vector<std::string>& parameter_units() const = 0;
@@ -54,7 +57,7 @@ class Robot {
                                          Eigen::Ref<Vector> qdd) const = 0;
   /// Task-space motion of a drive motion.
   [[nodiscard]] virtual Status to_task(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, TaskState& task) const = 0;
-  /// Jacobian dz/dq (drives x drives) and its condition number, a measure of the distance to a singular pose (1 is best).
+  /// Jacobian dz/dq (drives x drives).
   [[nodiscard]] virtual Status jacobian(const ConstRef& q, Eigen::Ref<Eigen::MatrixXd> J_q_z) const = 0;
 
   /// Y(q, qd, qdd), drives x parameters (paper (3)-(7)).
@@ -84,7 +87,10 @@ class Robot {
   [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
 };
 
-/// Throws deltadyn::Error if the description is not a robot we know.
+/// Columns of the Coulomb friction of each joint, in the order of friction_joint_rates().
+[[nodiscard]] std::vector<Eigen::Index> coulomb_columns(const Robot& robot);
+
+/// Throws deltadyn::Error if the description is not a robot we know, or a rotor inertia is asked for of a drive that it has not.
 [[nodiscard]] std::unique_ptr<Robot> make_robot(const RobotDescription& description, const ParameterOptions& options = {});
 
 }  // namespace deltadyn

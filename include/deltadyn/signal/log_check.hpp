@@ -33,15 +33,6 @@ struct LogCheckOptions {
   void validate() const;
 };
 
-/// What was found, for reports. Everything in it is also a finding of the log.
-struct LogFindings {
-  std::vector<std::string> notes;       ///< in plain words, with line numbers
-  Eigen::Index filled_samples = 0;      ///< missing or spoilt samples that were filled in (Log::filled)
-  Eigen::Index dropped_duplicates = 0;  ///< rows that were there twice
-  double largest_jitter = 0.0;          ///< of the time stamps, share of the sample time
-  bool resampled = false;               ///< values were moved onto the even grid by cubic interpolation
-};
-
 /// Checks a log and mends what is certain and harmless, with one finding for each kind of fault (Log::findings, Log::notes):
 /// - stamps: rows that are there twice, single wrong stamps, a clock coarser than the sampling or one that drifts, stamps that jitter
 ///   about even samples, samples taken at uneven times (moved to even steps);
@@ -54,13 +45,11 @@ struct LogFindings {
 /// At gaps longer than can be filled, and where the stamps of another recording begin, the log falls into parts, which have the same
 /// Log::file and are numbered by Log::part. Parts that are too short or cannot be used are left away, and that is said.
 /// What was measured on the way (rate, jitter, steps, noise, travel) is a finding of level fine, in the first part.
-/// \param findings  may be null
 /// \return  at least one part; in each t_s is even and every number is finite
 /// Throws Error(bad_input) with file, line and column for everything else: positions in degrees, stuck encoders, lost counts, ...
-[[nodiscard]] std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options = {},
-                                               LogFindings* findings = nullptr);
+[[nodiscard]] std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options = {});
 
 /// check_and_split() of a log without gaps, in place. Throws Error(bad_input) if it falls into several parts.
-LogFindings check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options = {});
+void check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options = {});
 
 }  // namespace deltadyn

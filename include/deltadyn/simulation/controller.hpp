@@ -35,6 +35,7 @@ class Controller {
  public:
   /// \param robot, p   the model that the controller knows, and its parameters
   /// \param home       pose whose mass matrix sets the gains
+  /// Throws deltadyn::Error if that pose is out of reach, or an option is out of range.
   Controller(const Robot& robot, const Eigen::VectorXd& p, const ControllerOptions& options, double period_s,
              const Eigen::VectorXd& home);
 

@@ -6,11 +6,10 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "deltadyn/core/status.hpp"
-#include "deltadyn/runtime/robot_description.hpp"
+#include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn {
 
@@ -65,10 +64,10 @@ class Mechanism {
   std::vector<double> multiplicity_;
 };
 
-/// Names of the columns that make_mechanism() wants: every limb on its own, tool, all rotor inertias and offsets.
-[[nodiscard]] std::vector<std::string> mechanism_parameter_names(const RobotDescription& description);
+/// The columns that make_mechanism() wants: every limb on its own, tool, all rotor inertias and offsets.
+[[nodiscard]] ParameterOptions mechanism_options(const RobotDescription& description);
 
-/// \param p  one value for each of mechanism_parameter_names(); friction and offsets in it are ignored, they are the plant's business
+/// \param p  as of a Robot with mechanism_options(); friction and offsets in it are ignored, they are the plant's business
 /// Throws deltadyn::Error if the description is not a robot we know.
 [[nodiscard]] std::unique_ptr<Mechanism> make_mechanism(const RobotDescription& description, const Eigen::VectorXd& p,
                                                         const MechanismOptions& options = {});

@@ -29,10 +29,9 @@ struct PlantOptions {
 
 /// What the plant has done so far.
 struct PlantCounts {
-  long steps = 0, rejected_steps = 0, evaluations = 0;
+  long steps = 0, evaluations = 0;
   long reversals = 0;   ///< joints that came to rest, and went on or stuck
   long breakaways = 0;  ///< joints that broke loose
-  long undecided = 0;   ///< joints held for 0.1 ms, because rounding left open whether they stick
   double stuck_s = 0;   ///< time with at least one joint stuck [s]
 };
 
@@ -40,13 +39,14 @@ class Plant {
  public:
   /// \param names, p   parameters as in a parameter file, e.g. Robot::parameter_names() and their values; shared limbs allowed
   /// \param effects    of the catalogue; those that concern only the log are left to the sensors (sensors.hpp)
-  /// Throws deltadyn::Error for parameters that are not physically consistent and effects that the plant cannot have.
+  /// Throws deltadyn::Error for options out of range and effects that the plant cannot have.
   Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
         const std::vector<Effect>& effects = {}, const PlantOptions& options = {});
   ~Plant();
   Plant(Plant&&) noexcept;
 
-  /// Puts the robot at rest or in motion at time 0. Throws Error(bad_input) if the pose is out of reach.
+  /// Puts the robot at rest or in motion at time 0. Throws deltadyn::Error if the pose is out of reach or singular, or the parameters
+  /// leave no mass matrix that is positive definite there.
   void start(const DriveVector& q, const DriveVector& qd);
   /// Torque that the drives are told to give from now on, held until the next call [N m | N].
   void command(const DriveVector& tau);

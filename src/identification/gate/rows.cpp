@@ -81,11 +81,7 @@ struct PointRegressor {
         continue;
       }
       rates.row(k) = v.transpose();
-      for (int j = 0; j < n; ++j) {
-        for (int b = 0; b < base.count(); ++b) {
-          Y[static_cast<std::size_t>(j)](k, b) = full(j, base.independent[static_cast<std::size_t>(b)]);
-        }
-      }
+      for (int j = 0; j < n; ++j) Y[static_cast<std::size_t>(j)].row(k) = full.row(j)(base.independent);
     }
     for (int j = 0; j < n; ++j) reversal.push_back(near_reversal(rates.col(j)));
     if (!robot.description().telescope) return;
@@ -231,9 +227,7 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
       // The Gaussian smears the friction's step over what the drive takes to reverse.
       const double smeared = kSmear * points.sigma_s * std::abs(ak(j));
       if (std::abs(vk(j)) < std::max(floor(j), smeared) || points.torque_out.row(k).any()) continue;
-      Eigen::RowVectorXd row(base.count());
-      for (int b = 0; b < base.count(); ++b) row(b) = full(j, base.independent[static_cast<std::size_t>(b)]);
-      found[static_cast<std::size_t>(j)].push_back(row);
+      found[static_cast<std::size_t>(j)].emplace_back(full.row(j)(base.independent));
       rows.drives[static_cast<std::size_t>(j)].at.push_back({0, k});
     }
   }

@@ -68,9 +68,7 @@ struct Offsets {
 };
 
 Offsets fit(const Rest& rest, const std::vector<int>& drives) {
-  const auto count = static_cast<Index>(drives.size());
-  MatrixXd A(rest.torque.size(), count);
-  for (Index k = 0; k < count; ++k) A.col(k) = rest.offset.col(drives[static_cast<std::size_t>(k)]);
+  const MatrixXd A = rest.offset(Eigen::all, drives);
   const MatrixXd inverse = MatrixXd(A.transpose() * A).completeOrthogonalDecomposition().pseudoInverse();
   Offsets out;
   out.drives = drives;
@@ -110,8 +108,7 @@ Offsets best_offsets(const Rest& rest, int drives) {
 }  // namespace
 
 std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParameters& base, const Points& points) {
-  const std::vector<std::string>& names = robot.parameter_names();
-  if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.ends_with(".offset"); })) return {};
+  if (robot.parameter_options().offset) return {};
   Rest rest;
   if (!rest.fill(rows_of_points(robot, base, points, Reading::as_given(robot.drives())), points)) return {};
   const double as_given = root_mean_square(rest.torque);

@@ -65,11 +65,10 @@ std::optional<Estimate> estimate(const Robot& robot, const BaseParameters& base,
 /// Rows of the base regressor at a state.
 Eigen::MatrixXd base_rows(const Robot& robot, const BaseParameters& base, const Eigen::VectorXd& q, const Eigen::VectorXd& qdd,
                           bool& reached) {
-  Eigen::MatrixXd full(robot.drives(), robot.parameters()), out(robot.drives(), base.count());
+  Eigen::MatrixXd full(robot.drives(), robot.parameters());
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(robot.drives());
   reached = robot.regressor(q, rest, qdd, full) == Status::ok && full.allFinite();
-  for (int b = 0; b < base.count() && reached; ++b) out.col(b) = full.col(base.independent[static_cast<std::size_t>(b)]);
-  return out;
+  return full(Eigen::all, base.independent);
 }
 
 /// How large the estimate of G beta is beside that of the prior.

@@ -44,10 +44,7 @@ std::string CheckRoom::where(Index sample, const std::string& column) const {
 
 void CheckRoom::tell(LogFinding finding, bool with_note) const {
   if (finding.file.empty()) finding.file = log.file;
-  if (with_note && finding.level != FindingLevel::fine) {
-    log.notes.push_back(finding.text);
-    findings.notes.push_back(finding.text);
-  }
+  if (with_note && finding.level != FindingLevel::fine) log.notes.push_back(finding.text);
   log.findings.push_back(std::move(finding));
 }
 
@@ -67,7 +64,6 @@ void CheckRoom::tell(FindingLevel level, const std::string& key, Index sample, c
 void CheckRoom::mark_filled(Index sample, char mark) const {
   log.filled.resize(static_cast<std::size_t>(log.samples()), Log::kMeasured);
   char& flag = log.filled[static_cast<std::size_t>(sample)];
-  if (flag == Log::kMeasured) ++findings.filled_samples;
   if (flag != Log::kLeftOut) flag = mark;
 }
 

@@ -40,7 +40,7 @@ struct CheckRoom {
   Log& log;
   const RobotDescription& robot;
   const LogCheckOptions& options;
-  LogFindings& findings;
+  double& largest_jitter;  ///< of the time stamps of all parts, share of the sample time
 
   std::vector<Index> recordings{};     ///< first rows of further recordings in the same file
   std::vector<int> stale_positions{};  ///< rows between two updates of each drive's position; 1: always fresh
@@ -56,7 +56,7 @@ struct CheckRoom {
   [[nodiscard]] std::vector<Channel> channels() const;
   /// "log.csv, line 12, column q1_rad".
   [[nodiscard]] std::string where(Index sample, const std::string& column = {}) const;
-  /// Notes a finding: the log, the findings and, if it is more than a measured figure, the notes say it.
+  /// Notes a finding: the log's findings and, if it is more than a measured figure, its notes say it.
   /// \param with_note  false: the words stand in another finding's note already
   void tell(LogFinding finding, bool with_note = true) const;
   /// A finding in one sentence that begins with its place.

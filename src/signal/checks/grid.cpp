@@ -87,7 +87,7 @@ void say_uneven(const CheckRoom& room, const char* what_was_done) {
 /// Are the stamps or the rows even, and what is to be done?
 void judge_stamps(CheckRoom& room) {
   TimeGrid& grid = room.grid;
-  room.findings.largest_jitter = std::max(room.findings.largest_jitter, grid.jitter);
+  room.largest_jitter = std::max(room.largest_jitter, grid.jitter);
   if (grid.jitter <= room.options.max_stamp_jitter) return;
   const Eigen::VectorXd& t = room.log.t_s;
   const double drift = drift_of(grid, t);
@@ -212,7 +212,6 @@ void move_to_grid(CheckRoom& room) {
   }
   carry_over(log, even, room.grid.step_s, moved);
   log = std::move(moved);
-  room.findings.resampled = true;
 }
 
 }  // namespace deltadyn::checks

@@ -45,7 +45,6 @@ void drop_rows_twice(CheckRoom& room) {
     rows.push_back(i);
   }
   if (twice.count == 0) return;
-  room.findings.dropped_duplicates = twice.count;
   const std::string sentence =
       twice.count == 1 ? std::string("the row is there twice, once was enough")
                        : fmt::format("the row is there twice, once was enough; the first of {} such rows", twice.count);
