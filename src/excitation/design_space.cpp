@@ -163,9 +163,9 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
                   "workspace", "move the workspace into the reach of the robot (delta-model info shows it)", ExitCode::bad_input);
     const auto worst = static_cast<std::size_t>(std::max_element(broken.begin(), broken.end()) - broken.begin());
     throw Error(
-        fmt::format("the limits leave no motion: of {} random states {} are allowed, and {} break the limit '{}' "
-                    "({:.6g} to {:.6g} {})",
-                    states.drawn, found, broken[worst], list[worst].name, list[worst].lower, list[worst].upper, list[worst].unit),
+        fmt::format(
+            "the limits leave no motion: of {} random states {} are allowed, and {} break the limit '{}' ({:.6g} to {:.6g} {})",
+            states.drawn, found, broken[worst], list[worst].name, list[worst].lower, list[worst].upper, list[worst].unit),
         "limits", "widen this limit or move the workspace", ExitCode::bad_input);
   }
   states.x.conservativeResize(Eigen::NoChange, found);

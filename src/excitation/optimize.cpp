@@ -517,13 +517,14 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
       if (!found && !series[k]) {
         const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);
         const LimitUse& use = check.tightest();
-        throw Error(use.load > 1
-                        ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most room "
-                                      "breaks the limit '{}' ({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others "
-                                      "that were drawn break theirs further",
-                                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
-                        : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
-                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+        throw Error(
+            use.load > 1
+                ? fmt::format(
+                      "no motion keeps all limits: even the slightest about the pose with the most room breaks the limit '{}' "
+                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn break theirs further",
+                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
+                : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
+            "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
       }
       if (found) {
         series[k] = found->series;

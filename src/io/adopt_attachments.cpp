@@ -229,11 +229,9 @@ class Solver {
     }
     if (how.empty())
       ask("the plate's radius cannot be found: the joints at zero are no pose of the robot that closes with three like limbs, "
-          "and no "
-          "link of the plate has its origin at the plate's centre",
+          "and no link of the plate has its origin at the plate's centre",
           "give --platform-radius (attachments of the limbs from the plate's centre, in metres), or name the link at the centre "
-          "by "
-          "--plate-frame, or export the robot assembled");
+          "by --plate-frame, or export the robot assembled");
     Attachments result;
     result.assembled = false;
     result.plate_centre = end - radius * limbs_[k].outwards;
@@ -245,8 +243,8 @@ class Solver {
                                            : line.value_or((end - limbs_[k].elbow).normalized()));
     }
     result.note = fmt::format(
-        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m "
-        "by {}, and up is z of the base's link",
+        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m by {}, and "
+        "up is z of the base's link",
         radius, how);
     return result;
   }
@@ -260,10 +258,9 @@ class Solver {
       const auto row = 3 * static_cast<Eigen::Index>(i);
       const auto line = direction_of(parts_.limbs[i]);
       if (!line)
-        ask(fmt::format(
-                "the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a frame at its "
-                "end nor a centre of mass on its axis",
-                parts_.limbs[i].struts.front().name),
+        ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a frame at "
+                        "its end nor a centre of mass on its axis",
+                        parts_.limbs[i].struts.front().name),
             "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
       A.block<3, 1>(row, 0) = *line;
       A.block<3, 1>(row, 1) = -limbs_[i].outwards;

@@ -97,8 +97,7 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
   if (fitting.count == 0 || !seen || jumps == 0 || map.offset != 0) return as_it_is;
   return fmt::format(
       "{}, and the first value taken as it is, which is open: {:.0f} turns of the counter fit {}; if the joint started "
-      "elsewhere, "
-      "give offset = {:.10g} [{}] times the turns it is off in the column map",
+      "elsewhere, give offset = {:.10g} [{}] times the turns it is off in the column map",
       done, fitting.count, inside, map.scale * wrap, map.unit);
 }
 

@@ -40,8 +40,7 @@ Recording merged(std::vector<Recording> recordings) {
                               channel.name, all.file, next.file),
                   next.file,
                   "import them one after the other, and give delta-identify all the logs; if each file holds one drive of one "
-                  "motion, let the "
-                  "column names carry its number");
+                  "motion, let the column names carry its number");
     }
     const std::size_t shift = all.timelines.size();
     for (Timeline& timeline : next.timelines) all.timelines.push_back(std::move(timeline));
@@ -363,8 +362,7 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     open_.clear();  // the one cause of all that is open
     ask("the header line is missing: the first line holds numbers only",
         "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins one) with the "
-        "numbers of the "
-        "columns as source,\n"
+        "numbers of the columns as source,\n"
         "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    quantity = "
         "\"position\"\n    source = 2\n"
         "    unit = \"rad\"",

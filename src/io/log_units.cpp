@@ -140,13 +140,13 @@ std::string normalised(std::string_view text) {
     plain += c == '_' ? '/' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   replace_all(plain, "\xE2\x80\xB0", "permille");  // before the degree sign of Latin-1, whose byte it holds
-  replace_all(plain, "\xC2\xB0", "deg");   // degree sign
-  replace_all(plain, "\xB0", "deg");       // the same in Latin-1
-  replace_all(plain, "\xC2\xB2", "2");     // superscript 2
-  replace_all(plain, "\xC2\xB5", "u");     // micro
-  replace_all(plain, "\xCE\xBC", "u");     // Greek mu
-  replace_all(plain, "\xC2\xB7", "");      // middle dot
-  replace_all(plain, "\xE2\x8B\x85", "");  // dot operator
+  replace_all(plain, "\xC2\xB0", "deg");           // degree sign
+  replace_all(plain, "\xB0", "deg");               // the same in Latin-1
+  replace_all(plain, "\xC2\xB2", "2");             // superscript 2
+  replace_all(plain, "\xC2\xB5", "u");             // micro
+  replace_all(plain, "\xCE\xBC", "u");             // Greek mu
+  replace_all(plain, "\xC2\xB7", "");              // middle dot
+  replace_all(plain, "\xE2\x8B\x85", "");          // dot operator
   replace_all(plain, "sec", "s");
   replace_all(plain, "/s/s", "/s2");
   replace_all(plain, "radians", "rad");

@@ -89,8 +89,7 @@ Check check_consistency(const Identification& identification) {
   } else {
     check.meaning =
         "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong length, a wrong "
-        "prior "
-        "with too much weight, or an effect that the model lacks.";
+        "prior with too much weight, or an effect that the model lacks.";
   }
   return check;
 }
@@ -111,8 +110,7 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   } else {
     check.meaning = fmt::format(
         "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches further and "
-        "accelerates "
-        "harder, and trust the model only near the recorded motions.",
+        "accelerates harder, and trust the model only near the recorded motions.",
         format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
   }
   return check;

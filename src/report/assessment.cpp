@@ -151,8 +151,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
         "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust parameters as "
-        "far as "
-        "their intervals say, and record the torque faster or through a low pass.",
+        "far as their intervals say, and record the torque faster or through a low pass.",
         format_number(noise, torque_unit_of(robot, drive), 3));
     return check;
   }
@@ -166,8 +165,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::bad:
       check.meaning =
           "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear "
-          "ratios, and "
-          "that position and torque belong to the same instant.";
+          "ratios, and that position and torque belong to the same instant.";
       break;
   }
   return check;

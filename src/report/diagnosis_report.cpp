@@ -117,10 +117,9 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
       "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model fitted to "
-      "these "
-      "logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were known. "
-      "The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All that "
-      "follows speaks of the fitted model.");
+      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were "
+      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All "
+      "that follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
                {"parameters as given", Align::right},
                {"fitted", Align::right},
@@ -146,8 +145,7 @@ void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
       "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is right, two "
-      "of "
-      "three bars (one standard error) cross zero; a curve is physics that the model lacks.");
+      "of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
     const std::string name = "drive " + std::to_string(j + 1), unit = position_unit(robot, j);
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
@@ -167,8 +165,7 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
             [](const ConsideredEffect* a, const ConsideredEffect* b) { return a->gain_alone > b->gain_alone; });
   report.paragraph(
       fmt::format("{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
-                  "sign that physics "
-                  "allows, against {} simulated logs of this motion that miss nothing.",
+                  "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
                   d.considered.size(), d.null_runs));
   const auto fill = [](Table& table, const ConsideredEffect& one) {
     const Tone tone = one.ruling == "found" ? Tone::strong : (one.ruling == "no evidence" ? Tone::muted : Tone::plain);

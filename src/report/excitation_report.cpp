@@ -67,8 +67,7 @@ Check check_reversals(const ExcitationReportInput& input) {
   if (share < input.least_away - kRounding) {
     check.verdict = Verdict::caution;
     check.meaning += fmt::format(
-        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a "
-        "wider workspace.",
+        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a wider workspace.",
         format_percent(input.least_away, 2));
   }
   return check;
@@ -110,11 +109,10 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
     noise += (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
   }
-  report.paragraph(
-      fmt::format("Predicted standard deviations for one run of this trajectory with white torque noise of {} in the "
-                  "drives. Expected values are those of {}; the last column but one is the standard deviation as a share of the "
-                  "size that the combination may have.",
-                  noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
+  report.paragraph(fmt::format(
+      "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. Expected values "
+      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination may have.",
+      noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::stable_sort(order.begin(), order.end(),
@@ -144,8 +142,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     report.paragraph("Nothing: every combination will be known to half of its size or better.");
   } else {
     report.table(hidden,
-                 "Their effect on the torque is small in every motion inside these limits, or of this length; more "
-                 "periods lower the standard deviation with the root of their number.");
+                 "Their effect on the torque is small in every motion inside these limits, or of this length; more periods lower "
+                 "the standard deviation with the root of their number.");
   }
   report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
     Table all(columns);
@@ -180,11 +178,11 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
   facts.emplace_back(
       "Search", fmt::format("{} of {} starts and polishing runs, {} evaluations with gradient, {}", e.finished_starts, e.starts,
                             format_count(e.evaluations), format_duration(e.total_time_s)));
-  facts.emplace_back("Upper bound",
-                     fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a "
-                                 "share, certified to {}",
-                                 format_count(input.bound.shares.size()), input.bound.support,
-                                 format_percent(input.bound.gap(input.base.count()), 2)));
+  facts.emplace_back(
+      "Upper bound",
+      fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a share, certified to {}",
+                  format_count(input.bound.shares.size()), input.bound.support,
+                  format_percent(input.bound.gap(input.base.count()), 2)));
   report.facts(facts);
 }
 
@@ -206,8 +204,7 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
     break;
   }
   out.lines.push_back(
-      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} "
-                  "to spare.",
+      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} to spare.",
                   input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
   for (const Check& check : out.checks)
     out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));

@@ -114,8 +114,7 @@ HtmlReport& HtmlReport::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "<div class=\"figures\">\n";
   for (const KeyFigure& figure : figures) {
     body_ += fmt::format(
-        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div>"
-        "<div class=\"small\">{}</div></div>\n",
+        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div><div class=\"small\">{}</div></div>\n",
         name_of(figure.tone), escape_html(figure.label), escape_html(figure.value), escape_html(figure.note));
   }
   body_ += "</div>\n";

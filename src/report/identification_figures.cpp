@@ -78,12 +78,9 @@ void add_regularization_figure(HtmlReport& report, const ConsistentFitSummary& f
                                   panel("distance from prior", distance, PlotColor::orange)};
   panels[0].vertical_markers.push_back({fit.lambda, fmt::format("chosen: λ = {}", format_number(fit.lambda, 3))});
   panels[1].vertical_markers.push_back({fit.lambda, ""});
-  report.plot(
-      panels,
-      fmt::format(
-          "Choice of the regularisation: the largest weight of the prior that the data do not feel. At the chosen one χ² is {} "
-          "above its minimum on the physically consistent set.",
-          format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
+  report.plot(panels, fmt::format("Choice of the regularisation: the largest weight of the prior that the data do not feel. At "
+                                  "the chosen one χ² is {} above its minimum on the physically consistent set.",
+                                  format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
 }
 
 void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSurvey& survey) {
@@ -95,8 +92,7 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
   }
   report.paragraph(
       fmt::format("{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. Smallest "
-                  "eigenvalue at x {:.3f}, y {:.3f}, "
-                  "z {:.3f} m.",
+                  "eigenvalue at x {:.3f}, y {:.3f}, z {:.3f} m.",
                   survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
                   format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
                   format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));

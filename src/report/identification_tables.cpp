@@ -93,30 +93,25 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
               : visibility[i] == Visibility::hidden ? Tone::muted
                                                     : Tone::caution);
   }
-  report.table(table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took "
-                                  "away, where the prior counts "
-                                  "with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly tell: they lean "
-                                  "on the prior and on the rest of "
-                                  "their body; grey ones do not act on the drives at all.",
-                                  100 * kPriorDecides));
+  report.table(
+      table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
+                         "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
+                         "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
+                         100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
-      "parameters below "
-      "say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole interval. It "
-      "matters if you "
-      "use the body on its own.");
+      "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole "
+      "interval. It matters if you use the body on its own.");
   if (any_neither) {
     report.note(
         "(?): neither the data nor the prior, at the weight that was chosen, hold the value; it moved to keep its body "
-        "consistent. Take it "
-        "as unknown. It acts too little on the torque to matter there.");
+        "consistent. Take it as unknown. It acts too little on the torque to matter there.");
   }
   if (!others.empty()) {
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
           "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do "
-          "not feel "
-          "follow the prior.");
+          "not feel follow the prior.");
       inside.table(others);
     });
   }
@@ -161,10 +156,10 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
                                                                                           : Tone::plain);
     }
   }
-  report.table(table,
-               "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on "
-               "their own: one value "
-               "measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
+  report.table(
+      table,
+      "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on their own: "
+      "one value measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
 }
 
 void add_base_parameters(HtmlReport& report, const Identification& identification) {
@@ -196,8 +191,7 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   }
   report.paragraph(fmt::format(
       "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above "
-      "{:.0f} %, marked); "
-      "condition number {}.",
+      "{:.0f} %, marked); condition number {}.",
       count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
   PlotSpec spec;
   spec.x_label = "base parameter (number in the table)";

@@ -48,13 +48,13 @@ class Recorder {
   const std::string loop = "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains";
   const std::string why = clipped > 0 ? fmt::format("the drives met their torque limits at {} control samples", clipped)
                                       : "the loop is unstable or too weak";
-  throw Error(
-      fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why), "simulation",
-      clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the robot "
-                    "file the drives' true effort, or, if the loop is unstable, " +
-                        loop
-                  : loop,
-      ExitCode::no_convergence);
+  throw Error(fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why),
+              "simulation",
+              clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the "
+                            "robot file the drives' true effort, or, if the loop is unstable, " +
+                                loop
+                          : loop,
+              ExitCode::no_convergence);
 }
 
 SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,

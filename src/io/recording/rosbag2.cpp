@@ -250,10 +250,9 @@ const std::vector<std::int64_t>& stamps_of(Series& series, Recording& recording)
   if (given && std::is_sorted(stamps.begin(), stamps.end())) return stamps;
   if (given && is_one_clock(series)) {
     const std::size_t moved = series.sort_by_stamps();
-    recording.notes.push_back(
-        fmt::format("{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the "
-                    "better clock",
-                    recording.file, moved, moved == 1 ? " was" : "s were"));
+    recording.notes.push_back(fmt::format(
+        "{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the better clock",
+        recording.file, moved, moved == 1 ? " was" : "s were"));
     return stamps;
   }
   recording.notes.push_back(

@@ -258,11 +258,10 @@ class HeldRows {
   void say(const Tally& rows, const std::vector<Tally>& single) const {
     const auto share = [&](Index count) { return 100.0 * static_cast<double>(count) / static_cast<double>(room_.log.samples()); };
     if (rows.count > 0) {
-      room_.tell(
-          FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
-          fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows ({:.2g} %): "
-                      "taken as missing",
-                      rows.count, share(rows.count)));
+      room_.tell(FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
+                 fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows "
+                             "({:.2g} %): taken as missing",
+                             rows.count, share(rows.count)));
     }
     for (std::size_t d = 0; d < single.size(); ++d) {
       if (single[d].count == 0) continue;

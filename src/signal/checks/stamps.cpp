@@ -118,9 +118,9 @@ bool mend_coarse_clock(CheckRoom& room) {
   log.t_s = Eigen::VectorXd::LinSpaced(n, log.t_s(0), log.t_s(n - 1));
   room.tell(
       FindingLevel::mended, "coarse_stamps", repeated.first, "t_s", -1, coarse, "s",
-      fmt::format("the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps repeat; taken "
-                  "as even",
-                  coarse, step, repeated.count));
+      fmt::format(
+          "the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps repeat; taken as even",
+          coarse, step, repeated.count));
   return true;
 }
 
@@ -141,11 +141,10 @@ void mend_single_stamps(CheckRoom& room, double step) {
   }
   if (wrong.count == 0) return;
   room.tell(FindingLevel::mended, "wrong_stamps", wrong.first, "t_s", -1, static_cast<double>(wrong.count), "rows",
-            wrong.count == 1
-                ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
-                : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are set between "
-                              "their neighbours",
-                              wrong.count - 1));
+            wrong.count == 1 ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
+                             : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are "
+                                           "set between their neighbours",
+                                           wrong.count - 1));
 }
 
 }  // namespace

@@ -89,11 +89,10 @@ void find_frozen_positions(CheckRoom& room) {
     tally.count += end - from - 1;
   }
   if (tally.count == 0) return;
-  room.tell(
-      FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
-      fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was off; "
-                  "taken as missing",
-                  static_cast<double>(tally.count) * step_s));
+  room.tell(FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
+            fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was "
+                        "off; taken as missing",
+                        static_cast<double>(tally.count) * step_s));
 }
 
 void check_excitation(CheckRoom& room) {
