@@ -289,8 +289,7 @@ std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& can
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (candidates[k] && std::isfinite(candidates[k]->value)) order.push_back(k);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
   return order;
 }
 

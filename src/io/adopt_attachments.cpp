@@ -53,11 +53,10 @@ class Solver {
 
  private:
   [[nodiscard]] std::size_t known() const {
-    return static_cast<std::size_t>(std::count_if(ends_.begin(), ends_.end(), [](const auto& a) { return a.has_value(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(ends_, [](const auto& a) { return a.has_value(); }));
   }
   [[nodiscard]] std::size_t first_known() const {
-    return static_cast<std::size_t>(std::find_if(ends_.begin(), ends_.end(), [](const auto& a) { return a.has_value(); }) -
-                                    ends_.begin());
+    return static_cast<std::size_t>(std::ranges::find_if(ends_, [](const auto& a) { return a.has_value(); }) - ends_.begin());
   }
   [[nodiscard]] double length_of_known() const { return (*ends_[first_known()] - limbs_[first_known()].elbow).norm(); }
 
@@ -167,7 +166,7 @@ class Solver {
     for (const double a : both.front())
       for (const double b : both.back()) candidates.push_back((a + b) / 2);
     // In a symmetric pose a plate wider than the elbows closes as well; the smaller one is meant.
-    std::sort(candidates.begin(), candidates.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    std::ranges::sort(candidates, [](double a, double b) { return std::abs(a) < std::abs(b); });
     const auto before = ends_;
     for (const double radius : candidates) {
       if (misfit(radius, k, length) > kClosure * length || disagreement(radius, k) > kDirection) continue;

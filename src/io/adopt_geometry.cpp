@@ -162,15 +162,15 @@ class Placer {
     out_.order.resize(3);
     std::iota(out_.order.begin(), out_.order.end(), std::size_t{0});
     if (!options_.drives.empty()) return;
-    std::sort(out_.order.begin(), out_.order.end(),
-              [&](std::size_t a, std::size_t b) { return parts_.limbs[a].drive->line < parts_.limbs[b].drive->line; });
+    std::ranges::sort(out_.order,
+                      [&](std::size_t a, std::size_t b) { return parts_.limbs[a].drive->line < parts_.limbs[b].drive->line; });
     const std::size_t first = out_.order.front();
     const auto azimuth = [&](std::size_t i) {
       const double angle =
           std::atan2(limbs_[i].outwards.dot(limbs_[first].across), limbs_[i].outwards.dot(limbs_[first].outwards));
       return i == first ? 0.0 : (angle < 0 ? angle + 2 * std::numbers::pi : angle);
     };
-    std::sort(out_.order.begin(), out_.order.end(), [&](std::size_t a, std::size_t b) { return azimuth(a) < azimuth(b); });
+    std::ranges::sort(out_.order, [&](std::size_t a, std::size_t b) { return azimuth(a) < azimuth(b); });
   }
 
   /// Positive is towards the plate, as an arm's angle is.
@@ -184,14 +184,14 @@ class Placer {
     const auto level = [&](const std::vector<double>& zero) {
       std::vector<double> height;
       for (std::size_t i = 0; i < 3; ++i) height.push_back((limbs_[i].elbow + zero[i] * parts_.limbs[i].axis).dot(up_));
-      return *std::max_element(height.begin(), height.end()) - *std::min_element(height.begin(), height.end()) < kPoint;
+      return *std::ranges::max_element(height) - *std::ranges::min_element(height) < kPoint;
     };
     std::vector<double> ends;
     for (std::size_t i = 0; i < 3; ++i) {
       const DriveLimits& limits = parts_.limbs[i].drive->limits;
       ends.push_back(rail_sign(i) > 0 ? limits.lower : limits.upper);
     }
-    if (std::all_of(ends.begin(), ends.end(), [](double end) { return std::isfinite(end); }) && level(ends)) {
+    if (std::ranges::all_of(ends, [](double end) { return std::isfinite(end); }) && level(ends)) {
       zero_ = ends;
     } else if (!level(zero_)) {
       out_.notes.push_back("the carriages stand at unequal heights in the CAD's pose; each drive's zero stays there");
@@ -350,8 +350,7 @@ class Placer {
   /// The root link is a frame above the link that carries the drives, as "world" is.
   [[nodiscard]] bool is_frame_above_base() const {
     const std::string& root = tree_.bodies[0].name;
-    return std::none_of(parts_.limbs.begin(), parts_.limbs.end(),
-                        [&](const Limb& limb) { return limb.drive->parent_link == root; });
+    return std::ranges::none_of(parts_.limbs, [&](const Limb& limb) { return limb.drive->parent_link == root; });
   }
 
   /// Elbows outwards or inwards: the posture in which inverse kinematics gives the pose of the CAD.

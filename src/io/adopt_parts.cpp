@@ -89,7 +89,7 @@ class Finder {
     if (!options_.drives.empty()) {
       std::vector<const Joint*> named;
       for (const std::string& name : options_.drives) {
-        const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Joint* j) { return j->name == name; });
+        const auto found = std::ranges::find_if(candidates, [&](const Joint* j) { return j->name == name; });
         if (found == candidates.end())
           refuse(fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
                  "--drives", "name three or four of them", ExitCode::usage);
@@ -99,7 +99,7 @@ class Finder {
     }
     for (const Joint* j : candidates) {
       const auto below = chain(*j);
-      const auto slides = std::count_if(below.begin(), below.end(), [](const Joint* k) { return k->prismatic; });
+      const auto slides = std::ranges::count_if(below, [](const Joint* k) { return k->prismatic; });
       if (!j->prismatic && slides == 1) {
         add_telescope(*j, below);
       } else if (children(j->child).empty()) {
@@ -233,7 +233,7 @@ class Finder {
     bar.drive = &drive;
     bar.axis = axis(drive);
     bar.place = place(drive);
-    const auto slide = std::find_if(below.begin(), below.end(), [](const Joint* j) { return j->prismatic; });
+    const auto slide = std::ranges::find_if(below, [](const Joint* j) { return j->prismatic; });
     if (slide == below.begin())
       refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive", at(**slide),
              "put two revolute joints (about x, then y) between drive and bar");

@@ -82,7 +82,7 @@ class MapReader {
   void refuse_unknown(const toml::table& table, const std::array<const char*, N>& known, const char* where) const {
     for (const auto& [key, node] : table) {
       const std::string_view name = key.str();
-      if (std::find(known.begin(), known.end(), name) == known.end()) {
+      if (std::ranges::find(known, name) == known.end()) {
         fail(node, fmt::format("the key '{}' is not known in {}", name, where),
              fmt::format("the keys are {}", fmt::join(known, ", ")));
       }
@@ -258,7 +258,7 @@ const ChannelMap* ColumnMap::find(Quantity quantity, int drive) const {
 }
 
 bool ColumnMap::has(Quantity quantity) const {
-  return std::any_of(channels.begin(), channels.end(), [&](const ChannelMap& channel) { return channel.quantity == quantity; });
+  return std::ranges::any_of(channels, [&](const ChannelMap& channel) { return channel.quantity == quantity; });
 }
 
 void MapDefaults::validate(int drives) const {

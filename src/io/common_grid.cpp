@@ -83,7 +83,7 @@ Index first_of_repeats(const Eigen::Ref<const Eigen::VectorXd>& values, Index fa
   for (Index i = 1; i < values.size(); ++i) {
     if (values(i) != values(i - 1)) ++changes[static_cast<std::size_t>(i % factor)];
   }
-  return std::max_element(changes.begin(), changes.end()) - changes.begin();
+  return std::ranges::max_element(changes) - changes.begin();
 }
 
 Index unwrap(Eigen::Ref<Eigen::VectorXd> values, double wrap) {
@@ -110,7 +110,7 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
     if (!std::isnan(step)) steps.push_back(step);
   }
   if (steps.size() < 10) return 0.0;
-  const double largest = *std::max_element(steps.begin(), steps.end());
+  const double largest = *std::ranges::max_element(steps);
   const std::size_t most = steps.size() * 98 / 100;
   const double usual = order_statistic(std::move(steps), most);
   // A number that begins again jumps by nearly its whole range, far more than it ever moves in a step.
@@ -122,8 +122,8 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
                        values.array().isNaN().select(std::numeric_limits<double>::infinity(), values.array()).minCoeff();
   for (const double period : periods) {
     if (range > period * (1.0 + 1e-9) || range < 0.9 * period) continue;
-    const bool all = std::all_of(steps.begin(), steps.end(),
-                                 [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
+    const bool all =
+        std::ranges::all_of(steps, [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
     if (all) return period;
   }
   return 0.0;

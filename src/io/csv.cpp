@@ -115,7 +115,7 @@ double finite_number(std::string_view text, const std::string& path, long line, 
 }
 
 std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view column) {
-  const auto found = std::find(columns.begin(), columns.end(), column);
+  const auto found = std::ranges::find(columns, column);
   if (found == columns.end()) return std::nullopt;
   return static_cast<std::size_t>(found - columns.begin());
 }
@@ -177,8 +177,7 @@ CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) 
   if (!impl_->next(header)) throw Error("the file is empty", path, "the first line must hold the column names");
   split(header, impl_->fields);
   double ignored_value = 0;
-  if (std::all_of(impl_->fields.begin(), impl_->fields.end(),
-                  [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
+  if (std::ranges::all_of(impl_->fields, [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
     throw Error("the header line is missing: the first line holds numbers only", place(path, impl_->line()),
                 "add a first line with the column names, separated by commas");
   }

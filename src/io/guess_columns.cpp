@@ -120,7 +120,7 @@ std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription
   Set set;
   std::vector<long> places;
   if (members.size() > drives) members = drives_among(members, robot.drives());
-  if (std::all_of(members.begin(), members.end(), is_log_name)) {
+  if (std::ranges::all_of(members, is_log_name)) {
     for (const Candidate& member : members) places.push_back(member.words.numbers.back());
   } else if (members.size() != drives) {
     return std::nullopt;
@@ -250,8 +250,8 @@ bool contradicts(const Set& set, const ColumnMap& map, int drives) {
   if (drives != 1 || position == nullptr) return false;
   const std::vector<long> theirs = read_header_words(position->source, "").numbers;
   const std::vector<long>& ours = set.of_drive[0].words.numbers;
-  const auto shared = [&](long number) { return std::find(theirs.begin(), theirs.end(), number) != theirs.end(); };
-  return !theirs.empty() && !ours.empty() && std::none_of(ours.begin(), ours.end(), shared);
+  const auto shared = [&](long number) { return std::ranges::find(theirs, number) != theirs.end(); };
+  return !theirs.empty() && !ours.empty() && std::ranges::none_of(ours, shared);
 }
 
 void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults, ColumnMap& map) {
@@ -287,12 +287,11 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
                                          const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
   const std::vector<Candidate> candidates = candidates_of(recording, quantity, map);
   std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
-  sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const Set& set) { return contradicts(set, map, robot.drives()); }),
-             sets.end());
+  std::erase_if(sets, [&](const Set& set) { return contradicts(set, map, robot.drives()); });
   if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
   // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a current.
   const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
-  std::stable_sort(sets.begin(), sets.end(), [&](const Set& a, const Set& b) { return rank(a) > rank(b); });
+  std::ranges::stable_sort(sets, [&](const Set& a, const Set& b) { return rank(a) > rank(b); });
   const Set& best = sets.front();
   if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
     return {{quantity,
@@ -311,7 +310,7 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
   add_set(best, robot, quantity, defaults, map);
   if (!best.doubt.empty()) {
     const std::string note = recording.file + ": " + best.doubt;
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   }
   return {};
 }

@@ -14,9 +14,8 @@ using WordList = std::vector<std::string_view>;
 struct Vocabulary {
   WordList alone, within;
   [[nodiscard]] bool holds(std::string_view word) const {
-    if (std::find(alone.begin(), alone.end(), word) != alone.end()) return true;
-    return std::any_of(within.begin(), within.end(),
-                       [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
+    if (std::ranges::find(alone, word) != alone.end()) return true;
+    return std::ranges::any_of(within, [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
   }
 };
 
@@ -58,12 +57,12 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, const
   for (const std::string& word : words) {
     for (const Quantity quantity : {Quantity::acceleration, Quantity::velocity, Quantity::torque, Quantity::position}) {
       if (!vocabulary(quantity).holds(word)) continue;
-      if (std::find(said.begin(), said.end(), quantity) == said.end()) said.push_back(quantity);
+      if (std::ranges::find(said, quantity) == said.end()) said.push_back(quantity);
       break;
     }
   }
   if (unit) {
-    const bool agrees = said.empty() || std::find(said.begin(), said.end(), unit->quantity) != said.end();
+    const bool agrees = said.empty() || std::ranges::find(said, unit->quantity) != said.end();
     return agrees ? std::optional(unit->quantity) : std::nullopt;
   }
   if (said.empty()) return std::nullopt;
@@ -105,7 +104,7 @@ HeaderWords read_header_words(const std::string& column, const std::string& unit
   header.unit = unit.empty() ? parts.unit : unit;
   const std::vector<std::string> words = words_of(header.stem);
   const auto any = [&](const Vocabulary& vocabulary) {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return vocabulary.holds(word); });
+    return std::ranges::any_of(words, [&](const std::string& word) { return vocabulary.holds(word); });
   };
   const auto known = log_unit(header.unit);
   if (!known && time_unit_s(header.unit) && !header.unit.empty()) header.excluded = true;

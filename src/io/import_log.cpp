@@ -279,8 +279,7 @@ class Builder {
       }
       return true;
     };
-    const bool all_on_grid =
-        std::all_of(prepared_.begin(), prepared_.end(), [](const Prepared& one) { return one.taken.how == "as recorded"; });
+    const bool all_on_grid = std::ranges::all_of(prepared_, [](const Prepared& one) { return one.taken.how == "as recorded"; });
     Index begin = 0, end = n;
     if (!all_on_grid) {
       while (begin < end && !complete(begin)) ++begin;

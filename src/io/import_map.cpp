@@ -61,12 +61,11 @@ void LogImport::note_joints_beyond(Quantity quantity) {
 
 bool LogImport::is_taken(const RecordedChannel& channel) const {
   const auto named = [&](const std::string& source) {
-    return source == channel.name || std::find(channel.aliases.begin(), channel.aliases.end(), source) != channel.aliases.end();
+    return source == channel.name || std::ranges::find(channel.aliases, source) != channel.aliases.end();
   };
-  const bool time = std::any_of(recording_.timelines.begin(), recording_.timelines.end(),
-                                [&](const Timeline& line) { return line.name == channel.name; });
+  const bool time = std::ranges::any_of(recording_.timelines, [&](const Timeline& line) { return line.name == channel.name; });
   return time || named(map_.time_source) ||
-         std::any_of(map_.channels.begin(), map_.channels.end(), [&](const ChannelMap& one) { return named(one.source); });
+         std::ranges::any_of(map_.channels, [&](const ChannelMap& one) { return named(one.source); });
 }
 
 /// Lines of a map for the columns that were not taken, as comments: the user fills in what the names do not say.
@@ -104,8 +103,7 @@ std::string LogImport::map_of_the_rest() const {
 
 /// The time as far as it is known: a live block where nothing is, so that one line is all that is to be filled in.
 std::string LogImport::open_time() const {
-  const bool known =
-      std::all_of(recording_.timelines.begin(), recording_.timelines.end(), [](const Timeline& t) { return t.t_s.size() > 0; });
+  const bool known = std::ranges::all_of(recording_.timelines, [](const Timeline& t) { return t.t_s.size() > 0; });
   if (known) return "";
   if (map_.time_source.empty()) {
     return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or rate_hz = "

@@ -154,8 +154,7 @@ std::string normalised(std::string_view text) {
 }
 
 bool is_index(std::string_view text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
 }
 
 bool known(std::string_view unit) {

@@ -35,8 +35,7 @@ int time_rank(const RecordedChannel& channel) {
   const NameAndUnit parts = split_unit(channel.name);
   const std::vector<std::string> words = words_of(parts.stem);
   const auto has = [&](std::initializer_list<const char*> any) {
-    return std::any_of(any.begin(), any.end(),
-                       [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); });
+    return std::ranges::any_of(any, [&](const char* word) { return std::ranges::find(words, word) != words.end(); });
   };
   if (has({"header"}) && has({"stamp"})) return 5;  // ROS: when it was measured, not when it was written down
   if (channel.name == "t_s") return 5;
@@ -270,9 +269,8 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
   };
   const std::string plain = without_blanks(source);
   for (const auto* found :
-       {unique([&](const RecordedChannel& c) { return c.name == source; }), unique([&](const RecordedChannel& c) {
-          return std::find(c.aliases.begin(), c.aliases.end(), source) != c.aliases.end();
-        }),
+       {unique([&](const RecordedChannel& c) { return c.name == source; }),
+        unique([&](const RecordedChannel& c) { return std::ranges::find(c.aliases, source) != c.aliases.end(); }),
         unique([&](const RecordedChannel& c) { return without_blanks(c.name) == plain; }),
         unique([&](const RecordedChannel& c) { return without_blanks(split_unit(c.name).stem) == plain; })}) {
     if (found != nullptr) return *found;
@@ -282,8 +280,7 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
 }
 
 void resolve_time(Recording& recording, ColumnMap& map) {
-  const bool open =
-      std::any_of(recording.timelines.begin(), recording.timelines.end(), [](const Timeline& t) { return t.t_s.size() == 0; });
+  const bool open = std::ranges::any_of(recording.timelines, [](const Timeline& t) { return t.t_s.size() == 0; });
   for (const Timeline& timeline : recording.timelines) {
     if (timeline.rows() < 2)
       throw Error("the file holds a header but no data rows", recording.file, "check that the recording is complete");

@@ -289,7 +289,7 @@ class Reader {
       refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop),
              "a Delta's loops end on the plate");
     const robot_file::LinkPlace& place = tree_.links.at(other->link);
-    const auto strut = std::find_if(struts_.begin(), struts_.end(), [&](const Strut& s) { return s.body == place.body; });
+    const auto strut = std::ranges::find_if(struts_, [&](const Strut& s) { return s.body == place.body; });
     if (strut == struts_.end()) {
       tool_loops_.push_back({&loop, on_plate, other});
       return;

@@ -23,7 +23,7 @@ constexpr double kLargestJitter = 0.02;  // of the stamps, share of the sample t
 
 /// The named columns if the file has all of them, else nothing.
 Eigen::MatrixXd read_block(const CsvTable& table, const std::vector<std::string>& names) {
-  if (!std::all_of(names.begin(), names.end(), [&](const std::string& name) { return table.find(name).has_value(); })) return {};
+  if (!std::ranges::all_of(names, [&](const std::string& name) { return table.find(name).has_value(); })) return {};
   Eigen::MatrixXd block(static_cast<Eigen::Index>(table.rows()), static_cast<Eigen::Index>(names.size()));
   for (std::size_t k = 0; k < names.size(); ++k) block.col(static_cast<Eigen::Index>(k)) = table.numbers(names[k]);
   return block;
@@ -59,8 +59,7 @@ void fill_derivatives(const std::string& path, const Eigen::VectorXd& t_s, const
 }
 
 bool has_drive_columns(const CsvTable& table) {
-  return std::any_of(table.columns().begin(), table.columns().end(),
-                     [](const std::string& name) { return name.rfind("q1_", 0) == 0; });
+  return std::ranges::any_of(table.columns(), [](const std::string& name) { return name.rfind("q1_", 0) == 0; });
 }
 
 void require_finite(const TrajectorySamples& samples, const Log& log, const RobotDescription& robot) {
@@ -94,8 +93,8 @@ TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
     zd.push_back(column.zd);
     zdd.push_back(column.zdd);
   }
-  const bool has_task = !description.parts.empty() &&
-                        std::all_of(z.begin(), z.end(), [&](const std::string& name) { return table.find(name).has_value(); });
+  const bool has_task =
+      !description.parts.empty() && std::ranges::all_of(z, [&](const std::string& name) { return table.find(name).has_value(); });
   const bool has_drives = has_drive_columns(table);
   if (!has_task && !has_drives) {
     const std::string wanted = description.parts.empty() ? z.front() : fmt::format("{}", fmt::join(z, ", "));

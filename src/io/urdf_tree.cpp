@@ -153,8 +153,7 @@ std::string completed(tinyxml2::XMLDocument& document, XMLElement* robot, XmlFac
     if (hung.count(link) == 0) roots.push_back(link);
   if (!roots.empty()) {
     const auto size = [&](const std::string& link) { return size_below(link, children); };
-    std::swap(roots.front(),
-              *std::max_element(roots.begin(), roots.end(), [&](const auto& a, const auto& b) { return size(a) < size(b); }));
+    std::swap(roots.front(), *std::ranges::max_element(roots, [&](const auto& a, const auto& b) { return size(a) < size(b); }));
   }
   for (std::size_t k = 1; k < roots.size(); ++k) {
     XMLElement* joint = robot->InsertNewChildElement("joint");

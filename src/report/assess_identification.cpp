@@ -171,7 +171,7 @@ SourceCounts count_sources(const ConsistentFitSummary& fit, const std::vector<Vi
 
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility, const std::vector<PriorGap>& gaps) {
   const SourceCounts counts = count_sources(fit, visibility);
-  const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
+  const bool motion_lacks = std::ranges::any_of(gaps, [](const PriorGap& gap) { return gap.by_motion; });
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
   check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} known only in sums, {} from the prior",
                              counts.data, counts.fitted, counts.both, counts.sums, counts.prior);

@@ -83,7 +83,7 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
     const double acts = effect(static_cast<Eigen::Index>(i));
     const bool alone = visibility[i] == Visibility::alone, negligible = alone && acts < kNegligibleEffect,
                by_motion = alone && !negligible;
-    auto found = std::find_if(gaps.begin(), gaps.end(), [&](const PriorGap& gap) {
+    auto found = std::ranges::find_if(gaps, [&](const PriorGap& gap) {
       return gap.owner == owner && gap.by_motion == by_motion && gap.negligible == negligible;
     });
     if (found == gaps.end()) {
@@ -298,8 +298,7 @@ std::vector<std::string> Assessment::told() const {
 
 void conclude(const Headlines& headlines, Assessment& out) {
   out.verdict = worst_of(out.checks);
-  const auto first =
-      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
+  const auto first = std::ranges::find_if(out.checks, [&](const Check& check) { return check.verdict == out.verdict; });
   switch (out.verdict) {
     case Verdict::good: out.headline = headlines.good; break;
     case Verdict::caution: out.headline = headline_of(headlines.caution, *first); break;

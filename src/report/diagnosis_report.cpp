@@ -53,7 +53,7 @@ BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
       if (trace.usable(k, drive)) points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
     }
   }
-  std::sort(points.begin(), points.end());
+  std::ranges::sort(points);
   const auto bins = static_cast<std::size_t>(std::min<std::size_t>(kBins, points.size() / 10));
   BinnedResidual out;
   for (VectorXd* v : {&out.x, &out.before, &out.after, &out.error}) *v = VectorXd::Zero(static_cast<Index>(bins));
@@ -98,9 +98,8 @@ PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::st
 std::vector<int> drives_to_show(const Diagnosis& d) {
   std::vector<int> out, all;
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
-    const bool reached = std::any_of(d.named.begin(), d.named.end(), [j](const NamedEffect& one) {
-      return std::count(one.drives.begin(), one.drives.end(), static_cast<int>(j)) > 0;
-    });
+    const bool reached = std::ranges::any_of(
+        d.named, [j](const NamedEffect& one) { return std::ranges::count(one.drives, static_cast<int>(j)) > 0; });
     all.push_back(static_cast<int>(j));
     if (reached || (d.named.empty() && d.drives[j].structure > 0.1)) out.push_back(static_cast<int>(j));
   }
@@ -161,8 +160,7 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
   report.heading("3. What could it be?");
   std::vector<const ConsideredEffect*> order;
   for (const ConsideredEffect& one : d.considered) order.push_back(&one);
-  std::sort(order.begin(), order.end(),
-            [](const ConsideredEffect* a, const ConsideredEffect* b) { return a->gain_alone > b->gain_alone; });
+  std::ranges::sort(order, [](const ConsideredEffect* a, const ConsideredEffect* b) { return a->gain_alone > b->gain_alone; });
   report.paragraph(
       fmt::format("{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
                   "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
@@ -259,7 +257,7 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 
 void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("5. Does it hold on a log that took no part?");
-  const auto held = std::find_if(d.traces.begin(), d.traces.end(), [](const DiagnosisTrace& t) { return t.holdout; });
+  const auto held = std::ranges::find_if(d.traces, [](const DiagnosisTrace& t) { return t.holdout; });
   if (held == d.traces.end()) {
     report.paragraph("There was no hold-out log (--holdout), so nothing can be proven.");
     return;

@@ -94,7 +94,7 @@ std::string name_of_group(const std::vector<int>& drives) {
 Series interval_means(const Eigen::VectorXd& x, const Eigen::VectorXd& e, double correlation) {
   std::vector<Index> order(static_cast<std::size_t>(x.size()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return x(a) < x(b); });
+  std::ranges::stable_sort(order, [&](Index a, Index b) { return x(a) < x(b); });
   const Index intervals = std::max<Index>(1, std::min<Index>(kIntervals, x.size() / 8));
   Series means{"mean, ± 95 %",         Eigen::VectorXd(intervals), Eigen::VectorXd(intervals),
                SeriesStyle::errorbars, Eigen::VectorXd(intervals), PlotColor::vermillion};
@@ -206,7 +206,7 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
     }
     if (validation.processing.filter && !spec.series.empty())
       spec.vertical_markers.push_back({validation.processing.cutoff_hz, j == 0 ? "cut-off of the motion" : ""});
-    const bool flat = std::all_of(spec.series.begin(), spec.series.end(), [](const Series& s) { return !(s.y.maxCoeff() > 0); });
+    const bool flat = std::ranges::all_of(spec.series, [](const Series& s) { return !(s.y.maxCoeff() > 0); });
     if (!spec.series.empty() && !flat) panels.push_back(std::move(spec));
   }
   if (panels.empty()) {

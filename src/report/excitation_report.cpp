@@ -115,8 +115,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
       noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  std::ranges::stable_sort(order,
+                           [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
   const auto fill = [&](Table& table, bool only_hidden) {
     for (const Eigen::Index k : order) {
       const double relative = relative_std(input, k);

@@ -22,8 +22,7 @@ void add_cutoff_figure(HtmlReport& report, const Identification& identification)
   // Of each drive the log in which its motion reaches highest.
   const auto& logs = identification.cutoff->bands;
   for (std::size_t j = 0; j < logs.front().size(); ++j) {
-    const auto fastest =
-        std::max_element(logs.begin(), logs.end(), [j](const auto& a, const auto& b) { return a[j].top_hz < b[j].top_hz; });
+    const auto fastest = std::ranges::max_element(logs, [j](const auto& a, const auto& b) { return a[j].top_hz < b[j].top_hz; });
     const MotionBand& band = (*fastest)[j];
     if (!(band.noise_density > 0)) continue;
     spec.series.push_back({drive_name(static_cast<int>(j)),

@@ -49,7 +49,7 @@ Verdict verdict_of(const std::vector<LogFinding>& findings) {
 
 std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
   const auto count = [&](FindingLevel level) {
-    return std::count_if(findings.begin(), findings.end(), [level](const LogFinding& f) { return f.level == level; });
+    return std::ranges::count_if(findings, [level](const LogFinding& f) { return f.level == level; });
   };
   const auto many = [](std::ptrdiff_t number, const char* one) {
     return number == 0 ? std::string() : fmt::format(", {} {}{}", number, one, number == 1 ? "" : "s");
@@ -79,7 +79,7 @@ void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findin
 }
 
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings) {
-  if (std::all_of(findings.begin(), findings.end(), [](const LogFinding& f) { return f.level == FindingLevel::fine; })) return;
+  if (std::ranges::all_of(findings, [](const LogFinding& f) { return f.level == FindingLevel::fine; })) return;
   report.heading("Check of the logs");
   add_finding_table(report, findings, false);
 }

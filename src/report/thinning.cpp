@@ -144,7 +144,7 @@ std::vector<Index> one_a_cell(const Series& series, const Pixels& pixels, const 
     if (reach(i, 1.0) > reach(entry->second[1], 1.0)) entry->second[1] = i;
   }
   for (const auto& [column, ends] : extremes) kept.insert(kept.end(), ends.begin(), ends.end());
-  std::sort(kept.begin(), kept.end());
+  std::ranges::sort(kept);
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   return kept;
 }

@@ -21,7 +21,7 @@ class Values {
       : names_(mechanism_parameter_names(description)), p_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names_.size()))) {
     for (std::size_t k = 0; k < names_.size(); ++k) {
       for (const std::string& name : {names_[k], shared(names_[k])}) {
-        const auto found = std::find(names.begin(), names.end(), name);
+        const auto found = std::ranges::find(names, name);
         if (found == names.end()) continue;
         p_(static_cast<Eigen::Index>(k)) = p(found - names.begin());
         break;
@@ -29,7 +29,7 @@ class Values {
     }
   }
   double& operator[](const std::string& name) {
-    const auto found = std::find(names_.begin(), names_.end(), name);
+    const auto found = std::ranges::find(names_, name);
     if (found == names_.end()) throw Error("the robot has no parameter " + name, "", "", ExitCode::usage);
     return p_(found - names_.begin());
   }
@@ -75,9 +75,8 @@ class Builder {
     for (const auto& [name, more] : machine_.parameters) values_[name] += more;
     MechanismOptions options;
     options.home_offset = machine_.home_offset;
-    options.passive_joints = std::any_of(effects.begin(), effects.end(), [](const Effect& effect) {
-      return effect_kind(effect.id).place == EffectPlace::passive_joints;
-    });
+    options.passive_joints = std::ranges::any_of(
+        effects, [](const Effect& effect) { return effect_kind(effect.id).place == EffectPlace::passive_joints; });
     parts_.gravity = machine_.description.gravity;
     parts_.mechanism = make_mechanism(machine_.description, values_.all(), options);
     add_laws(effects);
@@ -88,7 +87,7 @@ class Builder {
  private:
   void change(const Effect& effect) {
     const std::vector<int> joints = effect_joints(effect.id, machine_.description);
-    if (std::find(joints.begin(), joints.end(), effect.joint) == joints.end())
+    if (std::ranges::find(joints, effect.joint) == joints.end())
       refuse(effect, "this robot has no such place for the effect", "look at delta-simulate --list-effects");
     check_sizes(effect, std::string(effect_kind(effect.id).name), ExitCode::usage);
     if (pushes_plate(effect.id)) parts_.plate_forces.push_back(effect);

@@ -27,7 +27,7 @@ double LimitCheck::margin() const {
 }
 
 const LimitUse& LimitCheck::tightest() const {
-  return *std::max_element(uses.begin(), uses.end(), [](const LimitUse& a, const LimitUse& b) { return a.load < b.load; });
+  return *std::ranges::max_element(uses, [](const LimitUse& a, const LimitUse& b) { return a.load < b.load; });
 }
 
 void LimitCheck::merge(const LimitCheck& other, double starts_at_s) {

@@ -23,7 +23,7 @@ bool is_missing_word(std::string_view field) {
                                         "nan(ind)", "undefined", "infinity", "-infinity"};
   if (field.size() > 10) return false;
   const std::string word = lower(field);
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  return std::ranges::find(kWords, word) != kWords.end();
 }
 
 bool convert(const char* begin, const char* end, double& value) {

@@ -222,7 +222,7 @@ Layout sniff_layout(std::string_view text, const std::string& path) {
   if (lines.empty()) throw Error("the file is empty", path, "check that the recording or its export is complete");
   const auto marks = best_marks(lines);
   if (!marks) {
-    const auto named = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return !is_comment(line.text); });
+    const auto named = std::ranges::find_if(lines, [](const Line& line) { return !is_comment(line.text); });
     const bool header_only = lines.size() <= 2 && named != lines.end();
     throw Error(header_only ? "the file holds a header but no data rows" : "no rows of numbers are found in this file", path,
                 header_only

@@ -119,8 +119,8 @@ char decimal_of(const TextFile& file, const Header& header) {
   std::size_t points = 0, commas = 0;
   for_each_line(file.text, [&](std::string_view line, long number) {
     if (number < header.first_row) return true;
-    points += static_cast<std::size_t>(std::count(line.begin(), line.end(), '.'));
-    commas += static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+    points += static_cast<std::size_t>(std::ranges::count(line, '.'));
+    commas += static_cast<std::size_t>(std::ranges::count(line, ','));
     return number < header.first_row + 1000;
   });
   return commas > points ? ',' : '.';

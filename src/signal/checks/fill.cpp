@@ -231,12 +231,11 @@ void fill_missing_numbers(CheckRoom& room) {
 
 void refuse_too_many_filled(CheckRoom& room) {
   const Log& log = room.log;
-  const auto filled = std::count_if(log.filled.begin(), log.filled.end(), [](char mark) { return mark != Log::kMeasured; });
+  const auto filled = std::ranges::count_if(log.filled, [](char mark) { return mark != Log::kMeasured; });
   const double share = static_cast<double>(filled) / static_cast<double>(log.samples());
   // One sample must be allowed in a log of any length.
   if (share > room.options.max_filled_share && filled > room.options.max_filled_gap) {
-    const auto first =
-        std::find_if(log.filled.begin(), log.filled.end(), [](char mark) { return mark != Log::kMeasured; }) - log.filled.begin();
+    const auto first = std::ranges::find_if(log.filled, [](char mark) { return mark != Log::kMeasured; }) - log.filled.begin();
     throw UnusablePart(fmt::format("{:.2g} % of the samples are missing or spoilt, the first one here", 100.0 * share),
                        room.where(first), "look for lost packets or a loose encoder cable, and record again");
   }

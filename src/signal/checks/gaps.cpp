@@ -48,7 +48,7 @@ std::vector<Index> borders_of(CheckRoom& room, double longest, Tally& gaps) {
   const Eigen::VectorXd& t = room.log.t_s;
   std::vector<Index> borders{0};
   for (Index i = 1; i < t.size(); ++i) {
-    const bool recording = std::binary_search(room.recordings.begin(), room.recordings.end(), i);
+    const bool recording = std::ranges::binary_search(room.recordings, i);
     if (!recording && t(i) - t(i - 1) <= longest) continue;
     if (!recording) gaps.add(i);
     borders.push_back(i);
@@ -112,7 +112,7 @@ void drop_blind_rows(CheckRoom& room) {
   std::vector<Index> recordings;
   bool new_recording = false;
   for (Index i = 0; i < n; ++i) {
-    new_recording = new_recording || std::binary_search(room.recordings.begin(), room.recordings.end(), i);
+    new_recording = new_recording || std::ranges::binary_search(room.recordings, i);
     if (blind[static_cast<std::size_t>(i)] != 0) continue;
     if (new_recording && !rows.empty()) recordings.push_back(static_cast<Index>(rows.size()));
     new_recording = false;
