@@ -367,7 +367,7 @@ namespace {
 /// All stages for one segment: random starts, kicks of the best, polishing.
 std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options, const Clock& clock,
                                         double slice_end_s, int starts, std::uint64_t seed,
-                                        const std::optional<FourierSeries>& incumbent, Excitation& result, RunCount& run,
+                                        const std::optional<FourierSeries>& incumbent, RunCount& run,
                                         const std::function<void(const Candidate&)>& first) {
   const double begin = clock.seconds();
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
@@ -432,10 +432,6 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
     if (no_time(slice_end_s)) return;
     attempt(static_cast<std::size_t>(starts + k), before[best[static_cast<std::size_t>(k)]]->series, true, slice_end_s);
   });
-  for (int k = 0; k < starts; ++k) {
-    const auto& candidate = found[static_cast<std::size_t>(k)];
-    result.start_efficiency.push_back(candidate ? candidate->value : -std::numeric_limits<double>::infinity());
-  }
   for (const std::size_t k : ranked(found)) {
     // Checked more finely, the room between the samples turns out larger.
     const auto safe = fitted(search.space(), search.limits(), found[k]->series, kLargestStretch, kVerifySamples);
@@ -511,7 +507,7 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
         result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
       const long evaluations_before = run.evaluations;
-      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], result, run, first);
+      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], run, first);
       evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
         const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);

@@ -132,21 +132,16 @@ class Solver {
     return {(-b - root) / a, (-b + root) / a};
   }
 
-  /// Largest error of a strut's length, and of its direction where a centre of mass shows it, for a plate of this radius.
-  [[nodiscard]] double misfit(double radius, std::size_t k, double length) const {
-    double worst = 0;
+  /// Whether struts of this length, in the directions that their centres of mass show, reach a plate of this radius held at limb k.
+  [[nodiscard]] bool closes(double radius, std::size_t k, double length) const {
     const Vec centre = *ends_[k] - radius * limbs_[k].outwards;
-    for (const LimbPlace& limb : limbs_)
-      worst = std::max(worst, std::abs((limb.elbow - centre - radius * limb.outwards).norm() - length));
-    return worst;
-  }
-  [[nodiscard]] double disagreement(double radius, std::size_t k) const {
-    double worst = 0;
-    const Vec centre = *ends_[k] - radius * limbs_[k].outwards;
-    for (std::size_t i = 0; i < limbs_.size(); ++i)
-      if (const auto line = direction_of(parts_.limbs[i]))
-        worst = std::max(worst, line->cross((centre + radius * limbs_[i].outwards - limbs_[i].elbow).normalized()).norm());
-    return worst;
+    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+      const Vec strut = centre + radius * limbs_[i].outwards - limbs_[i].elbow;
+      const auto line = direction_of(parts_.limbs[i]);
+      if (std::abs(strut.norm() - length) > kClosure * length) return false;
+      if (line && line->cross(strut.normalized()).norm() > kDirection) return false;
+    }
+    return true;
   }
 
   void hold_plate(double radius, std::size_t k) {
@@ -166,10 +161,10 @@ class Solver {
     for (const double a : both.front())
       for (const double b : both.back()) candidates.push_back((a + b) / 2);
     // In a symmetric pose a plate wider than the elbows closes as well; the smaller one is meant.
-    std::ranges::sort(candidates, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    std::ranges::sort(candidates, {}, [](double radius) { return std::abs(radius); });
     const auto before = ends_;
     for (const double radius : candidates) {
-      if (misfit(radius, k, length) > kClosure * length || disagreement(radius, k) > kDirection) continue;
+      if (!closes(radius, k, length)) continue;
       hold_plate(radius, k);
       if (alike() && options_.platform_radius && std::abs(*options_.platform_radius - radius) > kLevel)
         ask(fmt::format("--platform-radius is {:.6g} m, but the pose of the CAD closes with {:.6g} m", *options_.platform_radius,

@@ -64,7 +64,7 @@ Pose frame_of_drives(const std::vector<const Joint*>& drives) {
 
 void place_base(UrdfTree& tree) {
   std::vector<const Joint*> drives;
-  for (const int index : tree.bodies[0].joints) drives.push_back(&tree.joints[static_cast<std::size_t>(index)]);
+  for (const int index : tree.bodies[0].joints) drives.push_back(&tree.joint(index));
   if (drives.empty()) return;  // the reader refuses it in its own words
   Pose X_RW = Pose::Identity();
   bool found = false;

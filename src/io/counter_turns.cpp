@@ -15,17 +15,6 @@ using Eigen::Index;
 /// A machine may overshoot its limits, and a robot file round them, by this share of the range.
 constexpr double kOvershoot = 0.02;
 
-struct Range {
-  double low, high;
-  [[nodiscard]] double width() const { return high - low; }
-};
-
-Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  const auto known = !values.array().isNaN();
-  return {known.select(values.array(), std::numeric_limits<double>::infinity()).minCoeff(),
-          known.select(values.array(), -std::numeric_limits<double>::infinity()).maxCoeff()};
-}
-
 /// The range of numbers that a counter without a jump may have: a turn of its angle, or of counts the encoder's turn or a usual
 /// number of bits. 0: none.
 double likely_wrap(const Range& recorded, const ChannelMap& map) {

@@ -26,12 +26,12 @@ std::vector<Words> told_apart(const std::vector<std::string>& names) {
   Words shared = words.front();
   for (const Words& one : words) {
     Words both;
-    std::set_intersection(shared.begin(), shared.end(), one.begin(), one.end(), std::back_inserter(both));
+    std::ranges::set_intersection(shared, one, std::back_inserter(both));
     shared = std::move(both);
   }
   for (Words& one : words) {
     Words rest;
-    std::set_difference(one.begin(), one.end(), shared.begin(), shared.end(), std::back_inserter(rest));
+    std::ranges::set_difference(one, shared, std::back_inserter(rest));
     rest.erase(std::unique(rest.begin(), rest.end()), rest.end());
     one = std::move(rest);
   }

@@ -1,12 +1,11 @@
 #include "deltadyn/io/effect_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/output_file.hpp"
@@ -33,28 +32,21 @@ int version_of(const std::string& path) {
 
 /// Place of a parameter among shapes and amplitudes.
 struct Slot {
+  std::string name;
   bool amplitude;
   Index index;
   std::string unit;
 };
 
-const Slot* find_slot(const std::vector<std::pair<std::string, Slot>>& slots, std::string_view name) {
-  for (const auto& [slot_name, slot] : slots) {
-    if (slot_name == name) return &slot;
-  }
-  return nullptr;
-}
-
 /// A shape that is the amplitude, too, stands in the file once.
-std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int joint, const RobotDescription& robot) {
-  std::vector<std::pair<std::string, Slot>> slots;
-  for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
-    slots.emplace_back(kind.amplitudes[k].name,
-                       Slot{true, static_cast<Index>(k), effect_unit(kind.amplitudes[k].unit, joint, robot)});
-  }
-  for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
-    slots.emplace_back(kind.shapes[k].name, Slot{false, static_cast<Index>(k), effect_unit(kind.shapes[k].unit, joint, robot)});
-  }
+std::vector<Slot> slots_of(const EffectKind& kind, int joint, const RobotDescription& robot) {
+  std::vector<Slot> slots;
+  const auto add = [&](const auto& parameter, bool amplitude, std::size_t index) {
+    slots.push_back(
+        {std::string(parameter.name), amplitude, static_cast<Index>(index), effect_unit(parameter.unit, joint, robot)});
+  };
+  for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) add(kind.amplitudes[k], true, k);
+  for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) add(kind.shapes[k], false, k);
   return slots;
 }
 
@@ -67,7 +59,6 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
                 place(path, 1), "run delta-diagnose again with --effects-out to write it anew");
   }
   std::vector<Effect> effects;
-  std::map<std::pair<EffectId, int>, std::size_t> known;
   CsvReader table(path);
   const auto require = [&](const char* name) {
     const auto found = table.find(name);
@@ -88,22 +79,21 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
                   "delta-diagnose --list-effects shows the names; a file of an older version must be written anew");
     }
     const int joint = effect_joint(kind->id, table.text(joint_column), robot, place(path, table.line(), "joint"));
-    const auto key = std::make_pair(kind->id, joint);
-    if (known.find(key) == known.end()) {
-      known[key] = effects.size();
-      Effect effect;
-      effect.id = kind->id;
-      effect.joint = joint;
-      effect.amplitude = effect.amplitude_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->amplitudes.size()), kNone);
-      effect.shape = effect.shape_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->shapes.size()), kNone);
-      effects.push_back(effect);
+    auto known = std::ranges::find_if(effects, [&](const Effect& other) { return other.id == kind->id && other.joint == joint; });
+    if (known == effects.end()) {
+      Effect fresh;
+      fresh.id = kind->id;
+      fresh.joint = joint;
+      fresh.amplitude = fresh.amplitude_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->amplitudes.size()), kNone);
+      fresh.shape = fresh.shape_std = Eigen::VectorXd::Constant(static_cast<Index>(kind->shapes.size()), kNone);
+      known = effects.insert(effects.end(), fresh);
     }
-    Effect& effect = effects[known[key]];
+    Effect& effect = *known;
     const auto slots = slots_of(*kind, joint, robot);
-    const Slot* slot = find_slot(slots, table.text(parameter_column));
-    if (slot == nullptr) {
+    const auto slot = std::ranges::find(slots, table.text(parameter_column), &Slot::name);
+    if (slot == slots.end()) {
       std::string choice;
-      for (const auto& entry : slots) choice += (choice.empty() ? "" : ", ") + entry.first;
+      for (const Slot& entry : slots) choice += (choice.empty() ? "" : ", ") + entry.name;
       throw Error(fmt::format("the effect {} has no parameter '{}'", name, table.text(parameter_column)),
                   place(path, table.line(), "parameter"), "its parameters are " + choice);
     }
@@ -127,10 +117,10 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
     for (Index k = 0; k < effect.shape.size(); ++k) {
       if (std::isnan(effect.shape(k))) effect.shape(k) = kind.shapes[static_cast<std::size_t>(k)].otherwise;
     }
-    for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
+    for (const Slot& slot : slots_of(kind, effect.joint, robot)) {
       if (std::isnan((slot.amplitude ? effect.amplitude : effect.shape)(slot.index))) {
-        throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, effect_joint_name(effect.id, effect.joint)), path,
-                    "add a row for it");
+        throw Error(fmt::format("{} of {} at {} is missing", slot.name, kind.name, effect_joint_name(effect.id, effect.joint)),
+                    path, "add a row for it");
       }
     }
     check_sizes(effect, path, ExitCode::bad_input);
@@ -143,10 +133,10 @@ void write_effects(const std::string& path, const std::vector<Effect>& effects, 
   file.print("# deltadyn effects {}\neffect,joint,parameter,value,unit,std\n", kEffectFileVersion);
   for (const Effect& effect : effects) {
     const EffectKind& kind = effect_kind(effect.id);
-    for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
+    for (const Slot& slot : slots_of(kind, effect.joint, robot)) {
       const Eigen::VectorXd& std = slot.amplitude ? effect.amplitude_std : effect.shape_std;
       const bool has_std = std.size() > slot.index && std::isfinite(std(slot.index));
-      file.print("{},{},{},{},{},{}\n", kind.name, effect_joint_name(effect.id, effect.joint), name,
+      file.print("{},{},{},{},{},{}\n", kind.name, effect_joint_name(effect.id, effect.joint), slot.name,
                  (slot.amplitude ? effect.amplitude : effect.shape)(slot.index), slot.unit,
                  has_std ? fmt::format("{}", std(slot.index)) : std::string());
     }

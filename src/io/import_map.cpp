@@ -10,6 +10,7 @@
 
 #include "deltadyn/io/import_log.hpp"
 
+#include "common_grid.hpp"
 #include "guess_columns.hpp"
 #include "header_words.hpp"
 
@@ -22,7 +23,7 @@ std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kin
   if (!unit) return {};
   std::vector<std::string> lines;
   const auto want = [&lines](const char* key, const char* what) {
-    lines.push_back(fmt::format("# {} = NUMBER   # STILL OPEN: {}", key, what));
+    lines.push_back(fmt::format("# {} = NUMBER   # STILL OPEN: {}\n", key, what));
   };
   if (unit->dimension == Dimension::current && !channel.torque_constant)
     want("torque_constant_Nm_A", "of the motor [N m per A, as the current is given, peak or rms]");
@@ -33,12 +34,6 @@ std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kin
       unit->dimension == Dimension::angle || unit->dimension == Dimension::counts || unit->dimension == Dimension::moment;
   if (kind == DriveKind::prismatic && of_motor && !channel.lead) want("lead_m_turn", "travel for a turn of the motor [m]");
   return lines;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
 }
 
 }  // namespace
@@ -92,7 +87,7 @@ std::string LogImport::map_of_the_rest() const {
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
     for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3)) lines.replace(at, 1, "\n# ");
-    text += "\n# " + lines + "\n" + joined(open_constants(one, kind));
+    text += "\n# " + lines + "\n" + fmt::format("{}", fmt::join(open_constants(one, kind), ""));
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY (\"position\", "
@@ -143,21 +138,20 @@ std::string LogImport::map_text() const {
   }
   remarks.push_back("Every column of the recording, with its range:");
   for (const RecordedChannel& channel : recording_.channels) {
-    const auto known = !channel.values.array().isNaN();
-    if (channel.text_line > 0 || !known.any()) {
+    if (channel.text_line > 0 || channel.values.array().isNaN().all()) {
       remarks.push_back(fmt::format("  \"{}\"  no numbers", channel.name));
       continue;
     }
-    const double high = known.select(channel.values.array(), -HUGE_VAL).maxCoeff(),
-                 low = known.select(channel.values.array(), HUGE_VAL).minCoeff();
+    const Range range = range_of(channel.values);
     remarks.push_back(fmt::format("  \"{}\"{}  {:.6g} to {:.6g}", channel.name,
-                                  channel.unit.empty() ? "" : " [" + channel.unit + "]", low, high));
+                                  channel.unit.empty() ? "" : " [" + channel.unit + "]", range.low, range.high));
   }
   ColumnMap head = map_;
   head.channels.clear();
   std::string text = to_toml(head, remarks) + open_time();
   for (const ChannelMap& channel : map_.channels) {
-    text += "\n" + to_toml(channel) + joined(open_constants(channel, robot_.kind_of_drive(channel.drive - 1)));
+    text += "\n" + to_toml(channel) +
+            fmt::format("{}", fmt::join(open_constants(channel, robot_.kind_of_drive(channel.drive - 1)), ""));
   }
   return text + map_of_the_rest();
 }

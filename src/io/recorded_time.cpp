@@ -34,9 +34,7 @@ std::string without_blanks(const std::string& name) {
 int time_rank(const RecordedChannel& channel) {
   const NameAndUnit parts = split_unit(channel.name);
   const std::vector<std::string> words = words_of(parts.stem);
-  const auto has = [&](std::initializer_list<const char*> any) {
-    return std::ranges::any_of(any, [&](const char* word) { return std::ranges::find(words, word) != words.end(); });
-  };
+  const auto has = [&](std::initializer_list<const char*> any) { return std::ranges::find_first_of(words, any) != words.end(); };
   if (has({"header"}) && has({"stamp"})) return 5;  // ROS: when it was measured, not when it was written down
   if (channel.name == "t_s") return 5;
   const bool named = has({"time", "timestamp", "stamp", "zeit", "zeitstempel", "uhrzeit", "clock", "elapsed", "datetime",
@@ -199,13 +197,6 @@ bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColum
   return other_rate || fewer || (plain(one) == plain(other) && other_stamps);
 }
 
-/// A channel's rows where its group's time column has stamps.
-Eigen::VectorXd picked(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& rows) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t k = 0; k < rows.size(); ++k) result(static_cast<Eigen::Index>(k)) = values(rows[k]);
-  return result;
-}
-
 /// Several time columns in a text, each with a rate of its own for the columns to its right: every one becomes a time line.
 /// Returns whether there were such groups.
 bool split_groups(Recording& recording, const ColumnMap& map) {
@@ -227,7 +218,7 @@ bool split_groups(Recording& recording, const ColumnMap& map) {
     Timeline timeline;
     for (const Eigen::Index row : rows) timeline.line.push_back(whole.line[static_cast<std::size_t>(row)]);
     for (std::size_t k = begin; k < end; ++k) {
-      recording.channels[k].values = picked(recording.channels[k].values, rows);
+      recording.channels[k].values = recording.channels[k].values(rows).eval();
       recording.channels[k].timeline = group;
     }
     take_stamps(recording, recording.channels[times[group].index], times[group].unit, timeline);

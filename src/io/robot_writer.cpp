@@ -43,8 +43,9 @@ class Writer {
     root_ = document_.NewElement("robot");
     document_.InsertEndChild(root_);
     root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
-    comment(fmt::format(
-        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type));
+    const std::string words = fmt::format(
+        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type);
+    root_->InsertNewComment(words.c_str());
     base();
     if (robot_.parts.empty()) {
       axis();
@@ -63,8 +64,6 @@ class Writer {
  private:
   // --- elements -------------------------------------------------------------------------------
   static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
-
-  void comment(const std::string& words) { root_->InsertNewComment(words.c_str()); }
 
   static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
     XMLElement* element = child(parent, "origin");
@@ -198,12 +197,6 @@ class Writer {
     for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], number_text(values[k]).c_str());
   }
 
-  [[nodiscard]] double attachment_radius() const {
-    double radius = 0;
-    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.head<2>().norm());
-    return radius;
-  }
-
   // --- the mechanism --------------------------------------------------------------------------
   void base() {
     XMLElement* body = link("base");
@@ -265,7 +258,9 @@ class Writer {
     const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
     joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)), Vec(0, 0, -limb.azimuth));
     XMLElement* body = link("platform");
-    visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), std::max(0.02, attachment_radius()));
+    double radius = 0.02;
+    for (const auto& other : robot_.limbs) radius = std::max(radius, other.p_BA.head<2>().norm());
+    visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), radius);
     inertial(body, "platform");
   }
 
@@ -348,8 +343,7 @@ class Writer {
       entry->SetAttribute("joint", robot_file::drive_name(i).c_str());
       if (i < robot_.limbs.size() && !robot_.parts.empty()) entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
       if (std::isfinite(robot_.limits[i].acceleration))
-        entry->SetAttribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic ? robot_file::kAccelerationPrismatic
-                                                                                              : robot_file::kAccelerationRevolute,
+        entry->SetAttribute(robot_file::acceleration_attribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic),
                             number_text(robot_.limits[i].acceleration).c_str());
     }
   }

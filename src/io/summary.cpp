@@ -21,7 +21,7 @@ void Summary::add(const std::string& key, const std::string& value, const std::s
 }
 
 void Summary::put(const std::string& key, std::string value, const std::string& unit) {
-  const auto found = std::ranges::find_if(rows_, [&](const Row& row) { return row.key == key; });
+  const auto found = std::ranges::find(rows_, key, &Row::key);
   if (found == rows_.end()) {
     rows_.push_back({key, std::move(value), unit});
   } else {

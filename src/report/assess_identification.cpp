@@ -149,36 +149,21 @@ Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
   return check;
 }
 
-struct SourceCounts {
-  int fitted = 0, data = 0, both = 0, sums = 0, prior = 0, neither = 0;
-};
-
-SourceCounts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
-  SourceCounts counts;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    if (!fit.fitted[i]) continue;
-    ++counts.fitted;
-    switch (decided_by(fit, visibility[i], static_cast<Index>(i))) {
-      case DecidedBy::data: ++counts.data; break;
-      case DecidedBy::both: ++counts.both; break;
-      case DecidedBy::sums: ++counts.sums; break;
-      case DecidedBy::prior: ++counts.prior; break;
-      case DecidedBy::neither: ++counts.neither; break;
-    }
-  }
-  return counts;
-}
-
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility, const std::vector<PriorGap>& gaps) {
-  const SourceCounts counts = count_sources(fit, visibility);
-  const bool motion_lacks = std::ranges::any_of(gaps, [](const PriorGap& gap) { return gap.by_motion; });
+  std::vector<DecidedBy> sources;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    if (fit.fitted[i]) sources.push_back(decided_by(fit, visibility[i], static_cast<Index>(i)));
+  }
+  const auto count = [&sources](DecidedBy source) { return std::ranges::count(sources, source); };
+  const auto sums = count(DecidedBy::sums), prior = count(DecidedBy::prior), neither = count(DecidedBy::neither);
+  const bool motion_lacks = std::ranges::any_of(gaps, &PriorGap::by_motion);
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
   check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} known only in sums, {} from the prior",
-                             counts.data, counts.fitted, counts.both, counts.sums, counts.prior);
-  if (counts.neither > 0) check.figure += fmt::format(", {} from neither", counts.neither);
+                             count(DecidedBy::data), sources.size(), count(DecidedBy::both), sums, prior);
+  if (neither > 0) check.figure += fmt::format(", {} from neither", neither);
   if (motion_lacks) {
     check.meaning = "Some parameters that a motion can show were not shown by these logs; the report names them.";
-  } else if (counts.prior + counts.sums + counts.neither > 0) {
+  } else if (prior + sums + neither > 0) {
     check.meaning =
         "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values are not "
         "measured.";
@@ -193,22 +178,15 @@ std::string trusted_values(const ConsistentFitSummary& fit, const std::vector<Vi
   const auto measured = [&](std::size_t i) { return fit.fitted[i] && is_measured(fit, visibility[i], static_cast<Index>(i)); };
 
   std::vector<std::string> names;
-  int friction = 0, friction_from_data = 0;
+  const auto is_friction = [](const std::string& name) { return name.ends_with(".viscous") || name.ends_with(".coulomb"); };
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const std::string& name = fit.names[i];
-    if (name.ends_with(".viscous") || name.ends_with(".coulomb")) {
-      ++friction;
-      friction_from_data += measured(i) ? 1 : 0;
-    }
+    if (measured(i)) names.push_back(fit.names[i]);
   }
-  const bool all_friction = friction > 0 && friction == friction_from_data;
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const std::string& name = fit.names[i];
-    const bool is_friction = name.ends_with(".viscous") || name.ends_with(".coulomb");
-    if (all_friction && is_friction) continue;
-    if (measured(i)) names.push_back(name);
+  const auto friction = std::ranges::count_if(fit.names, is_friction);
+  if (friction > 0 && friction == std::ranges::count_if(names, is_friction)) {
+    std::erase_if(names, is_friction);
+    names.insert(names.begin(), "friction of all joints");
   }
-  if (all_friction) names.insert(names.begin(), "friction of all joints");
   constexpr std::size_t kNamed = 8;  // more do not fit a line; all stand in the table
   if (names.size() > kNamed) {
     const std::size_t others = names.size() - kNamed;

@@ -133,18 +133,13 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
     std::vector<PlotSpec> panels;
     bool grey = false, cut_off = false;
     for (int j = 0; j < robot.drives(); ++j) {
-      PlotSpec torque;
-      torque.title = fmt::format("Drive {}", j + 1);
-      torque.x_label = "time [s]";
-      torque.y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j));
-      torque.height = 210;
-      torque.series.push_back({"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue});
-      torque.series.push_back({"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true});
-      panels.push_back(std::move(torque));
-      PlotSpec rest;
-      rest.x_label = "time [s]";
-      rest.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
-      rest.height = 150;
+      panels.push_back({.title = fmt::format("Drive {}", j + 1),
+                        .x_label = "time [s]",
+                        .y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j)),
+                        .series = {{"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue},
+                                   {"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true}},
+                        .height = 210});
+      PlotSpec rest{.x_label = "time [s]", .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)), .height = 150};
       const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)),
                             reversal = piece(masked_residual(p, j, false, true));
       if (reversal.array().isFinite().any()) {
@@ -178,12 +173,11 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
   constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::vermillion, PlotColor::green};
   std::vector<PlotSpec> panels;
   for (int j = 0; j < robot.drives(); ++j) {
-    PlotSpec spec;
-    spec.title = fmt::format("Drive {}", j + 1);
-    spec.x_label = "frequency [Hz]";
-    spec.y_label = turns(robot, j) ? "[(N m)²/Hz]" : "[N²/Hz]";
-    spec.log_y = true;
-    spec.height = 175;
+    PlotSpec spec{.title = fmt::format("Drive {}", j + 1),
+                  .x_label = "frequency [Hz]",
+                  .y_label = turns(robot, j) ? "[(N m)²/Hz]" : "[N²/Hz]",
+                  .log_y = true,
+                  .height = 175};
     for (std::size_t l = 0; l < std::min(kLogsShown, validation.logs.size()); ++l) {
       const ValidatedLog& log = validation.logs[l];
       const Eigen::VectorXd residual = masked_residual(log.prediction, j, true, true);
@@ -194,12 +188,10 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
                                ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio * validation.processing.cutoff_hz
                                : std::numeric_limits<double>::infinity();
         const Index bins = std::max<Index>(2, (spectrum.frequency_hz.array() <= end).count() - 1);
-        spec.series.push_back({validation.logs.size() > 1 ? short_name(log.file) : "",
-                               spectrum.frequency_hz.segment(1, bins),
-                               spectrum.density.segment(1, bins),
-                               SeriesStyle::line,
-                               {},
-                               kColors[l]});
+        spec.series.push_back({.label = validation.logs.size() > 1 ? short_name(log.file) : "",
+                               .x = spectrum.frequency_hz.segment(1, bins),
+                               .y = spectrum.density.segment(1, bins),
+                               .color = kColors[l]});
       } catch (const Error&) {
         continue;  // too short a log, or no stretch without repaired samples: nothing to draw
       }
@@ -237,21 +229,15 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
       const Eigen::VectorXd X = Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
       const Eigen::VectorXd E = Eigen::Map<Eigen::VectorXd>(e.data(), static_cast<Index>(e.size()));
       const Index step = std::max<Index>(1, (X.size() + kPointsShown - 1) / kPointsShown), points = (X.size() + step - 1) / step;
-      PlotSpec spec;
-      spec.title = fmt::format("Drive {}", j + 1);
-      spec.x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
-                              : fmt::format("position [{}]", position_unit_of(robot, j));
-      spec.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
-      spec.height = 180;
-      spec.series.push_back({"one row",
-                             X(Eigen::seqN(0, points, step)),
-                             E(Eigen::seqN(0, points, step)),
-                             SeriesStyle::points,
-                             {},
-                             PlotColor::grey});
-      spec.series.push_back(interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation));
-      spec.horizontal_markers.push_back({0.0, ""});
-      panels.push_back(std::move(spec));
+      const auto shown = Eigen::seqN(0, points, step);
+      panels.push_back({.title = fmt::format("Drive {}", j + 1),
+                        .x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
+                                            : fmt::format("position [{}]", position_unit_of(robot, j)),
+                        .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
+                        .series = {{"one row", X(shown), E(shown), SeriesStyle::points, {}, PlotColor::grey},
+                                   interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation)},
+                        .horizontal_markers = {{0.0, ""}},
+                        .height = 180});
     }
     if (panels.empty()) continue;
     report.plot(panels,

@@ -11,6 +11,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/trajectory/task_columns.hpp"
 
+#include "assessment_parts.hpp"
 #include "drive_names.hpp"
 #include "excitation_figures.hpp"
 
@@ -71,11 +72,6 @@ Check check_reversals(const ExcitationReportInput& input) {
         format_percent(input.least_away, 2));
   }
   return check;
-}
-
-void add_verdict(HtmlReport& report, const ExcitationReportInput& input) {
-  const Assessment assessment = assess_excitation(input);
-  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
 }
 
 void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
@@ -156,11 +152,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     if (input.base.B.col(k).cwiseAbs().maxCoeff() <= 0)
       none.push_back(input.robot.parameter_names()[static_cast<std::size_t>(k)]);
   }
-  if (!none.empty()) {
-    std::string text = "No motion of the drives shows these parameters: ";
-    for (std::size_t k = 0; k < none.size(); ++k) text += (k > 0 ? ", " : "") + none[k];
-    report.note(text + ".");
-  }
+  if (!none.empty()) report.note(fmt::format("No motion of the drives shows these parameters: {}.", fmt::join(none, ", ")));
 }
 
 void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
@@ -193,16 +185,11 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
   const VisibilityCounts c = counts(input);
   Assessment out;
   out.checks = {check_efficiency(input), check_reversals(input)};
-  for (const Check& check : out.checks) out.verdict = std::max(out.verdict, check.verdict);
-  const char* words = out.verdict == Verdict::good
-                          ? "A good excitation"
-                          : (out.verdict == Verdict::caution ? "A usable excitation" : "A weak excitation");
-  out.headline = words;
-  for (const Check& check : out.checks) {
-    if (check.verdict != out.verdict || check.verdict == Verdict::good) continue;
-    out.headline += fmt::format(": {}", check.figure);
-    break;
-  }
+  const Check& worst = worst_of(out.checks);
+  out.verdict = worst.verdict;
+  out.headline = out.verdict == Verdict::good      ? "A good excitation"
+                 : out.verdict == Verdict::caution ? "A usable excitation: " + worst.figure
+                                                   : "A weak excitation: " + worst.figure;
   out.lines.push_back(
       fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} to spare.",
                   input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
@@ -223,9 +210,9 @@ std::string excitation_report(const ExcitationReportInput& input, const ReportCo
                 "make them with the same robot", ExitCode::usage);
   const RobotDescription& description = input.robot.description();
   HtmlReport report("Excitation of " + description.name,
-                    fmt::format("{}, {} {}, {:.4g} s", description.type, description.drives(),
-                                description.drives() == 1 ? "drive" : "drives", input.plan.duration_s));
-  add_verdict(report, input);
+                    fmt::format("{}, {:.4g} s", robot_in_words(description), input.plan.duration_s));
+  const Assessment assessment = assess_excitation(input);
+  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
   add_key_figures(report, input);
   report.heading("Path");
   add_path_figures(report, input);

@@ -136,20 +136,20 @@ std::string format_duration(double seconds) {
 
 std::string pretty_unit(std::string_view unit) {
   // The names of columns cannot hold a stroke: there the parts behind the first are divisors, except after kg.
-  static constexpr std::array<std::pair<std::string_view, const char*>, 14> kColumnUnits{{{"Nm", "N m"},
-                                                                                          {"Nms", "N m s"},
-                                                                                          {"rad_s", "rad/s"},
-                                                                                          {"rad_s2", "rad/s²"},
-                                                                                          {"m_s", "m/s"},
-                                                                                          {"m_s2", "m/s²"},
-                                                                                          {"deg_s", "deg/s"},
-                                                                                          {"kg_m", "kg m"},
-                                                                                          {"kg_m2", "kg m²"},
-                                                                                          {"kgm2", "kg m²"},
-                                                                                          {"Nm_s_rad", "N m s/rad"},
-                                                                                          {"N_s_m", "N s/m"},
-                                                                                          {"Nms/rad", "N m s/rad"},
-                                                                                          {"percent", "%"}}};
+  static constexpr std::pair<std::string_view, const char*> kColumnUnits[] = {{"Nm", "N m"},
+                                                                              {"Nms", "N m s"},
+                                                                              {"rad_s", "rad/s"},
+                                                                              {"rad_s2", "rad/s²"},
+                                                                              {"m_s", "m/s"},
+                                                                              {"m_s2", "m/s²"},
+                                                                              {"deg_s", "deg/s"},
+                                                                              {"kg_m", "kg m"},
+                                                                              {"kg_m2", "kg m²"},
+                                                                              {"kgm2", "kg m²"},
+                                                                              {"Nm_s_rad", "N m s/rad"},
+                                                                              {"N_s_m", "N s/m"},
+                                                                              {"Nms/rad", "N m s/rad"},
+                                                                              {"percent", "%"}};
   for (const auto& [plain_name, text] : kColumnUnits)
     if (unit == plain_name) return text;
 

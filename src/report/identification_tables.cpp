@@ -16,23 +16,13 @@ using Eigen::Index;
 constexpr double kInterval95 = 1.96;
 
 const char* words_for(DecidedBy decided) {
-  switch (decided) {
-    case DecidedBy::data: return "data";
-    case DecidedBy::both: return "both";
-    case DecidedBy::sums: return "only sums";
-    case DecidedBy::prior: return "prior";
-    case DecidedBy::neither: return "neither";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"data", "both", "only sums", "prior", "neither"};
+  return kWords[static_cast<std::size_t>(decided)];
 }
 
 const char* words_for(Visibility visibility) {
-  switch (visibility) {
-    case Visibility::alone: return "on its own";
-    case Visibility::combined: return "in sums";
-    case Visibility::hidden: return "not at all";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"on its own", "in sums", "not at all"};
+  return kWords[static_cast<std::size_t>(visibility)];
 }
 
 /// "a, b and c", broken only between the items.
@@ -168,7 +158,7 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   const Eigen::VectorXd std = estimate.std();
   const Index count = base.count();
   Eigen::VectorXd index(count), deviation(count);
-  Table table({{"", Align::right},
+  Table table({{""},
                {"base parameter", Align::left},
                {"unit", Align::left},
                {"least squares ± std"},
@@ -193,15 +183,13 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
       "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above "
       "{:.0f} %, marked); condition number {}.",
       count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
-  PlotSpec spec;
-  spec.x_label = "base parameter (number in the table)";
-  spec.y_label = "deviation [std]";
-  spec.height = 220;
-  spec.series.push_back({"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue});
-  spec.series.push_back({"", index, deviation, SeriesStyle::points, {}, PlotColor::blue});
-  spec.horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}};
-  spec.x_range = PlotRange{0.0, static_cast<double>(count + 1)};
-  report.plot(spec,
+  report.plot({.x_label = "base parameter (number in the table)",
+               .y_label = "deviation [std]",
+               .series = {{"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue},
+                          {"", index, deviation, SeriesStyle::points, {}, PlotColor::blue}},
+               .horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}},
+               .x_range = PlotRange{0.0, static_cast<double>(count + 1)},
+               .height = 220},
               fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
                           far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
                                    : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.",

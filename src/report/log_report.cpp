@@ -8,6 +8,7 @@
 #include "deltadyn/report/log_table.hpp"
 
 #include "drive_figures.hpp"
+#include "drive_names.hpp"
 
 namespace deltadyn {
 namespace {
@@ -48,17 +49,11 @@ Verdict verdict_of(const std::vector<LogFinding>& findings) {
 }
 
 std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
-  const auto count = [&](FindingLevel level) {
-    return std::ranges::count_if(findings, [level](const LogFinding& f) { return f.level == level; });
-  };
-  const auto many = [](std::ptrdiff_t number, const char* one) {
-    return number == 0 ? std::string() : fmt::format(", {} {}{}", number, one, number == 1 ? "" : "s");
-  };
+  const auto count = [&](FindingLevel level) { return std::ranges::count(findings, level, &LogFinding::level); };
   const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning), mended = count(FindingLevel::mended);
-  const std::string rest =
-      many(warnings, "warning") + (mended == 0 ? "" : fmt::format(", {} finding{} mended", mended, mended == 1 ? "" : "s"));
-  if (faults > 0)
-    return fmt::format("a model from these logs is not to be trusted: {} fault{}{}", faults, faults == 1 ? "" : "s", rest);
+  const std::string rest = (warnings == 0 ? "" : ", " + counted(warnings, "warning")) +
+                           (mended == 0 ? "" : ", " + counted(mended, "finding") + " mended");
+  if (faults > 0) return fmt::format("a model from these logs is not to be trusted: {}{}", counted(faults, "fault"), rest);
   if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
   return "no fault was found" + rest;
 }
@@ -105,8 +100,7 @@ void weigh_findings(const std::vector<LogFinding>& findings, Assessment& assessm
 std::string log_report(const Robot& robot, const std::vector<Log>& logs, const ReportContext& context) {
   const RobotDescription& description = robot.description();
   HtmlReport report("Check of logs of " + description.name,
-                    fmt::format("{}, {} {}, {} {}", description.type, description.drives(),
-                                description.drives() == 1 ? "drive" : "drives", logs.size(), logs.size() == 1 ? "log" : "logs"));
+                    fmt::format("{}, {}", robot_in_words(description), counted(std::ssize(logs), "log")));
   const Verdict verdict = verdict_of(context.findings);
   std::vector<std::string> lines;
   for (const LogFinding& f : context.findings) {

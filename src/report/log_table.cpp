@@ -18,15 +18,12 @@ constexpr double kEven = 1e-6;  // of the time between rows: rounding of the sta
 constexpr std::array<const char*, 8> kHead = {"drive",       "travel",       "position step",  "position noise",
                                               "torque step", "torque noise", "position fresh", "moving"};
 
-double& place_of(const std::string& key, ChannelFigures& drive, double& other) {
-  if (key == "travel") return drive.travel;
-  if (key == "step") return drive.step;
-  if (key == "noise") return drive.noise;
-  if (key == "torque_step") return drive.torque_step;
-  if (key == "torque_noise") return drive.torque_noise;
-  if (key == "stale") return drive.fresh_every;
-  return other;
-}
+constexpr std::pair<const char*, double ChannelFigures::*> kFigures[] = {{"travel", &ChannelFigures::travel},
+                                                                         {"step", &ChannelFigures::step},
+                                                                         {"noise", &ChannelFigures::noise},
+                                                                         {"torque_step", &ChannelFigures::torque_step},
+                                                                         {"torque_noise", &ChannelFigures::torque_noise},
+                                                                         {"stale", &ChannelFigures::fresh_every}};
 
 void take(const LogFinding& f, LogFigures& log) {
   if (f.key == "rate_hz") log.rate_hz = f.value;
@@ -34,9 +31,10 @@ void take(const LogFinding& f, LogFigures& log) {
   if (f.key == "lost_rows") log.lost_rows += f.value;
   if (f.key == "held_rows") log.held_rows += f.value;
   if (f.drive < 0 || static_cast<std::size_t>(f.drive) >= log.drives.size()) return;
-  double other = 0;
-  double& place = place_of(f.key, log.drives[static_cast<std::size_t>(f.drive)], other);
-  place = std::isnan(place) ? f.value : std::max(place, f.value);
+  for (const auto& [key, figure] : kFigures) {
+    double& place = log.drives[static_cast<std::size_t>(f.drive)].*figure;
+    if (f.key == key) place = std::isnan(place) ? f.value : std::max(place, f.value);
+  }
 }
 
 /// Share of the samples of all parts in which a drive moves.

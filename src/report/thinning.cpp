@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <unordered_set>
 
 namespace deltadyn {
@@ -155,7 +156,7 @@ Series thin(const Series& series, const PlotFrame& frame) {
   const Pixels pixels = to_pixels(series, frame);
   const auto n = static_cast<std::size_t>(series.x.size());
   std::vector<Index> kept(n);
-  for (std::size_t i = 0; i < n; ++i) kept[i] = static_cast<Index>(i);
+  std::iota(kept.begin(), kept.end(), Index{0});
 
   if (series.style == SeriesStyle::points || series.style == SeriesStyle::errorbars) {
     for (double cell = 1.0; kept.size() > kMaxPoints; cell *= 1.5) kept = one_a_cell(series, pixels, frame, cell);

@@ -18,8 +18,7 @@ constexpr double kTransitionShare = 1.0;    // transition band as a share of the
 
 /// Modified Bessel function of the first kind, order 0, by its series.
 double bessel_i0(double x) {
-  double sum = 1.0;
-  double term = 1.0;
+  double sum = 1.0, term = 1.0;
   for (int k = 1; k < 60 && term > 1e-17 * sum; ++k) {
     term *= (x / (2.0 * k)) * (x / (2.0 * k));
     sum += term;
@@ -33,8 +32,7 @@ double sinc(double x) {
 
 }  // namespace
 
-FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor)
-    : sample_rate_hz_(sample_rate_hz), factor_(factor) {
+FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor) : factor_(factor) {
   if (!(sample_rate_hz > 0) || factor < 1 || !(cutoff_hz > 0) || !(cutoff_hz <= 0.5 * sample_rate_hz / factor)) {
     throw Error("the cut-off must be positive and not above half the rate after decimation", "decimation",
                 "lower the cut-off or the decimation factor", ExitCode::usage);
@@ -71,15 +69,6 @@ double FirDecimator::white_correlation() const {
   for (Index lag = factor_; lag < taps_.size(); lag += factor_) {
     const Index common = taps_.size() - lag;
     sum += 2 * taps_.head(common).dot(taps_.tail(common)) / taps_.squaredNorm();
-  }
-  return sum;
-}
-
-double FirDecimator::gain(double frequency_hz) const {
-  const Index half = half_width();
-  double sum = taps_(half);
-  for (Index k = 1; k <= half; ++k) {
-    sum += 2.0 * taps_(half + k) * std::cos(2.0 * pi * frequency_hz / sample_rate_hz_ * static_cast<double>(k));
   }
   return sum;
 }

@@ -43,16 +43,6 @@ double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eig
   return sum;
 }
 
-double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::VectorXd>& values,
-                          double t) {
-  const Eigen::Index last = t_s.size() - 1;
-  if (t <= t_s(0)) return values(0);
-  if (t >= t_s(last)) return values(last);
-  const Eigen::Index i = interval(t_s, t);
-  const double share = (t - t_s(i)) / (t_s(i + 1) - t_s(i));
-  return (1.0 - share) * values(i) + share * values(i + 1);
-}
-
 Eigen::MatrixXd resample(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                          const Eigen::Ref<const Eigen::VectorXd>& new_t_s) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(new_t_s.size(), columns.cols());

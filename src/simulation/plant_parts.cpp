@@ -40,7 +40,7 @@ class Values {
   static std::string shared(const std::string& name) {
     const auto dot = name.find('.');
     std::string owner = name.substr(0, dot);
-    if (owner.rfind("drive", 0) == 0) return name;
+    if (owner.starts_with("drive")) return name;
     while (!owner.empty() && std::isdigit(static_cast<unsigned char>(owner.back()))) owner.pop_back();
     return owner + name.substr(dot);
   }
@@ -155,21 +155,12 @@ class Builder {
                               spring.motor_share, drive + 1),
                   "--effect", "give the motor (or the play) a share between 0 and 1", ExitCode::usage);
     }
-    SoftDrive soft;
-    soft.drive = drive;
-    soft.motor_inertia = motor;
-    soft.gap = spring.gap;
-    soft.encoder_on_motor = spring.encoder_on_motor;
+    SoftDrive soft{.drive = drive, .motor_inertia = motor, .gap = spring.gap, .encoder_on_motor = spring.encoder_on_motor};
     soft.stiffness = spring.inertia_over_stiffness > 0
                          ? (spring.encoder_on_motor ? inertia - motor : motor) / spring.inertia_over_stiffness
                          : reduced * std::pow(2 * std::numbers::pi * spring.flank_hz, 2);
-    set_damping(soft, inertia);
-    parts_.soft.push_back(soft);
-  }
-
-  static void set_damping(SoftDrive& soft, double inertia) {
-    const double reduced = soft.motor_inertia * (inertia - soft.motor_inertia) / inertia;
     soft.damping = 2 * kDampingRatio * std::sqrt(soft.stiffness * reduced);
+    parts_.soft.push_back(soft);
   }
 
   ChangedMachine machine_;

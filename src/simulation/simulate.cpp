@@ -27,10 +27,10 @@ class Recorder {
  public:
   Recorder(Eigen::Index rows, int drives) {
     t.resize(rows);
-    for (Eigen::MatrixXd* m : {&q, &qd, &qdd, &tau, &reading}) m->resize(rows, drives);
+    for (Eigen::MatrixXd* m : {&qd, &qdd, &tau, &reading}) m->resize(rows, drives);
   }
   Eigen::VectorXd t;
-  Eigen::MatrixXd q, qd, qdd, tau, reading;
+  Eigen::MatrixXd qd, qdd, tau, reading;
 
   void finish(const std::vector<Effect>& effects, const SimulationOptions& options, SimulationResult& result) const {
     result.log.t_s = t;
@@ -38,8 +38,6 @@ class Recorder {
     result.log.qd = qd;
     result.log.qdd = qdd;
     result.log.tau = recorded_torque(t, tau, effects, options.sensors, options.seed + 0x9e3779b97f4a7c15ULL);
-    result.true_q = q;
-    result.true_tau = tau;
     result.largest_torque = tau.cwiseAbs().colwise().maxCoeff();
   }
 };
@@ -71,7 +69,6 @@ SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std
     if (k < first) continue;
     const Eigen::Index row = k - first;
     record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-    record.q.row(row) = state.q;
     record.qd.row(row) = state.qd;
     record.qdd.row(row) = state.qdd;
     record.tau.row(row) = tau;
@@ -145,15 +142,12 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
     const Eigen::Index row = k / ratio - first;
     if (k % ratio == 0 && row >= 0) {
       record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-      record.q.row(row) = plant.q();
       record.qd.row(row) = plant.qd();
       record.qdd.row(row) = 0.5 * (qdd_before + qdd_now);
       record.tau.row(row) = 0.5 * (tau_before + tau_now);
       record.reading.row(row) = reading;
-      const Eigen::VectorXd error = wanted.q - record.q.row(row).transpose();
-      if (!(error.cwiseAbs().maxCoeff() < kLost)) {
-        lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
-      }
+      const Eigen::VectorXd error = wanted.q - plant.q();
+      if (!(error.cwiseAbs().maxCoeff() < kLost)) lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
       squares += error.cwiseAbs2();
       result.largest_error = result.largest_error.cwiseMax(error.cwiseAbs());
     }

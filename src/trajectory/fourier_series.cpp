@@ -51,16 +51,6 @@ FourierSeries FourierSeries::scaled(const Eigen::Ref<const Eigen::VectorXd>& cen
   return result;
 }
 
-Eigen::VectorXd FourierSeries::derivative_bound(int derivative) const {
-  Eigen::VectorXd bound = Eigen::VectorXd::Zero(coordinates());
-  for (int i = 0; i < coordinates(); ++i) {
-    for (int k = 1; k <= harmonics(); ++k) {
-      bound(i) += std::pow(k * omega(), derivative) * std::hypot(coefficients(2 * k - 1, i), coefficients(2 * k, i));
-    }
-  }
-  return bound;
-}
-
 void FourierSeries::validate(const std::string& where) const {
   if (!(base_frequency_hz > 0) || !std::isfinite(base_frequency_hz))
     throw Error("the base frequency is not a positive number", where, "give a frequency in Hz, e.g. 0.5");

@@ -27,7 +27,7 @@ double LimitCheck::margin() const {
 }
 
 const LimitUse& LimitCheck::tightest() const {
-  return *std::ranges::max_element(uses, [](const LimitUse& a, const LimitUse& b) { return a.load < b.load; });
+  return *std::ranges::max_element(uses, {}, &LimitUse::load);
 }
 
 void LimitCheck::merge(const LimitCheck& other, double starts_at_s) {
@@ -58,8 +58,7 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
   state.x.resize(3 * n);
   state.drives.resize(3 * n);
   state.tau.resize(n);
-  Eigen::VectorXd q(n), qd(n), qdd(n);
-  Eigen::VectorXd friction(n);
+  Eigen::VectorXd q(n), qd(n), qdd(n), friction(n);
   const auto time_of = [&](Index i) { return motion.duration_s * static_cast<double>(i) / samples; };
   for (Index i = 0; i <= samples; ++i) {
     const TaskState task = motion.at(time_of(i));

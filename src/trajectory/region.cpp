@@ -1,5 +1,6 @@
 #include "deltadyn/trajectory/region.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -11,14 +12,8 @@ namespace deltadyn {
 using Eigen::Vector3d;
 
 int Region::walls() const {
-  switch (shape) {
-    case RegionShape::ball: return 1;
-    case RegionShape::half_ball: return 2;
-    case RegionShape::cylinder:
-    case RegionShape::cone: return 3;
-    case RegionShape::box: return 6;
-  }
-  return 0;
+  static constexpr int kWalls[] = {1, 2, 3, 3, 6};
+  return kWalls[static_cast<std::size_t>(shape)];
 }
 
 std::string Region::wall_name(int wall) const {
@@ -129,11 +124,9 @@ void Region::validate() const {
 }
 
 RegionShape region_shape(const std::string& word) {
-  if (word == "half-ball") return RegionShape::half_ball;
-  if (word == "ball") return RegionShape::ball;
-  if (word == "cylinder") return RegionShape::cylinder;
-  if (word == "cone") return RegionShape::cone;
-  if (word == "box") return RegionShape::box;
+  static constexpr const char* kWords[] = {"ball", "half-ball", "cylinder", "cone", "box"};
+  const auto found = std::ranges::find(kWords, word);
+  if (found != std::end(kWords)) return static_cast<RegionShape>(found - kWords);
   throw Error("'" + word + "' is not a shape of a workspace", "workspace", "use half-ball, ball, cylinder, cone or box",
               ExitCode::usage);
 }

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/io/csv.hpp"
 
 #include "io/temporary_folder.hpp"
 #include "support/descriptions.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(CoefficientFile, ReadsBackExactlyWhatItWrote) {
+TEST(CoefficientFile, HoldsExactlyWhatWasGiven) {
   const testing::TemporaryFolder folder;
   const RobotDescription robot = testing_support::delta_description("delta4");
   testing_support::Random random(1);
@@ -26,31 +26,20 @@ TEST(CoefficientFile, ReadsBackExactlyWhatItWrote) {
   write_coefficients(folder.path("c.csv"), segments, robot);
   EXPECT_THAT(folder.read("c.csv"), HasSubstr("segment,harmonic,frequency_hz,x_sin_m,x_cos_m,y_sin_m,y_cos_m,z_sin_m,z_cos_m,"
                                               "psi_sin_rad,psi_cos_rad\n1,0,"));
-  const auto read = read_coefficients(folder.path("c.csv"), robot);
-  ASSERT_EQ(read.size(), 2U);
-  for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ(read[k].base_frequency_hz, segments[k].base_frequency_hz);
-    EXPECT_EQ(read[k].coefficients, segments[k].coefficients);
-  }
-}
-
-TEST(CoefficientFile, RefusesRowsOutOfOrder) {
-  const testing::TemporaryFolder folder;
-  const RobotDescription robot = testing_support::axis_description(DriveKind::revolute);
-  const std::string header = "segment,harmonic,frequency_hz,q1_sin_rad,q1_cos_rad\n";
-  const auto message_of = [&](const std::string& rows) -> std::string {
-    try {
-      (void)read_coefficients(folder.write("bad.csv", header + rows), robot);
-    } catch (const Error& e) {
-      return e.what();
+  const CsvTable table = read_csv(folder.path("c.csv"));
+  ASSERT_EQ(table.rows(), 5U);  // harmonics 0 and 1, then 0 to 3
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const FourierSeries& series = segments[row < 2 ? 0 : 1];
+    const auto h = static_cast<Eigen::Index>(row < 2 ? row : row - 2);
+    EXPECT_EQ(table.number(row, 0), row < 2 ? 1 : 2);
+    EXPECT_EQ(table.number(row, 1), static_cast<double>(h));
+    EXPECT_EQ(table.number(row, 2), series.base_frequency_hz * static_cast<double>(std::max<Eigen::Index>(1, h)));
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      const auto column = static_cast<std::size_t>(3 + 2 * i);
+      EXPECT_EQ(table.number(row, column), h == 0 ? 0.0 : series.coefficients(2 * h - 1, i));
+      EXPECT_EQ(table.number(row, column + 1), series.coefficients(2 * h, i));
     }
-    return "no error";
-  };
-  EXPECT_EQ(message_of("1,0,0.5,0,1\n1,1,0.5,1,1\n"), "no error");
-  EXPECT_THAT(message_of("1,1,0.5,1,1\n"), HasSubstr("line 2: segments and harmonics are out of order"));
-  EXPECT_THAT(message_of("1,0,0.5,0,1\n1,2,0.5,1,1\n"), HasSubstr("line 3"));
-  EXPECT_THAT(message_of("1,0,0.5,0,1\n1,1.5,0.5,1,1\n"), HasSubstr("column harmonic"));
-  EXPECT_THAT(message_of("1,0,-1,0,1\n1,1,0.5,1,1\n"), HasSubstr("base frequency"));
+  }
 }
 
 }  // namespace

@@ -38,7 +38,6 @@ HtmlReport full_report(const std::string& text) {
       .paragraph(text)
       .note(text)
       .list({text})
-      .preformatted(text)
       .table(Table({{text, Align::left}}).row({text}, Tone::bad), text)
       .facts({{text, text}})
       .plot(plot(), text)

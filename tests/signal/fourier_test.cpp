@@ -37,7 +37,6 @@ TEST(Fourier, EvaluatesExactDerivatives) {
   for (int derivative = 0; derivative <= 2; ++derivative) {
     EXPECT_LT((fit.evaluate(t, derivative).col(0) - motion.at(t, derivative)).cwiseAbs().maxCoeff(), 1e-10);
   }
-  EXPECT_LT(fit.residual_std(0), 1e-12);
   EXPECT_THROW((void)fit_fourier(t.head(10), motion.at(t, 0).head(10), 0.5, 5), Error);
 }
 
@@ -48,7 +47,6 @@ TEST(FindPeriod, FindsWholeAndBrokenNumbersOfSamples) {
     ASSERT_TRUE(period.has_value()) << base_hz;
     EXPECT_NEAR(period->period_s * base_hz, 1.0, 1e-6);
     EXPECT_EQ(period->whole_periods, static_cast<int>(std::floor(10.0 * base_hz + 1e-6)));
-    EXPECT_LT(period->mismatch_rms, 1e-4);
   }
 }
 
@@ -62,27 +60,21 @@ TEST(FindPeriod, SaysNoToOnePeriodAndToDrift) {
   EXPECT_FALSE(find_period(still).has_value());
 }
 
-TEST(ChooseHarmonics, StopsAtTheNoise) {
-  EXPECT_EQ(choose_harmonics(periodic_log(MultiSine{}, 1000, 10000, 0.1), 2.0), 5);
-}
-
 TEST(AveragePeriods, MeetsTruthFarBelowTheEncoder) {
   for (const double base_hz : {0.5, 0.7}) {
     const MultiSine motion{base_hz};
     const Log log = periodic_log(motion, 1000, 10000, 0.1);
-    const PeriodMean mean = average_periods(log, 1.0 / base_hz);
+    const PeriodMean mean = average_periods(log, 1.0 / base_hz, 5);
     const Eigen::VectorXd& t = mean.log.t_s;
     EXPECT_EQ(mean.periods, static_cast<int>(10.0 * base_hz + 1e-6));
-    EXPECT_EQ(mean.series.harmonics, 5);
     for (int d = 0; d < 2; ++d) {
       EXPECT_LT(rms(mean.log.q.col(d) - motion.at(t, 0, 0.7 * d)), 5e-7);
       EXPECT_LT(rms(mean.log.qd.col(d) - motion.at(t, 1, 0.7 * d)), 5e-6);
       EXPECT_LT(rms(mean.log.qdd.col(d) - motion.at(t, 2, 0.7 * d)), 1e-4);
-      // The scatter of the mean is the noise over the root of the number of periods, and the stated std says so.
+      // The scatter of the mean is the noise over the root of the number of periods.
       const double scatter = rms(mean.log.tau.col(d) - 2.0 * motion.at(t, 2, 0.7 * d));
       const double expected = 0.1 / std::sqrt(mean.periods);
       EXPECT_NEAR(scatter / expected, 1.0, base_hz == 0.5 ? 0.05 : 0.2);  // interpolation between samples smooths a little
-      EXPECT_NEAR(rms(mean.tau_std.col(d)) / scatter, 1.0, 0.05);
     }
   }
 }
@@ -92,9 +84,9 @@ TEST(AveragePeriods, LeavesOutWhatWasFilledIn) {
   log.filled.assign(10000, 0);
   log.filled[2100] = 1;
   log.tau(2100, 0) = 1e6;
-  const PeriodMean mean = average_periods(log, 2.0);
+  const PeriodMean mean = average_periods(log, 2.0, 5);
   EXPECT_NEAR(mean.log.tau(100, 0), log.tau(100, 0), 1e-9);
-  EXPECT_THROW((void)average_periods(log, 6.0), Error);
+  EXPECT_THROW((void)average_periods(log, 6.0, 5), Error);
 }
 
 }  // namespace

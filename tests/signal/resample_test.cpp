@@ -23,14 +23,5 @@ TEST(Resample, IsExactForCubicsOnUnevenTimes) {
   EXPECT_LT((got.col(1) - wanted).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(Resample, LinearStaysBetweenItsNeighbours) {
-  const Eigen::Vector3d t(0, 1, 3);
-  const Eigen::Vector3d x(5, 7, 3);
-  EXPECT_DOUBLE_EQ(interpolate_linear(t, x, 0.5), 6);
-  EXPECT_DOUBLE_EQ(interpolate_linear(t, x, 2.0), 5);
-  EXPECT_DOUBLE_EQ(interpolate_linear(t, x, -1), 5);
-  EXPECT_DOUBLE_EQ(interpolate_linear(t, x, 9), 3);
-}
-
 }  // namespace
 }  // namespace deltadyn

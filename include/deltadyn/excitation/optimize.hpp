@@ -60,7 +60,6 @@ struct Excitation {
   int starts = 0, finished_starts = 0;
   long evaluations = 0;
   bool out_of_time = false, interrupted = false;
-  std::vector<double> start_efficiency;  ///< D-efficiency that each start alone came to; 0: none
 
   [[nodiscard]] double margin() const;
   [[nodiscard]] std::string brief_report() const;

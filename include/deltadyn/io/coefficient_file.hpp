@@ -17,7 +17,4 @@ namespace deltadyn {
 /// Throws Error(bad_input) if the disk is full; then nothing is left behind.
 void write_coefficients(const std::string& path, const std::vector<FourierSeries>& segments, const RobotDescription& robot);
 
-/// Throws Error(bad_input) with file, line and column.
-[[nodiscard]] std::vector<FourierSeries> read_coefficients(const std::string& path, const RobotDescription& robot);
-
 }  // namespace deltadyn

@@ -66,8 +66,6 @@ class HtmlReport {
   /// Small grey text.
   HtmlReport& note(const std::string& text);
   HtmlReport& list(const std::vector<std::string>& items);
-  /// Commands and the like, in letters of equal width.
-  HtmlReport& preformatted(const std::string& text);
   HtmlReport& table(const Table& table, const std::string& caption = "");
   /// Names on the left, values on the right: what was read, with which settings.
   HtmlReport& facts(const std::vector<std::pair<std::string, std::string>>& name_and_value);

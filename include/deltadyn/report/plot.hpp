@@ -48,9 +48,9 @@ struct PlotRange {
 
 /// One pair of axes.
 struct PlotSpec {
-  std::string title;
-  std::string x_label;  ///< with unit, e.g. "time [s]"
-  std::string y_label;  ///< with unit, e.g. "torque [N m]"
+  std::string title = {};
+  std::string x_label = {};  ///< with unit, e.g. "time [s]"
+  std::string y_label = {};  ///< with unit, e.g. "torque [N m]"
   std::vector<Series> series = {};
   bool log_x = false;  ///< values that are not positive count as gaps
   bool log_y = false;

@@ -15,7 +15,6 @@ struct FourierFit {
   double base_frequency_hz = 0.0;
   int harmonics = 0;
   Eigen::MatrixXd coefficients;  ///< (1 + 2 harmonics) x channels: c_0, a_1, b_1, a_2, b_2, ...
-  Eigen::VectorXd residual_std;  ///< of each channel, with the degrees of freedom taken off
 
   /// Value (derivative 0) or exact derivative at the given times; times x channels.
   [[nodiscard]] Eigen::MatrixXd evaluate(const Eigen::Ref<const Eigen::VectorXd>& t_s, int derivative = 0) const;
@@ -29,36 +28,23 @@ struct FourierFit {
                                      const Eigen::Ref<const Eigen::MatrixXd>& columns, double base_frequency_hz, int harmonics);
 
 struct Period {
-  double period_s = 0.0;      ///< not necessarily a whole number of samples
-  int whole_periods = 0;      ///< in the log
-  double mismatch_rms = 0.0;  ///< of the positions one period apart, largest over the drives [rad | m]
+  double period_s = 0.0;  ///< not necessarily a whole number of samples
+  int whole_periods = 0;  ///< in the log
 };
 
-struct PeriodOptions {
-  double noise_ratio = 4.0;   ///< positions one period apart differ by at most this many times their noise,
-  double range_ratio = 3e-4;  ///< or this share of the drive's range (real drives do not repeat to the last count)
-  int min_periods = 2;        ///< a period seen fewer times is no period
-};
-
-/// Shortest period with which all drives repeat; nothing if the motion is not periodic.
-[[nodiscard]] std::optional<Period> find_period(const Log& log, const PeriodOptions& options = {});
-
-/// Harmonics that stand out of the noise: the highest one whose amplitude is above four times the noise of an amplitude.
-/// \param max_harmonics  also limited by half the sample rate
-[[nodiscard]] int choose_harmonics(const Log& log, double period_s, int max_harmonics = 60);
+/// Shortest period with which all drives repeat, seen twice at least; nothing if the motion is not periodic.
+[[nodiscard]] std::optional<Period> find_period(const Log& log);
 
 /// One period, averaged.
 struct PeriodMean {
-  Log log;                  ///< one period; q, qd, qdd of the Fourier series, tau the mean over the periods
-  Eigen::MatrixXd tau_std;  ///< standard deviation of the mean torque, from the scatter of the periods [N m | N]
-  FourierFit series;        ///< of q, with time counted from the start of the whole log
-  int periods = 0;          ///< that were averaged
+  Log log;            ///< one period; q, qd, qdd of the Fourier series, tau the mean over the periods
+  FourierFit series;  ///< of q, with time counted from the start of the whole log
+  int periods = 0;    ///< that were averaged
 };
 
 /// Fits the series to all whole periods and averages the torque over them (interpolated if a period is no whole number of
 /// samples). Samples that were filled in do not enter the torque; a phase without a sample is marked in PeriodMean::log.filled.
-/// \param harmonics  0: choose_harmonics()
 /// Throws Error(bad_input) if the log holds fewer than two periods.
-[[nodiscard]] PeriodMean average_periods(const Log& log, double period_s, int harmonics = 0);
+[[nodiscard]] PeriodMean average_periods(const Log& log, double period_s, int harmonics);
 
 }  // namespace deltadyn

@@ -15,10 +15,6 @@ namespace deltadyn {
 [[nodiscard]] double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s,
                                        const Eigen::Ref<const Eigen::VectorXd>& values, double t);
 
-/// The straight line through the two samples around `t`; the first or last value outside.
-[[nodiscard]] double interpolate_linear(const Eigen::Ref<const Eigen::VectorXd>& t_s,
-                                        const Eigen::Ref<const Eigen::VectorXd>& values, double t);
-
 /// interpolate_cubic() of every column at every new time.
 /// \param t_s      N strictly increasing times [s]
 /// \param columns  N x channels

@@ -29,10 +29,9 @@ struct PlantOptions {
 
 /// What the plant has done so far.
 struct PlantCounts {
-  long steps = 0, rejected_steps = 0, evaluations = 0;
+  long steps = 0, evaluations = 0;
   long reversals = 0;   ///< joints that came to rest, and went on or stuck
   long breakaways = 0;  ///< joints that broke loose
-  long undecided = 0;   ///< joints held for 0.1 ms, because rounding left open whether they stick
   double stuck_s = 0;   ///< time with at least one joint stuck [s]
 };
 

@@ -35,8 +35,6 @@ struct SimulationOptions {
 
 struct SimulationResult {
   Log log;                         ///< q as the encoders read it, tau as recorded; qd, qdd exact
-  Eigen::MatrixXd true_q;          ///< samples x drives, of the side the encoder sits on
-  Eigen::MatrixXd true_tau;        ///< torque that acted
   Eigen::VectorXd rms_error;       ///< of each drive, reference minus true position [rad | m]
   Eigen::VectorXd largest_error;   ///< the same
   Eigen::VectorXd largest_torque;  ///< that acted [N m | N]

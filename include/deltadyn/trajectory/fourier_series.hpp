@@ -33,8 +33,6 @@ struct FourierSeries {
   [[nodiscard]] TaskState state(double phase, double rate, double rate_d) const;
   /// The series seen from `centre`, all deviations times `factor`.
   [[nodiscard]] FourierSeries scaled(const Eigen::Ref<const Eigen::VectorXd>& centre, double factor) const;
-  /// No |d^n z_i / dt^n| is larger at any time: sum over the harmonics of (k omega)^n sqrt(a^2 + b^2); the mean is left out.
-  [[nodiscard]] Eigen::VectorXd derivative_bound(int derivative) const;
   /// Throws deltadyn::Error(bad_input) if a number is not finite, the frequency not positive, or the shape wrong.
   void validate(const std::string& where) const;
 };

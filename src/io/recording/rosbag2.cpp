@@ -232,12 +232,10 @@ class Series {
 /// Whether the headers' stamps are one clock that only the receipts mixed up: the way from one to the other takes a like time.
 bool is_one_clock(const Series& series) {
   constexpr double kLongestDelaySpread = 1e9;  // ns
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (std::size_t k = 0; k < series.line.size(); ++k) {
-    const double delay = static_cast<double>(series.receipt_ns[k]) - static_cast<double>(series.stamp_ns[k]);
-    low = std::min(low, delay);
-    high = std::max(high, delay);
-  }
+  std::vector<double> delays;
+  for (std::size_t k = 0; k < series.line.size(); ++k)
+    delays.push_back(static_cast<double>(series.receipt_ns[k]) - static_cast<double>(series.stamp_ns[k]));
+  const auto [low, high] = std::ranges::minmax(delays);
   return high - low < kLongestDelaySpread;
 }
 
@@ -271,16 +269,9 @@ void add_channels(const std::string& topic, Series& series, Recording& recording
       const std::string& name = series.joints[joint];
       RecordedChannel channel;
       channel.name = fmt::format("{}/{}/{}", topic, name, kParts[part]);  // as PlotJuggler names it
-      channel.aliases = {fmt::format("{}/{}", name, kParts[part]),
-                         fmt::format("{}/{}", kParts[part], name),
-                         fmt::format("{}.{}", name, kParts[part]),
-                         fmt::format("{}/{}/{}", topic, kParts[part], name),
-                         fmt::format("{}[{}]", kParts[part], joint),
-                         fmt::format("{}/{}[{}]", topic, kParts[part], joint),
-                         fmt::format("{}.{}[{}]", topic, kParts[part], joint),
-                         fmt::format("{}_{}", kParts[part], name),
-                         fmt::format("{}_{}", name, kParts[part]),
-                         fmt::format("{}[{}]", kParts[part], name)};
+      for (const char* alias : {"{1}/{2}", "{2}/{1}", "{1}.{2}", "{0}/{2}/{1}", "{2}[{3}]", "{0}/{2}[{3}]", "{0}.{2}[{3}]",
+                                "{2}_{1}", "{1}_{2}", "{2}[{1}]"})
+        channel.aliases.push_back(fmt::format(fmt::runtime(alias), topic, name, kParts[part], joint));
       channel.quantity = kQuantities[part];
       channel.place = static_cast<int>(joint) + 1;
       channel.joint = name;

@@ -47,15 +47,10 @@ double share_on_lattice(const std::vector<double>& changes, double smallest) {
 ChannelQuality measure_channel(const Eigen::Ref<const Eigen::VectorXd>& values) {
   ChannelQuality out;
   const auto stretches = sample_stretches(values.size(), kStretch);
-  double lowest = 0, highest = 0, rows = 0, repeats = 0;
-  bool any = false;
-  for (Index i = 0; i < values.size(); ++i) {
-    const double v = values(i);
-    if (!std::isfinite(v)) continue;
-    lowest = any ? std::min(lowest, v) : v;
-    highest = any ? std::max(highest, v) : v;
-    any = true;
-  }
+  const auto known = values.array().isFinite();
+  const double lowest = known.any() ? known.select(values.array(), HUGE_VAL).minCoeff() : 0.0;
+  const double highest = known.any() ? known.select(values.array(), -HUGE_VAL).maxCoeff() : 0.0;
+  double rows = 0, repeats = 0;
   out.range = highest - lowest;
   // Smaller changes are rounding of decimal numbers, not counts of an encoder.
   const double rounding = 1e-12 * std::max(std::abs(lowest), std::abs(highest));

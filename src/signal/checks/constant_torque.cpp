@@ -83,13 +83,13 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
     const bool extreme = run.value == highest || run.value == lowest;
     return !jumps && (coarse || (extreme && length * h < kLongest_s));
   };
-  runs.erase(std::remove_if(runs.begin(), runs.end(), is_chance_or_limit), runs.end());
+  std::erase_if(runs, is_chance_or_limit);
   return runs;
 }
 
 std::string name_of(const std::vector<Run>& together, std::size_t drives) {
   const bool zero = std::ranges::all_of(together, [](const Run& run) { return run.value == 0; });
-  const bool rest = std::ranges::all_of(together, [](const Run& run) { return run.resting; });
+  const bool rest = std::ranges::all_of(together, &Run::resting);
   if (together.size() == drives && zero) return rest ? "the servo is off, or brakes hold the robot" : "the servo is off";
   if (rest) return "a brake holds, or the torque was not recorded";
   return zero ? "the servo is off, or the torque was not recorded" : "the recorded torque stands still";
@@ -117,7 +117,7 @@ void check_constant_torque(CheckRoom& room) {
     }
     all.insert(all.end(), runs.begin(), runs.end());
   }
-  std::ranges::sort(all, [](const Run& a, const Run& b) { return a.begin < b.begin; });
+  std::ranges::sort(all, {}, &Run::begin);
   while (!all.empty()) {
     // Drives whose torque stands still at about the same time have one cause.
     const Run first = all.front();

@@ -80,7 +80,7 @@ void check_saturation(CheckRoom& room) {
     const Cut above = cut_of(tau, out, step, 1.0);
     const Cut below = cut_of(tau, out, step, -1.0);
     std::vector<Index> rows;
-    std::merge(above.rows.begin(), above.rows.end(), below.rows.begin(), below.rows.end(), std::back_inserter(rows));
+    std::ranges::merge(above.rows, below.rows, std::back_inserter(rows));
     const auto clipped = static_cast<Index>(rows.size());
     // Where the other values repeat too, equality means nothing.
     Index repeats = 0;

@@ -45,22 +45,11 @@ void drop_rows_twice(CheckRoom& room) {
     rows.push_back(i);
   }
   if (twice.count == 0) return;
-  room.findings.dropped_duplicates = twice.count;
   const std::string sentence =
       twice.count == 1 ? std::string("the row is there twice, once was enough")
                        : fmt::format("the row is there twice, once was enough; the first of {} such rows", twice.count);
   room.tell(FindingLevel::mended, "rows_twice", twice.first, "", -1, static_cast<double>(twice.count), "rows", sentence);
   room.keep(rows);
-}
-
-double usual_step(const Eigen::VectorXd& t_s) {
-  std::vector<double> steps;
-  for (const auto& [begin, end] : sample_stretches(t_s.size(), 256)) {
-    for (Index i = begin + 1; i < end; ++i) {
-      if (t_s(i) > t_s(i - 1)) steps.push_back(t_s(i) - t_s(i - 1));
-    }
-  }
-  return lower_median(std::move(steps));
 }
 
 /// Size of the change of all positions over the rows that `counts`, for one row.
@@ -153,7 +142,7 @@ void order_stamps(CheckRoom& room) {
   drop_rows_twice(room);
   if (mend_coarse_clock(room)) return;
   Log& log = room.log;
-  const double step = usual_step(log.t_s);
+  const double step = lower_median(steps_of(log.t_s));
   mend_single_stamps(room, step);
   for (Index i = 1; i < log.samples(); ++i) {
     if (log.t_s(i) == log.t_s(i - 1)) {
