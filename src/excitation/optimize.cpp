@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <limits>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <random>
 

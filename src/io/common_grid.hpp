@@ -4,7 +4,6 @@
 /// Channels of several sample rates on the time stamps of one of them, without phase error.
 
 #include <Eigen/Core>
-#include <string>
 
 namespace deltadyn {
 

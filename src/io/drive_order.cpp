@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <string_view>
 

@@ -86,17 +86,6 @@ std::vector<Index> own_rows(const RecordedChannel& channel, const Timeline& time
   return rows;
 }
 
-/// Stamps must go on for interpolation: repeated ones are left out, those that go back are refused.
-void append_sample(SampledChannel& series, Index& count, double t, double value, const std::string& where) {
-  if (std::isnan(t)) return;
-  if (count > 0 && t < series.t_s(count - 1)) {
-    throw Error("the time stamps decrease", where, "sort the rows by time, or put each recording into its own file");
-  }
-  if (count > 0 && t == series.t_s(count - 1)) return;
-  series.t_s(count) = t;
-  series.values(count++) = value;
-}
-
 class Builder {
  public:
   Builder(const Recording& recording, const ColumnMap& map, const RobotDescription& robot)
@@ -170,10 +159,17 @@ class Builder {
     Index count = 0;
     for (Index k = 0; k < n; ++k) {
       const Index row = rows.empty() ? k : rows[static_cast<std::size_t>(k)];
-      const double value = values(row);
-      if (std::isnan(value)) continue;  // a hole, as a lost row
-      append_sample(series, count, timeline.t_s(row) + shift, value,
-                    place(recording_.file, timeline.line[static_cast<std::size_t>(row)], timeline.name));
+      const double t = timeline.t_s(row) + shift;
+      if (std::isnan(values(row)) || std::isnan(t)) continue;  // a hole, as a lost row
+      // Stamps must go on for interpolation: repeated ones are left out, those that go back are refused.
+      if (count > 0 && t < series.t_s(count - 1)) {
+        throw Error("the time stamps decrease",
+                    place(recording_.file, timeline.line[static_cast<std::size_t>(row)], timeline.name),
+                    "sort the rows by time, or put each recording into its own file");
+      }
+      if (count > 0 && t == series.t_s(count - 1)) continue;
+      series.t_s(count) = t;
+      series.values(count++) = values(row);
     }
     series.t_s.conservativeResize(count);
     series.values.conservativeResize(count);

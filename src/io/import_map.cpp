@@ -2,7 +2,6 @@
 /// The map that an import writes for its user to mend, and what it says of columns that it leaves.
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>

@@ -179,13 +179,9 @@ NameAndUnit split_unit(const std::string& column) {
 }
 
 const char* units_of(Quantity quantity) {
-  switch (quantity) {
-    case position: return "rad, deg, turns, m, mm, cnt";
-    case velocity: return "rad/s, deg/s, rpm, m/s, mm/s, cnt/s";
-    case acceleration: return "rad/s2, deg/s2, m/s2, mm/s2";
-    case torque: return "Nm, mNm, N, A, mA, %, permille";
-  }
-  return "";
+  static constexpr std::array kUsual = {"rad, deg, turns, m, mm, cnt", "rad/s, deg/s, rpm, m/s, mm/s, cnt/s",
+                                        "rad/s2, deg/s2, m/s2, mm/s2", "Nm, mNm, N, A, mA, %, permille"};
+  return kUsual[static_cast<std::size_t>(quantity)];
 }
 
 }  // namespace deltadyn

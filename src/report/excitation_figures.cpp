@@ -9,8 +9,6 @@
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/trajectory/task_columns.hpp"
 
-#include "drive_names.hpp"
-
 namespace deltadyn {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "deltadyn/report/excitation_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 #include <utility>

@@ -19,13 +19,9 @@ struct LevelWords {
 };
 
 LevelWords words_of(FindingLevel level) {
-  switch (level) {
-    case FindingLevel::fine: return {"fine", Tone::plain};
-    case FindingLevel::mended: return {"mended", Tone::good};
-    case FindingLevel::warning: return {"warning", Tone::caution};
-    case FindingLevel::fault: return {"fault", Tone::bad};
-  }
-  return {"", Tone::plain};
+  static constexpr LevelWords kWords[] = {
+      {"fine", Tone::plain}, {"mended", Tone::good}, {"warning", Tone::caution}, {"fault", Tone::bad}};
+  return kWords[static_cast<std::size_t>(level)];
 }
 
 std::string figure_of(const LogFinding& f) {

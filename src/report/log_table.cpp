@@ -9,7 +9,6 @@
 #include "deltadyn/report/format.hpp"
 
 #include "drive_figures.hpp"
-#include "drive_names.hpp"
 
 namespace deltadyn {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>

@@ -31,10 +31,7 @@ const LimitUse& LimitCheck::tightest() const {
 }
 
 void LimitCheck::merge(const LimitCheck& other, double starts_at_s) {
-  if (!other.reachable && reachable) {
-    reachable = false;
-    unreachable_at_s = other.unreachable_at_s + starts_at_s;
-  }
+  reachable = reachable && other.reachable;
   if (uses.empty()) uses.resize(other.uses.size());
   for (std::size_t k = 0; k < std::min(uses.size(), other.uses.size()); ++k) {
     if (!uses[k].limit.name.empty() && uses[k].load >= other.uses[k].load) continue;
@@ -66,7 +63,6 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
     if (status == Status::ok && torque) status = robot.regressor(q, qd, qdd, Y);
     if (status != Status::ok) {
       check.reachable = false;
-      check.unreachable_at_s = time_of(i);
       return check;
     }
     if (torque) {

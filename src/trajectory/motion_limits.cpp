@@ -1,6 +1,5 @@
 #include "deltadyn/trajectory/motion_limits.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>

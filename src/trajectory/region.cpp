@@ -80,11 +80,6 @@ Vector3d Region::upper() const {
   return corner;
 }
 
-Vector3d Region::middle() const {
-  // The largest ball inside a half ball has half its radius.
-  return shape == RegionShape::half_ball ? Vector3d(centre - Vector3d(0, 0, radius / 2)) : centre;
-}
-
 std::string Region::text() const {
   // What rounding left of a zero is not told.
   const auto told = [](double length) { return std::abs(length) < 1e-6 ? 0.0 : length; };

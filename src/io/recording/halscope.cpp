@@ -1,5 +1,4 @@
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"

@@ -1,7 +1,6 @@
 #include "sniff.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <optional>
 

@@ -4,7 +4,6 @@
 /// What the checks of a log share: the log, the robot, the options, and how they report.
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -10,6 +10,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -46,15 +47,12 @@ bool jumps_at_an_end(const Eigen::Ref<const Eigen::VectorXd>& tau, Index begin, 
 std::vector<Run> runs_of(const CheckRoom& room, Index d) {
   const Log& log = room.log;
   const auto tau = log.tau.col(d);
-  const Index n = tau.size();
   const double h = log.sample_time_s();
   const auto shortest = std::max<Index>(kShortestRows, static_cast<Index>(std::lround(kShortest_s / h)));
   std::vector<Run> runs;
   std::vector<double> changes;
   double repeats = 0, rows = 0;
-  for (Index begin = 0; begin < n;) {
-    Index end = begin + 1;
-    while (end < n && tau(end) == tau(begin)) ++end;
+  for_each_run(tau, [&](Index begin, Index end) {
     if (end - begin >= shortest) {
       runs.push_back({d, begin, end, tau(begin), false});
     } else {
@@ -62,8 +60,7 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
       repeats += static_cast<double>(end - begin - 1);
       if (begin > 0 && begin % 7 == 0) changes.push_back(std::abs(tau(begin) - tau(begin - 1)));  // every seventh will do
     }
-    begin = end;
-  }
+  });
   if (runs.empty()) return runs;
   const double usual_change = lower_median(std::move(changes));
   const double usual_run = rows > repeats ? rows / (rows - repeats) : 1.0;

@@ -29,6 +29,16 @@ inline std::vector<Stretch> sample_stretches(Eigen::Index rows, Eigen::Index len
   return stretches;
 }
 
+/// Calls each(begin, end) for the runs of equal values.
+template <class Values, class Each>
+void for_each_run(const Values& values, Each each) {
+  for (Eigen::Index begin = 0, end = 0; begin < values.size(); begin = end) {
+    end = begin + 1;
+    while (end < values.size() && values(end) == values(begin)) ++end;
+    each(begin, end);
+  }
+}
+
 /// Steps in time between rows of one recording.
 inline std::vector<double> steps_of(const Eigen::VectorXd& t_s) {
   std::vector<double> steps;

@@ -116,23 +116,18 @@ void check_excitation(CheckRoom& room) {
 
 void check_stuck(CheckRoom& room) {
   const Log& log = room.log;
-  const Index n = log.samples();
   const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / log.sample_time_s())));
   for (Index d = 0; d < log.drives(); ++d) {
     const auto q = log.q.col(d);
     const Usual usual = usual_of(q);
-    Index begin = 0;
-    while (begin < n) {
-      Index end = begin + 1;
-      while (end < n && q(end) == q(begin)) ++end;
+    for_each_run(q, [&](Index begin, Index end) {
       if (end - begin >= shortest && (breaks_off(q, usual, begin, end) || others_move(room, d, begin, end))) {
         throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
                                 q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
                     room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),
                     "check the encoder and its cable, and record again; or cut this part out of the log");
       }
-      begin = end;
-    }
+    });
   }
 }
 
