@@ -19,24 +19,12 @@ struct Vocabulary {
   }
 };
 
-const Vocabulary& vocabulary(Quantity quantity) {
-  // English and German words of drives, PLCs, ROS, UR and LinuxCNC; pl, vl, il are Kollmorgen's loops.
-  static const Vocabulary kPosition{{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"},
-                                    {"position", "angle", "winkel", "encoder", "lageist"}};
-  static const Vocabulary kVelocity{{"qd", "dq", "vel", "omega", "vl", "qdot", "qvel", "rpm", "spd"},
-                                    {"veloc", "speed", "geschwindig", "drehzahl"}};
-  static const Vocabulary kAcceleration{{"qdd", "ddq", "acc", "qddot"}, {"accel", "beschleun"}};
-  static const Vocabulary kTorque{{"tau", "trq", "tq", "iq", "il", "amps", "eff"},
-                                  {"torque", "moment", "effort", "current", "strom", "kraft", "force"}};
-  switch (quantity) {
-    case Quantity::position: return kPosition;
-    case Quantity::velocity: return kVelocity;
-    case Quantity::acceleration: return kAcceleration;
-    case Quantity::torque: return kTorque;
-  }
-  return kPosition;
-}
-
+/// English and German words of drives, PLCs, ROS, UR and LinuxCNC for each quantity; pl, vl, il are Kollmorgen's loops.
+const Vocabulary kQuantityWords[] = {
+    {{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"}, {"position", "angle", "winkel", "encoder", "lageist"}},
+    {{"qd", "dq", "vel", "omega", "vl", "qdot", "qvel", "rpm", "spd"}, {"veloc", "speed", "geschwindig", "drehzahl"}},
+    {{"qdd", "ddq", "acc", "qddot"}, {"accel", "beschleun"}},
+    {{"tau", "trq", "tq", "iq", "il", "amps", "eff"}, {"torque", "moment", "effort", "current", "strom", "kraft", "force"}}};
 const Vocabulary kMeasured{{"act", "fb", "fbk", "meas", "ist", "real", "present"},
                            {"actual", "feedback", "measur", "istpos", "istwert", "lageist"}};
 const Vocabulary kCommanded{{"cmd", "des", "ref", "set", "goal", "nominal", "qdes"},
@@ -56,7 +44,7 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, const
   std::vector<Quantity> said;
   for (const std::string& word : words) {
     for (const Quantity quantity : {Quantity::acceleration, Quantity::velocity, Quantity::torque, Quantity::position}) {
-      if (!vocabulary(quantity).holds(word)) continue;
+      if (!kQuantityWords[static_cast<std::size_t>(quantity)].holds(word)) continue;
       if (std::ranges::find(said, quantity) == said.end()) said.push_back(quantity);
       break;
     }

@@ -228,14 +228,6 @@ bool split_groups(Recording& recording, const ColumnMap& map) {
   return true;
 }
 
-[[noreturn]] void refuse_no_time(const Recording& recording) {
-  throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
-                          list_channels(recording)),
-              recording.file,
-              "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is none; "
-              "or source or rate_hz below [time] in a column map (--map)");
-}
-
 }  // namespace
 
 std::string list_channels(const Recording& recording) {
@@ -294,7 +286,13 @@ void resolve_time(Recording& recording, ColumnMap& map) {
   }
   if (!open) return;
   const RecordedChannel* channel = guess_time(recording);
-  if (channel == nullptr) refuse_no_time(recording);
+  if (channel == nullptr) {
+    throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
+                            list_channels(recording)),
+                recording.file,
+                "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is "
+                "none; or source or rate_hz below [time] in a column map (--map)");
+  }
   take_column(recording, *channel, map);
 }
 

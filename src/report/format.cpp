@@ -153,22 +153,10 @@ std::string pretty_unit(std::string_view unit) {
   for (const auto& [plain_name, text] : kColumnUnits)
     if (unit == plain_name) return text;
 
-  std::string result;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit[i] == '*')
-      result += ' ';
-    else if (unit[i] != '^')
-      result += unit[i];
-    else if (i + 1 < unit.size() && unit[i + 1] == '2')
-      result += "²", ++i;
-    else if (i + 1 < unit.size() && unit[i + 1] == '3')
-      result += "³", ++i;
-    else if (unit.substr(i + 1, 2) == "-1")
-      result += "⁻¹", i += 2;
-    else if (unit.substr(i + 1, 2) == "-2")
-      result += "⁻²", i += 2;
-    else
-      result += '^';
+  std::string result(unit);
+  for (const auto& [from, to] :
+       {std::pair<std::string_view, std::string_view>{"*", " "}, {"^2", "²"}, {"^3", "³"}, {"^-1", "⁻¹"}, {"^-2", "⁻²"}}) {
+    for (auto at = result.find(from); at != std::string::npos; at = result.find(from)) result.replace(at, from.size(), to);
   }
   return result;
 }

@@ -10,9 +10,10 @@ namespace deltadyn {
 
 using Eigen::Index;
 
+static constexpr PlotColor kCurveColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
+
 void add_cutoff_figure(HtmlReport& report, const Identification& identification) {
   if (!identification.cutoff) return;
-  constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
   PlotSpec spec{.x_label = "frequency [Hz]",
                 .y_label = "position / encoder noise, power",
                 .log_x = true,
@@ -28,7 +29,7 @@ void add_cutoff_figure(HtmlReport& report, const Identification& identification)
     spec.series.push_back({.label = drive_name(static_cast<int>(j)),
                            .x = band.frequency_hz,
                            .y = band.density / band.noise_density,
-                           .color = kColors[j % std::size(kColors)]});
+                           .color = kCurveColors[j % std::size(kCurveColors)]});
   }
   if (spec.series.empty()) return;
   spec.vertical_markers.push_back({identification.processing.cutoff_hz,
@@ -89,7 +90,6 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
                   survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
                   format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
                   format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
-  constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
   constexpr Index kPointsShown = 700;  // of each eigenvalue; a point takes 80 bytes
   const Index points = std::min(survey.task.rows(), kPointsShown);
   PlotSpec spec{.x_label = "height of the plate z [m]",
@@ -102,7 +102,7 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
                            .x = survey.task.col(2).head(points),
                            .y = survey.eigenvalues.col(i).head(points),
                            .style = SeriesStyle::points,
-                           .color = kColors[static_cast<std::size_t>(i) % std::size(kColors)]});
+                           .color = kCurveColors[static_cast<std::size_t>(i) % std::size(kCurveColors)]});
   }
   if (!spec.log_y) spec.horizontal_markers.push_back({0.0, ""});
   report.plot(spec, "Eigenvalues of the mass matrix over the workspace. Where one falls to zero, the model has no inverse.");

@@ -33,6 +33,22 @@ std::string figure_of(const LogFinding& f) {
   return std::isfinite(f.std) ? format_with_uncertainty(factor * f.value, factor * f.std, unit) : format_number(f.value, unit, 4);
 }
 
+/// The findings that are more than a measured property in order; nothing if there are none.
+void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
+  Table table(
+      {{"", Align::left}, {"finding", Align::left}, {"figure"}, {"drive"}, {"log", Align::left}, {"what to do", Align::left}});
+  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
+    if (level == FindingLevel::fine && !with_fine) continue;
+    for (const LogFinding& f : findings) {
+      if (f.level != level) continue;
+      table.row({words_of(level).word, f.text, figure_of(f), f.drive < 0 ? "" : std::to_string(f.drive + 1),
+                 f.file.empty() ? "" : short_name(f.file), f.mend},
+                words_of(level).tone);
+    }
+  }
+  if (!table.empty()) report.table(table, "What the check of the logs found; ± is one standard deviation.");
+}
+
 }  // namespace
 
 Verdict verdict_of(const std::vector<LogFinding>& findings) {
@@ -52,21 +68,6 @@ std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
   if (faults > 0) return fmt::format("a model from these logs is not to be trusted: {}{}", counted(faults, "fault"), rest);
   if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
   return "no fault was found" + rest;
-}
-
-void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
-  Table table(
-      {{"", Align::left}, {"finding", Align::left}, {"figure"}, {"drive"}, {"log", Align::left}, {"what to do", Align::left}});
-  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
-    if (level == FindingLevel::fine && !with_fine) continue;
-    for (const LogFinding& f : findings) {
-      if (f.level != level) continue;
-      table.row({words_of(level).word, f.text, figure_of(f), f.drive < 0 ? "" : std::to_string(f.drive + 1),
-                 f.file.empty() ? "" : short_name(f.file), f.mend},
-                words_of(level).tone);
-    }
-  }
-  if (!table.empty()) report.table(table, "What the check of the logs found; ± is one standard deviation.");
 }
 
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings) {

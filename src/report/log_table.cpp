@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
 
 #include "deltadyn/report/format.hpp"
 
@@ -47,13 +46,9 @@ void take_moving(const Log& part, LogFigures& log) {
 }
 
 /// A number with its unit in so many digits, as a page or a terminal shows it.
-using Writer = std::function<std::string(double, const std::string&, int)>;
+using Writer = std::string (*)(double, std::string_view, int);
 
-std::string for_page(double value, const std::string& unit, int digits) {
-  return format_number(value, unit, digits);
-}
-
-std::string for_terminal(double value, const std::string& unit, int digits) {
+std::string for_terminal(double value, std::string_view unit, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}g} {}", value, digits, unit);
 }
 
@@ -62,7 +57,7 @@ std::string rows_in_words(double every) {
   return every > 1 ? fmt::format("every {:.3g} rows", every) : "every row";
 }
 
-std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, const Writer& write) {
+std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, Writer write) {
   const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
   const std::string length = turns ? "rad" : "m", effort = turns ? "N m" : "N";
   const auto step = [&](double value, const std::string& unit) { return value == 0 ? "not visible" : write(value, unit, 2); };
@@ -132,7 +127,7 @@ void add_channel_table(HtmlReport& report, const RobotDescription& robot, const 
     for (const char* name : kHead) head.push_back({name});
     Table table(std::move(head));
     for (std::size_t j = 0; j < log.drives.size(); ++j) {
-      const auto cells = cells_of(robot, static_cast<int>(j), log.drives[j], for_page);
+      const auto cells = cells_of(robot, static_cast<int>(j), log.drives[j], format_number);
       table.row({cells.begin(), cells.end()});
     }
     if (!table.empty()) report.table(table, fmt::format("{}: {}.", short_name(log.file), timing_in_words(log)));

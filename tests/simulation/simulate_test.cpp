@@ -93,7 +93,6 @@ TEST(Simulate, ItsLogPassesTheCheckOfLogs) {
   log.qdd.resize(0, 0);
   const LogFindings findings = check_and_repair(log, bench.robot->description());
   EXPECT_EQ(findings.filled_samples, 0);
-  EXPECT_FALSE(findings.resampled);
 }
 
 TEST(Simulate, AFasterControllerThanTheLogAndALateBeginning) {

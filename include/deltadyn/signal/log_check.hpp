@@ -38,7 +38,6 @@ struct LogFindings {
   std::vector<std::string> notes;   ///< in plain words, with line numbers
   Eigen::Index filled_samples = 0;  ///< missing or spoilt samples that were filled in (Log::filled)
   double largest_jitter = 0.0;      ///< of the time stamps, share of the sample time
-  bool resampled = false;           ///< values were moved onto the even grid by cubic interpolation
 };
 
 /// Checks a log and mends what is certain and harmless, with one finding for each kind of fault (Log::findings, Log::notes):

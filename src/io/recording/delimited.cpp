@@ -54,8 +54,7 @@ void append(Column& column, std::string_view field, char decimal, long line) {
   bool fine = false;
   switch (column.kind) {
     case ColumnKind::number:
-      fine = parse_number(field, decimal, value);
-      if (!fine) fine = parse_field(field, decimal, value) != Field::text;
+      fine = parse_number(field, decimal, value) || parse_field(field, decimal, value) != Field::text;
       break;
     case ColumnKind::long_number:
       if (const auto integer = long_integer(field)) {

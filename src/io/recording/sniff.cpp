@@ -118,10 +118,6 @@ std::optional<Candidate> best_marks(const std::vector<Line>& lines) {
   return best;
 }
 
-std::vector<std::string> texts(const std::vector<std::string_view>& fields) {
-  return {fields.begin(), fields.end()};
-}
-
 /// "# t q1 q2", "%time,field.position0": the mark is no part of the first name.
 std::string_view without_mark(std::string_view text) {
   text = trimmed(text);
@@ -145,7 +141,7 @@ std::vector<std::string> split_names(std::string_view text, char separator, std:
       if (names.size() == wanted) return names;
     }
   }
-  return texts(fields);
+  return {fields.begin(), fields.end()};
 }
 
 /// A separator at the end of every line, or only of the rows, or only of the names, makes no column.

@@ -28,15 +28,11 @@ bool is_twincat(std::string_view text) {
   return begins && head.find("Starttime of export") != std::string_view::npos;
 }
 
-/// What follows the word Name in the first line.
-char separator_of(std::string_view text) {
-  const std::size_t at = text.front() == '"' ? 6 : 4;
-  return at < text.size() ? text[at] : '\t';
-}
-
 Header read_header(const TextFile& file) {
   Header header;
-  header.separator = separator_of(file.text);
+  // What follows the word Name in the first line.
+  const std::size_t behind_name = file.text.front() == '"' ? 6 : 4;
+  if (behind_name < file.text.size()) header.separator = file.text[behind_name];
   std::vector<std::string_view> fields;
   bool inside = false;
   for_each_line(file.text, [&](std::string_view line, long number) {

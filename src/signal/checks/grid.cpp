@@ -210,7 +210,6 @@ void move_to_grid(CheckRoom& room) {
   }
   carry_over(log, even, room.grid.step_s, moved);
   log = std::move(moved);
-  room.findings.resampled = true;
 }
 
 }  // namespace deltadyn::checks
