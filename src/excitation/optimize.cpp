@@ -180,21 +180,19 @@ class SegmentSearch {
         share_(share) {}
 
   [[nodiscard]] ProblemSettings settings(bool polish) const {
-    ProblemSettings s;
-    s.criterion = options_.criterion;
-    s.velocity_weight = options_.velocity_weight;
-    s.harmonics = options_.harmonics;
-    s.lowest_hz = options_.lowest_hz;
-    s.highest_hz = options_.highest_hz;
-    s.samples = search_samples(options_.harmonics) * (polish ? 2 : 1);
-    s.windows = polish ? 6 : 4;
-    s.sharpness = polish ? 300 : 150;
-    s.sign_share = polish ? 0.01 : 0.02;
-    s.other_information = other_;
-    s.share = share_;
-    s.reversal_reach_s = options_.reversal_reach_s;
-    s.least_away = options_.least_away + kAwayRoom;
-    return s;
+    return {.criterion = options_.criterion,
+            .velocity_weight = options_.velocity_weight,
+            .harmonics = options_.harmonics,
+            .lowest_hz = options_.lowest_hz,
+            .highest_hz = options_.highest_hz,
+            .samples = search_samples(options_.harmonics) * (polish ? 2 : 1),
+            .windows = polish ? 6 : 4,
+            .sharpness = polish ? 300.0 : 150.0,
+            .sign_share = polish ? 0.01 : 0.02,
+            .other_information = other_,
+            .share = share_,
+            .reversal_reach_s = options_.reversal_reach_s,
+            .least_away = options_.least_away + kAwayRoom};
   }
 
   /// Of the criterion as it is reported: true signs, many samples.

@@ -38,12 +38,10 @@ struct Set {
 };
 
 std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
-  switch (quantity) {
-    case Quantity::position: return defaults.position_unit;
-    case Quantity::velocity: return defaults.velocity_unit;
-    case Quantity::torque: return defaults.torque_unit;
-    default: return "";
-  }
+  static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit, nullptr,
+                                                             &MapDefaults::torque_unit};
+  const auto unit = kUnitFlags[static_cast<std::size_t>(quantity)];
+  return unit == nullptr ? "" : defaults.*unit;
 }
 
 /// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.

@@ -299,14 +299,10 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
 void add_check_table(HtmlReport& report, const Assessment& assessment) {
   Table table({{"", Align::center}, {"question", Align::left}, {"finding", Align::left}, {"meaning", Align::left}});
   for (const Check& check : assessment.checks) {
-    const bool good = check.verdict == Verdict::good, bad = check.verdict == Verdict::bad;
-    table.row({good  ? "✓"
-               : bad ? "✗"
-                     : "!",
-               check.subject, check.figure, check.meaning},
-              good  ? Tone::plain
-              : bad ? Tone::bad
-                    : Tone::caution);
+    const auto [mark, tone] = check.verdict == Verdict::good  ? std::pair("✓", Tone::plain)
+                              : check.verdict == Verdict::bad ? std::pair("✗", Tone::bad)
+                                                              : std::pair("!", Tone::caution);
+    table.row({mark, check.subject, check.figure, check.meaning}, tone);
   }
   report.table(table);
 }

@@ -16,6 +16,7 @@ constexpr double kEven = 1e-6;  // of the time between rows: rounding of the sta
 constexpr std::array<const char*, 8> kHead = {"drive",       "travel",       "position step",  "position noise",
                                               "torque step", "torque noise", "position fresh", "moving"};
 
+/// Where the figure of a finding goes.
 constexpr std::pair<const char*, double ChannelFigures::*> kFigures[] = {{"travel", &ChannelFigures::travel},
                                                                          {"step", &ChannelFigures::step},
                                                                          {"noise", &ChannelFigures::noise},

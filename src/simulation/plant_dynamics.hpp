@@ -80,10 +80,7 @@ struct JointDynamics {
 
   /// Forces of effects do not depend on the plate's acceleration; those that do change the machine.
   [[nodiscard]] Eigen::Vector3d force_on_plate(const Effect& effect, const MechanismTerms& robot) const {
-    PlateInput<double> in;
-    in.position = robot.r;
-    in.velocity = robot.v;
-    in.gravity = parts.gravity;
+    const PlateInput<double> in{.position = robot.r, .velocity = robot.v, .gravity = parts.gravity};
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     visit_effect(effect.id, [&](auto type) {
       using E = decltype(type);
