@@ -65,9 +65,7 @@ ReferenceMotion::ReferenceMotion(const TrajectorySamples& samples, int repeats)
 void ReferenceMotion::at(double time, State& state) const {
   const Eigen::Index n = t_.size();
   const int count = drives();
-  state.q.resize(count);
-  state.qd.resize(count);
-  state.qdd.resize(count);
+  for (Eigen::VectorXd* v : {&state.q, &state.qd, &state.qdd}) v->resize(count);
   double t = time;
   if (repeats_ > 1) {
     // The end of the last run belongs to it, not to one more.

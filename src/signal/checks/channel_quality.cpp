@@ -30,8 +30,7 @@ double white_noise(const Eigen::Ref<const Eigen::VectorXd>& x, const std::vector
 /// Share of the changes that are whole multiples of the smallest one.
 double share_on_lattice(const std::vector<double>& changes, double smallest) {
   constexpr double kOff = 0.05;  // decimal rounding of the file moves a change by less
-  double on = 0;
-  double judged = 0;
+  double on = 0, judged = 0;
   for (const double change : changes) {
     const double multiple = change / smallest;
     if (multiple > 200.0) continue;  // the error of the step itself, times the multiple, would decide
