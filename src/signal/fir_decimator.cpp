@@ -31,7 +31,8 @@ double sinc(double x) {
 
 }  // namespace
 
-FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor) : factor_(factor) {
+FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor)
+    : sample_rate_hz_(sample_rate_hz), factor_(factor) {
   if (!(sample_rate_hz > 0) || factor < 1 || !(cutoff_hz > 0) || !(cutoff_hz <= 0.5 * sample_rate_hz / factor)) {
     throw Error("the cut-off must be positive and not above half the rate after decimation", "decimation",
                 "lower the cut-off or the decimation factor", ExitCode::usage);
@@ -68,6 +69,15 @@ double FirDecimator::white_correlation() const {
   for (Index lag = factor_; lag < taps_.size(); lag += factor_) {
     const Index common = taps_.size() - lag;
     sum += 2 * taps_.head(common).dot(taps_.tail(common)) / taps_.squaredNorm();
+  }
+  return sum;
+}
+
+double FirDecimator::gain(double frequency_hz) const {
+  const Index half = half_width();
+  double sum = taps_(half);
+  for (Index k = 1; k <= half; ++k) {
+    sum += 2.0 * taps_(half + k) * std::cos(2.0 * pi * frequency_hz / sample_rate_hz_ * static_cast<double>(k));
   }
   return sum;
 }

@@ -34,6 +34,9 @@ class FirDecimator {
   /// Variance of a mean over many outputs of white noise, in units of that of independent outputs with the same variance.
   [[nodiscard]] double white_correlation() const;
 
+  /// Gain at a frequency [Hz].
+  [[nodiscard]] double gain(double frequency_hz) const;
+
   /// Outputs first_output .. first_output + n_outputs - 1 of a block of channels.
   /// \param in            samples x channels
   /// \param input_offset  sample of the whole log that is row 0 of `in`; first_input(first_output) for a minimal block
@@ -42,6 +45,7 @@ class FirDecimator {
              Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index input_offset = 0) const;
 
  private:
+  double sample_rate_hz_;
   int factor_;
   Eigen::VectorXd taps_;
 };
