@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <limits>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <random>
 
@@ -179,21 +178,19 @@ class SegmentSearch {
         share_(share) {}
 
   [[nodiscard]] ProblemSettings settings(bool polish) const {
-    ProblemSettings s;
-    s.criterion = options_.criterion;
-    s.velocity_weight = options_.velocity_weight;
-    s.harmonics = options_.harmonics;
-    s.lowest_hz = options_.lowest_hz;
-    s.highest_hz = options_.highest_hz;
-    s.samples = search_samples(options_.harmonics) * (polish ? 2 : 1);
-    s.windows = polish ? 6 : 4;
-    s.sharpness = polish ? 300 : 150;
-    s.sign_share = polish ? 0.01 : 0.02;
-    s.other_information = other_;
-    s.share = share_;
-    s.reversal_reach_s = options_.reversal_reach_s;
-    s.least_away = options_.least_away + kAwayRoom;
-    return s;
+    return {.criterion = options_.criterion,
+            .velocity_weight = options_.velocity_weight,
+            .harmonics = options_.harmonics,
+            .lowest_hz = options_.lowest_hz,
+            .highest_hz = options_.highest_hz,
+            .samples = search_samples(options_.harmonics) * (polish ? 2 : 1),
+            .windows = polish ? 6 : 4,
+            .sharpness = polish ? 300.0 : 150.0,
+            .sign_share = polish ? 0.01 : 0.02,
+            .other_information = other_,
+            .share = share_,
+            .reversal_reach_s = options_.reversal_reach_s,
+            .least_away = options_.least_away + kAwayRoom};
   }
 
   /// Of the criterion as it is reported: true signs, many samples.
@@ -287,8 +284,7 @@ std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& can
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (candidates[k] && std::isfinite(candidates[k]->value)) order.push_back(k);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
   return order;
 }
 
@@ -511,13 +507,14 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
       if (!found && !series[k]) {
         const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);
         const LimitUse& use = check.tightest();
-        throw Error(use.load > 1
-                        ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most room "
-                                      "breaks the limit '{}' ({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others "
-                                      "that were drawn break theirs further",
-                                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
-                        : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
-                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+        throw Error(
+            use.load > 1
+                ? fmt::format(
+                      "no motion keeps all limits: even the slightest about the pose with the most room breaks the limit '{}' "
+                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn break theirs further",
+                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
+                : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
+            "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
       }
       if (found) {
         series[k] = found->series;

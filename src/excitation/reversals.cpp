@@ -1,6 +1,5 @@
 #include "deltadyn/excitation/reversals.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

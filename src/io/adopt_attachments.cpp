@@ -53,11 +53,10 @@ class Solver {
 
  private:
   [[nodiscard]] std::size_t known() const {
-    return static_cast<std::size_t>(std::count_if(ends_.begin(), ends_.end(), [](const auto& a) { return a.has_value(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(ends_, [](const auto& a) { return a.has_value(); }));
   }
   [[nodiscard]] std::size_t first_known() const {
-    return static_cast<std::size_t>(std::find_if(ends_.begin(), ends_.end(), [](const auto& a) { return a.has_value(); }) -
-                                    ends_.begin());
+    return static_cast<std::size_t>(std::ranges::find_if(ends_, [](const auto& a) { return a.has_value(); }) - ends_.begin());
   }
   [[nodiscard]] double length_of_known() const { return (*ends_[first_known()] - limbs_[first_known()].elbow).norm(); }
 
@@ -133,21 +132,16 @@ class Solver {
     return {(-b - root) / a, (-b + root) / a};
   }
 
-  /// Largest error of a strut's length, and of its direction where a centre of mass shows it, for a plate of this radius.
-  [[nodiscard]] double misfit(double radius, std::size_t k, double length) const {
-    double worst = 0;
+  /// Whether struts of this length, in the directions that their centres of mass show, reach a plate of this radius held at limb k.
+  [[nodiscard]] bool closes(double radius, std::size_t k, double length) const {
     const Vec centre = *ends_[k] - radius * limbs_[k].outwards;
-    for (const LimbPlace& limb : limbs_)
-      worst = std::max(worst, std::abs((limb.elbow - centre - radius * limb.outwards).norm() - length));
-    return worst;
-  }
-  [[nodiscard]] double disagreement(double radius, std::size_t k) const {
-    double worst = 0;
-    const Vec centre = *ends_[k] - radius * limbs_[k].outwards;
-    for (std::size_t i = 0; i < limbs_.size(); ++i)
-      if (const auto line = direction_of(parts_.limbs[i]))
-        worst = std::max(worst, line->cross((centre + radius * limbs_[i].outwards - limbs_[i].elbow).normalized()).norm());
-    return worst;
+    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+      const Vec strut = centre + radius * limbs_[i].outwards - limbs_[i].elbow;
+      const auto line = direction_of(parts_.limbs[i]);
+      if (std::abs(strut.norm() - length) > kClosure * length) return false;
+      if (line && line->cross(strut.normalized()).norm() > kDirection) return false;
+    }
+    return true;
   }
 
   void hold_plate(double radius, std::size_t k) {
@@ -167,10 +161,10 @@ class Solver {
     for (const double a : both.front())
       for (const double b : both.back()) candidates.push_back((a + b) / 2);
     // In a symmetric pose a plate wider than the elbows closes as well; the smaller one is meant.
-    std::sort(candidates.begin(), candidates.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    std::ranges::sort(candidates, {}, [](double radius) { return std::abs(radius); });
     const auto before = ends_;
     for (const double radius : candidates) {
-      if (misfit(radius, k, length) > kClosure * length || disagreement(radius, k) > kDirection) continue;
+      if (!closes(radius, k, length)) continue;
       hold_plate(radius, k);
       if (alike() && options_.platform_radius && std::abs(*options_.platform_radius - radius) > kLevel)
         ask(fmt::format("--platform-radius is {:.6g} m, but the pose of the CAD closes with {:.6g} m", *options_.platform_radius,
@@ -229,11 +223,9 @@ class Solver {
     }
     if (how.empty())
       ask("the plate's radius cannot be found: the joints at zero are no pose of the robot that closes with three like limbs, "
-          "and no "
-          "link of the plate has its origin at the plate's centre",
+          "and no link of the plate has its origin at the plate's centre",
           "give --platform-radius (attachments of the limbs from the plate's centre, in metres), or name the link at the centre "
-          "by "
-          "--plate-frame, or export the robot assembled");
+          "by --plate-frame, or export the robot assembled");
     Attachments result;
     result.assembled = false;
     result.plate_centre = end - radius * limbs_[k].outwards;
@@ -245,8 +237,8 @@ class Solver {
                                            : line.value_or((end - limbs_[k].elbow).normalized()));
     }
     result.note = fmt::format(
-        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m "
-        "by {}, and up is z of the base's link",
+        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m by {}, and "
+        "up is z of the base's link",
         radius, how);
     return result;
   }
@@ -260,10 +252,9 @@ class Solver {
       const auto row = 3 * static_cast<Eigen::Index>(i);
       const auto line = direction_of(parts_.limbs[i]);
       if (!line)
-        ask(fmt::format(
-                "the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a frame at its "
-                "end nor a centre of mass on its axis",
-                parts_.limbs[i].struts.front().name),
+        ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a frame at "
+                        "its end nor a centre of mass on its axis",
+                        parts_.limbs[i].struts.front().name),
             "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
       A.block<3, 1>(row, 0) = *line;
       A.block<3, 1>(row, 1) = -limbs_[i].outwards;

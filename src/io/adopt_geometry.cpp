@@ -59,7 +59,7 @@ class Placer {
   }
 
  private:
-  [[nodiscard]] std::string at(const Joint& joint) const { return place_of(tree_, joint); }
+  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
 
   /// z of the link that carries the drives, or of the root where that one lies.
   [[nodiscard]] Vec upright() const {
@@ -162,15 +162,14 @@ class Placer {
     out_.order.resize(3);
     std::iota(out_.order.begin(), out_.order.end(), std::size_t{0});
     if (!options_.drives.empty()) return;
-    std::sort(out_.order.begin(), out_.order.end(),
-              [&](std::size_t a, std::size_t b) { return parts_.limbs[a].drive->line < parts_.limbs[b].drive->line; });
+    std::ranges::sort(out_.order, {}, [&](std::size_t i) { return parts_.limbs[i].drive->line; });
     const std::size_t first = out_.order.front();
     const auto azimuth = [&](std::size_t i) {
       const double angle =
           std::atan2(limbs_[i].outwards.dot(limbs_[first].across), limbs_[i].outwards.dot(limbs_[first].outwards));
       return i == first ? 0.0 : (angle < 0 ? angle + 2 * std::numbers::pi : angle);
     };
-    std::sort(out_.order.begin(), out_.order.end(), [&](std::size_t a, std::size_t b) { return azimuth(a) < azimuth(b); });
+    std::ranges::sort(out_.order, {}, azimuth);
   }
 
   /// Positive is towards the plate, as an arm's angle is.
@@ -184,14 +183,15 @@ class Placer {
     const auto level = [&](const std::vector<double>& zero) {
       std::vector<double> height;
       for (std::size_t i = 0; i < 3; ++i) height.push_back((limbs_[i].elbow + zero[i] * parts_.limbs[i].axis).dot(up_));
-      return *std::max_element(height.begin(), height.end()) - *std::min_element(height.begin(), height.end()) < kPoint;
+      const auto [lowest, highest] = std::ranges::minmax(height);
+      return highest - lowest < kPoint;
     };
     std::vector<double> ends;
     for (std::size_t i = 0; i < 3; ++i) {
       const DriveLimits& limits = parts_.limbs[i].drive->limits;
       ends.push_back(rail_sign(i) > 0 ? limits.lower : limits.upper);
     }
-    if (std::all_of(ends.begin(), ends.end(), [](double end) { return std::isfinite(end); }) && level(ends)) {
+    if (std::ranges::all_of(ends, [](double end) { return std::isfinite(end); }) && level(ends)) {
       zero_ = ends;
     } else if (!level(zero_)) {
       out_.notes.push_back("the carriages stand at unequal heights in the CAD's pose; each drive's zero stays there");
@@ -285,9 +285,8 @@ class Placer {
   /// Of a bar that the pose does not bring to the plate: on the plate's middle axis, as high above the tool's link as drawn.
   Vec lower_joint_alone(const Telescope& bar) {
     double height = 0;
-    const robot_file::Body& tool = tree_.bodies[static_cast<std::size_t>(bar.tool.back())];
     const std::vector<Pose> X_R = zero_pose(tree_);
-    for (const std::string& link : tool.links) {
+    for (const std::string& link : tree_.body(bar.tool.back()).links) {
       const Vec above = bar.lower_joint - link_pose(tree_, X_R, link).translation();
       if (above.cross(up_).norm() < kPoint) height = above.dot(up_);
     }
@@ -300,9 +299,10 @@ class Placer {
     DriveLimits limits;
     const bool range = cad.lower < cad.upper;  // 0 to 0 is what exporters write where nothing was given
     if (range) {
-      const double ends[] = {drive.sign * cad.lower + drive.offset, drive.sign * cad.upper + drive.offset};
-      limits.lower = std::isfinite(ends[0] + ends[1]) ? tidy(std::min(ends[0], ends[1])) : std::min(ends[0], ends[1]);
-      limits.upper = std::isfinite(ends[0] + ends[1]) ? tidy(std::max(ends[0], ends[1])) : std::max(ends[0], ends[1]);
+      const auto [low, high] = std::minmax({drive.sign * cad.lower + drive.offset, drive.sign * cad.upper + drive.offset});
+      const bool finite = std::isfinite(low + high);
+      limits.lower = finite ? tidy(low) : low;
+      limits.upper = finite ? tidy(high) : high;
     }
     if (cad.velocity > 0) limits.velocity = cad.velocity;
     if (cad.effort > 0) limits.effort = cad.effort;
@@ -316,10 +316,8 @@ class Placer {
   /// Of the element that a file of these tools has; no limit otherwise.
   [[nodiscard]] double acceleration_of(const std::string& joint) const {
     for (const robot_file::DriveNote& note : tree_.drives) {
-      const auto named = note.attributes.find("joint");
-      const auto value =
-          note.attributes.find(prismatic_ ? robot_file::kAccelerationPrismatic : robot_file::kAccelerationRevolute);
-      if (named != note.attributes.end() && named->second == joint && value != note.attributes.end())
+      const auto value = note.attributes.find(robot_file::acceleration_attribute(prismatic_));
+      if (note.joint == joint && value != note.attributes.end())
         return robot_file::parse_number(value->second, tree_.where, value->first);
     }
     return DriveLimits().acceleration;
@@ -350,8 +348,7 @@ class Placer {
   /// The root link is a frame above the link that carries the drives, as "world" is.
   [[nodiscard]] bool is_frame_above_base() const {
     const std::string& root = tree_.bodies[0].name;
-    return std::none_of(parts_.limbs.begin(), parts_.limbs.end(),
-                        [&](const Limb& limb) { return limb.drive->parent_link == root; });
+    return std::ranges::none_of(parts_.limbs, [&](const Limb& limb) { return limb.drive->parent_link == root; });
   }
 
   /// Elbows outwards or inwards: the posture in which inverse kinematics gives the pose of the CAD.

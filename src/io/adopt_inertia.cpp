@@ -53,7 +53,7 @@ class Collector {
   }
   Ten of_bodies(const std::vector<int>& bodies, const Pose& X_RF) const {
     Ten sum = Ten::Zero();
-    for (const int index : bodies) sum += of_links(tree_.bodies[static_cast<std::size_t>(index)].links, X_RF);
+    for (const int index : bodies) sum += of_links(tree_.body(index).links, X_RF);
     return sum;
   }
 

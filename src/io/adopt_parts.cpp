@@ -36,10 +36,10 @@ class Finder {
 
  private:
   // --- messages and access ------------------------------------------------------------------------
-  [[nodiscard]] std::string at(const Joint& joint) const { return place_of(tree_, joint); }
-  [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
-  [[nodiscard]] const Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
-  [[nodiscard]] const Joint& joint(int index) const { return tree_.joints[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
+  [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
+  [[nodiscard]] const Body& body(int index) const { return tree_.body(index); }
+  [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
   [[nodiscard]] const Pose& pose(int index) const { return X_R_[static_cast<std::size_t>(index)]; }
   [[nodiscard]] Vec place(const Joint& j) const { return (pose(j.parent) * j.X_PJ).translation(); }
   [[nodiscard]] Vec axis(const Joint& j) const { return (pose(j.parent) * j.X_PJ).linear() * j.axis; }
@@ -89,7 +89,7 @@ class Finder {
     if (!options_.drives.empty()) {
       std::vector<const Joint*> named;
       for (const std::string& name : options_.drives) {
-        const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Joint* j) { return j->name == name; });
+        const auto found = std::ranges::find(candidates, name, &Joint::name);
         if (found == candidates.end())
           refuse(fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
                  "--drives", "name three or four of them", ExitCode::usage);
@@ -99,7 +99,7 @@ class Finder {
     }
     for (const Joint* j : candidates) {
       const auto below = chain(*j);
-      const auto slides = std::count_if(below.begin(), below.end(), [](const Joint* k) { return k->prismatic; });
+      const auto slides = std::ranges::count_if(below, &Joint::prismatic);
       if (!j->prismatic && slides == 1) {
         add_telescope(*j, below);
       } else if (children(j->child).empty()) {
@@ -119,25 +119,20 @@ class Finder {
   }
 
   [[noreturn]] void refuse_limbs() const {
-    std::vector<std::string> found;
-    for (const Limb& limb : parts_.limbs) found.push_back(limb.drive->name);
-    const std::string all = names(children(base_));
+    std::vector<const Joint*> drives;
+    for (const Limb& limb : parts_.limbs) drives.push_back(limb.drive);
+    const std::string found = names(drives), all = names(children(base_));
     if (parts_.limbs.size() == 4)
-      refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet",
-                         fmt::join(found, ", ")),
+      refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet", found),
              at(body(base_).name), fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
-    refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}", found.size(),
-                       found.empty() ? "" : ": ", fmt::join(found, ", ")),
+    refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}", drives.size(),
+                       drives.empty() ? "" : ": ", found),
            at(body(base_).name), fmt::format("hang the struts on the arms, or name the drives: --drives A,B,C out of {}", all));
   }
 
   // --- limbs --------------------------------------------------------------------------------------
   void add_limb(const Joint& drive) {
-    Limb limb;
-    limb.drive = &drive;
-    limb.axis = axis(drive);
-    limb.place = place(drive);
-    limb.arm = {drive.child};
+    Limb limb{&drive, axis(drive), place(drive), {drive.child}, {}};
     for (const Joint* j : children(drive.child)) collect_strut(*j, limb);
     if (limb.struts.empty() || limb.struts.size() > 2)
       refuse(fmt::format("an arm or carriage carries one strut or two, but this one carries {}", limb.struts.size()),
@@ -229,17 +224,17 @@ class Finder {
     if (parts_.telescope)
       refuse(fmt::format("joint {} carries a telescope bar, too", parts_.telescope->drive->name), at(drive),
              "name the four drives by --drives");
-    Telescope bar;
-    bar.drive = &drive;
-    bar.axis = axis(drive);
-    bar.place = place(drive);
-    const auto slide = std::find_if(below.begin(), below.end(), [](const Joint* j) { return j->prismatic; });
+    const auto slide = std::ranges::find_if(below, &Joint::prismatic);
     if (slide == below.begin())
       refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive", at(**slide),
              "put two revolute joints (about x, then y) between drive and bar");
     if (slide + 1 == below.end())
       refuse("the telescope bar ends in a universal joint that carries the tool, but nothing follows the sliding joint",
              at(**slide), "hang the tool on the bar's lower part by two revolute joints");
+    Telescope& bar = parts_.telescope.emplace();
+    bar.drive = &drive;
+    bar.axis = axis(drive);
+    bar.place = place(drive);
     bar.upper_joint = place(**below.begin());
     bar.lower_joint = place(**(slide + 1));
     const auto meet = [&](auto from, auto to, const Vec& point, const char* what) {
@@ -254,7 +249,6 @@ class Finder {
     for (auto j = below.begin(); j != slide; ++j) bar.upper.push_back((*j)->child);
     bar.lower = {(*slide)->child};
     for (auto j = slide + 1; j != below.end(); ++j) bar.tool.push_back((*j)->child);
-    parts_.telescope = bar;
   }
 
   // --- plate --------------------------------------------------------------------------------------
@@ -331,14 +325,6 @@ std::vector<Pose> zero_pose(const UrdfTree& tree) {
 Pose link_pose(const UrdfTree& tree, const std::vector<Pose>& X_R, const std::string& link) {
   const robot_file::LinkPlace& place = tree.links.at(link);
   return X_R[static_cast<std::size_t>(place.body)] * place.X_BL;
-}
-
-void refuse(const std::string& what, const std::string& where, const std::string& mend, ExitCode code) {
-  throw Error(what, where, mend, code);
-}
-
-std::string place_of(const UrdfTree& tree, const Joint& joint) {
-  return fmt::format("{}, line {}, joint {}", tree.where, joint.line, joint.name);
 }
 
 Parts find_parts(const UrdfTree& tree, const AdoptOptions& options) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "deltadyn/io/adopt.hpp"
-#include "deltadyn/runtime/error.hpp"
 
 #include "urdf_tree.hpp"
 
@@ -17,6 +16,7 @@ namespace deltadyn::cad {
 
 using robot_file::Joint;
 using robot_file::Pose;
+using robot_file::refuse;
 using robot_file::UrdfTree;
 using Vec = Eigen::Vector3d;
 
@@ -59,13 +59,6 @@ struct Parts {
 
 /// Pose of a link in the root link's frame, from the poses of the bodies.
 [[nodiscard]] Pose link_pose(const UrdfTree& tree, const std::vector<Pose>& X_R, const std::string& link);
-
-/// Throws deltadyn::Error.
-[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend,
-                         ExitCode code = ExitCode::bad_input);
-
-/// "cad.urdf, line 12, joint J1".
-[[nodiscard]] std::string place_of(const UrdfTree& tree, const Joint& joint);
 
 /// Throws deltadyn::Error with link or joint and the rule that failed.
 [[nodiscard]] Parts find_parts(const UrdfTree& tree, const AdoptOptions& options);

@@ -19,7 +19,7 @@ bool turns_the_telescope(const Joint& drive, std::size_t drives) {
 
 /// True if every limb's frame is turned about z of `X_RW` only, and the telescope's not at all: the rules of a base frame.
 bool is_base_frame(const Pose& X_RW, const std::vector<const Joint*>& drives) {
-  return std::all_of(drives.begin(), drives.end(), [&](const Joint* drive) {
+  return std::ranges::all_of(drives, [&](const Joint* drive) {
     const Eigen::Matrix3d R = X_RW.linear().transpose() * drive->X_PJ.linear();
     if (turns_the_telescope(*drive, drives.size())) return (R - Eigen::Matrix3d::Identity()).norm() < kTolerance;
     return (R.col(2) - Vec::UnitZ()).norm() < kTolerance;
@@ -38,9 +38,7 @@ std::vector<std::string> carriers(const UrdfTree& tree, const std::vector<const 
   std::vector<std::string> common = way_up(tree, drives.front()->parent_link);
   for (const Joint* drive : drives) {
     const std::vector<std::string> way = way_up(tree, drive->parent_link);
-    common.erase(std::remove_if(common.begin(), common.end(),
-                                [&](const std::string& link) { return std::find(way.begin(), way.end(), link) == way.end(); }),
-                 common.end());
+    std::erase_if(common, [&](const std::string& link) { return std::ranges::find(way, link) == way.end(); });
   }
   return common;
 }
@@ -66,7 +64,7 @@ Pose frame_of_drives(const std::vector<const Joint*>& drives) {
 
 void place_base(UrdfTree& tree) {
   std::vector<const Joint*> drives;
-  for (const int index : tree.bodies[0].joints) drives.push_back(&tree.joints[static_cast<std::size_t>(index)]);
+  for (const int index : tree.bodies[0].joints) drives.push_back(&tree.joint(index));
   if (drives.empty()) return;  // the reader refuses it in its own words
   Pose X_RW = Pose::Identity();
   bool found = false;

@@ -8,12 +8,9 @@
 
 namespace deltadyn {
 void write_coefficients(const std::string& path, const std::vector<FourierSeries>& segments, const RobotDescription& robot) {
-  OutputFile file(path);
   std::string text = "segment,harmonic,frequency_hz";
-  for (const TaskColumns& column : task_columns(robot)) {
-    const char* unit = column.rotation ? "rad" : "m";
-    text += fmt::format(",{0}_sin_{1},{0}_cos_{1}", column.name, unit);
-  }
+  for (const TaskColumns& column : task_columns(robot))
+    text += fmt::format(",{0}_sin{1},{0}_cos{1}", column.name, column.rotation ? "_rad" : "_m");
   text += "\n";
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const FourierSeries& series = segments[k];
@@ -26,8 +23,7 @@ void write_coefficients(const std::string& path, const std::vector<FourierSeries
       text += "\n";
     }
   }
-  file.write(text);
-  file.commit();
+  write_file(path, text);
 }
 
 }  // namespace deltadyn

@@ -25,6 +25,15 @@ constexpr std::array kChannelKeys = {
     "rated_torque_Nm", "counts_per_turn", "lead_m_turn", "wrap", "delay_s"};
 constexpr std::array kTopKeys = {"time", "channel", "topic"};
 
+/// Constants that must be positive.
+constexpr std::pair<const char*, std::optional<double> ChannelMap::*> kConstants[] = {
+    {"gear_ratio", &ChannelMap::gear_ratio},
+    {"torque_constant_Nm_A", &ChannelMap::torque_constant},
+    {"rated_torque_Nm", &ChannelMap::rated_torque},
+    {"counts_per_turn", &ChannelMap::counts_per_turn},
+    {"lead_m_turn", &ChannelMap::lead},
+    {"wrap", &ChannelMap::wrap}};
+
 /// Reads the tables of one map file and says where something is wrong.
 class MapReader {
  public:
@@ -82,7 +91,7 @@ class MapReader {
   void refuse_unknown(const toml::table& table, const std::array<const char*, N>& known, const char* where) const {
     for (const auto& [key, node] : table) {
       const std::string_view name = key.str();
-      if (std::find(known.begin(), known.end(), name) == known.end()) {
+      if (std::ranges::find(known, name) == known.end()) {
         fail(node, fmt::format("the key '{}' is not known in {}", name, where),
              fmt::format("the keys are {}", fmt::join(known, ", ")));
       }
@@ -180,12 +189,7 @@ class MapReader {
       if (std::abs(channel.sign) != 1.0) fail(*node, "sign is neither 1 nor -1", "factors are given by scale or gear_ratio");
     }
     if (channel.scale == 0) fail(*table.get("scale"), "scale = 0 leaves nothing of the channel", "give the factor to the unit");
-    channel.gear_ratio = positive(table, "gear_ratio");
-    channel.torque_constant = positive(table, "torque_constant_Nm_A");
-    channel.rated_torque = positive(table, "rated_torque_Nm");
-    channel.counts_per_turn = positive(table, "counts_per_turn");
-    channel.lead = positive(table, "lead_m_turn");
-    channel.wrap = positive(table, "wrap");
+    for (const auto& [key, constant] : kConstants) channel.*constant = positive(table, key);
   }
 
   std::string path_;
@@ -258,7 +262,7 @@ const ChannelMap* ColumnMap::find(Quantity quantity, int drive) const {
 }
 
 bool ColumnMap::has(Quantity quantity) const {
-  return std::any_of(channels.begin(), channels.end(), [&](const ChannelMap& channel) { return channel.quantity == quantity; });
+  return std::ranges::find(channels, quantity, &ChannelMap::quantity) != channels.end();
 }
 
 void MapDefaults::validate(int drives) const {
@@ -325,15 +329,9 @@ std::string to_toml(const ChannelMap& channel) {
   if (channel.scale != 1) text += fmt::format("scale = {}\n", channel.scale);
   if (channel.offset != 0) text += fmt::format("offset = {}\n", channel.offset);
   if (channel.sign != 1) text += fmt::format("sign = {}\n", channel.sign);
-  const auto add = [&text](const char* key, const std::optional<double>& value) {
-    if (value) text += fmt::format("{} = {}\n", key, *value);
-  };
-  add("gear_ratio", channel.gear_ratio);
-  add("torque_constant_Nm_A", channel.torque_constant);
-  add("rated_torque_Nm", channel.rated_torque);
-  add("counts_per_turn", channel.counts_per_turn);
-  add("lead_m_turn", channel.lead);
-  add("wrap", channel.wrap);
+  for (const auto& [key, constant] : kConstants) {
+    if (channel.*constant) text += fmt::format("{} = {}\n", key, *(channel.*constant));
+  }
   if (channel.delay_s != 0) text += fmt::format("delay_s = {}\n", channel.delay_s);
   return text;
 }

@@ -35,6 +35,11 @@ SampledChannel low_passed(const SampledChannel& series, double step_s, double cu
 
 }  // namespace
 
+Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  const auto known = !values.array().isNaN();
+  return {known.select(values.array(), HUGE_VAL).minCoeff(), known.select(values.array(), -HUGE_VAL).maxCoeff()};
+}
+
 double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   std::vector<double> steps;
   for (Index i = 0; i + 1 < t_s.size(); ++i) {
@@ -49,17 +54,16 @@ double mean_rate_hz(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   return span > 0 ? static_cast<double>(n - 1) / span : 0.0;
 }
 
-Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, GridStep& how) {
-  how.step_s = usual_step_s(series.t_s);
-  const double grid_step = usual_step_s(grid_s);
+Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, double& low_pass_hz) {
+  const double step_s = usual_step_s(series.t_s), grid_step = usual_step_s(grid_s);
   const Index n = series.t_s.size();
   Eigen::VectorXd result = Eigen::VectorXd::Constant(grid_s.size(), kNan);
   if (n < 4) return result;
-  const bool faster = how.step_s < kFaster * grid_step;
-  how.low_pass_hz = faster ? kLowPassShare / grid_step : 0.0;
-  const SampledChannel source = faster ? low_passed(series, how.step_s, how.low_pass_hz) : series;
+  const bool faster = step_s < kFaster * grid_step;
+  low_pass_hz = faster ? kLowPassShare / grid_step : 0.0;
+  const SampledChannel source = faster ? low_passed(series, step_s, low_pass_hz) : series;
   // Rounding of stamps must not cost the first and last row.
-  const double slack = 1e-6 * how.step_s;
+  const double slack = 1e-6 * step_s;
   const double first = series.t_s(0), last = series.t_s(n - 1);
   Index interval = 0;
   std::vector<Index> rows;
@@ -69,12 +73,9 @@ Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const E
     while (interval > 0 && series.t_s(interval) > t) --interval;
     while (interval + 2 < n && series.t_s(interval + 1) <= t) ++interval;
     const bool on_sample = std::abs(t - series.t_s(interval)) <= slack || std::abs(t - series.t_s(interval + 1)) <= slack;
-    if (on_sample || series.t_s(interval + 1) - series.t_s(interval) <= kLongestGap * how.step_s) rows.push_back(k);
+    if (on_sample || series.t_s(interval + 1) - series.t_s(interval) <= kLongestGap * step_s) rows.push_back(k);
   }
-  Eigen::VectorXd times(static_cast<Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) times(static_cast<Index>(i)) = grid_s(rows[i]);
-  const Eigen::MatrixXd values = resample(source.t_s, source.values, times);
-  for (std::size_t i = 0; i < rows.size(); ++i) result(rows[i]) = values(static_cast<Index>(i), 0);
+  result(rows) = resample(source.t_s, source.values, grid_s(rows));
   return result;
 }
 
@@ -83,7 +84,7 @@ Index first_of_repeats(const Eigen::Ref<const Eigen::VectorXd>& values, Index fa
   for (Index i = 1; i < values.size(); ++i) {
     if (values(i) != values(i - 1)) ++changes[static_cast<std::size_t>(i % factor)];
   }
-  return std::max_element(changes.begin(), changes.end()) - changes.begin();
+  return std::ranges::max_element(changes) - changes.begin();
 }
 
 Index unwrap(Eigen::Ref<Eigen::VectorXd> values, double wrap) {
@@ -110,7 +111,7 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
     if (!std::isnan(step)) steps.push_back(step);
   }
   if (steps.size() < 10) return 0.0;
-  const double largest = *std::max_element(steps.begin(), steps.end());
+  const double largest = *std::ranges::max_element(steps);
   const std::size_t most = steps.size() * 98 / 100;
   const double usual = order_statistic(std::move(steps), most);
   // A number that begins again jumps by nearly its whole range, far more than it ever moves in a step.
@@ -118,12 +119,11 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
   std::vector<double> periods = {2.0 * std::numbers::pi, 360.0};
   if (counts > 0) periods.push_back(counts);
   for (int bits = 8; bits <= 32; ++bits) periods.push_back(std::ldexp(1.0, bits));
-  const double range = values.array().isNaN().select(-std::numeric_limits<double>::infinity(), values.array()).maxCoeff() -
-                       values.array().isNaN().select(std::numeric_limits<double>::infinity(), values.array()).minCoeff();
+  const double range = range_of(values).width();
   for (const double period : periods) {
     if (range > period * (1.0 + 1e-9) || range < 0.9 * period) continue;
-    const bool all = std::all_of(steps.begin(), steps.end(),
-                                 [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
+    const bool all =
+        std::ranges::all_of(steps, [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
     if (all) return period;
   }
   return 0.0;

@@ -4,7 +4,6 @@
 /// Channels of several sample rates on the time stamps of one of them, without phase error.
 
 #include <Eigen/Core>
-#include <string>
 
 namespace deltadyn {
 
@@ -13,12 +12,12 @@ struct SampledChannel {
   Eigen::VectorXd t_s, values;
 };
 
-/// How a channel came to the grid, for people.
-struct GridStep {
-  double step_s = 0.0;       ///< usual sample time of the channel
-  double low_pass_hz = 0.0;  ///< 0: none was needed
-  bool same = false;         ///< its stamps are those of the grid
+struct Range {
+  double low, high;
+  [[nodiscard]] double width() const { return high - low; }
 };
+/// Of the numbers that are there.
+[[nodiscard]] Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values);
 
 /// Median step of stamps [s].
 [[nodiscard]] double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s);
@@ -29,8 +28,9 @@ struct GridStep {
 /// Values at the times of the grid. A faster channel first passes a zero-phase low pass at 0.4 of the grid's rate, so that nothing
 /// folds into its band; then the cubic through the four samples around each time is taken, which shifts no frequency in time.
 /// Where the channel has a gap of more than 2.5 of its steps, and outside of it, the value is NaN: nothing is made up.
+/// \param low_pass_hz  the edge of the low pass, 0 if none was needed
 [[nodiscard]] Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s,
-                                        GridStep& how);
+                                        double& low_pass_hz);
 
 /// Sample indices of a channel whose slower recorder was filled up with repeats of the last value: of each `factor` rows the one
 /// where new values appear.

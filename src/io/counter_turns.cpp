@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numbers>
 
 #include "common_grid.hpp"
@@ -14,17 +13,6 @@ using Eigen::Index;
 
 /// A machine may overshoot its limits, and a robot file round them, by this share of the range.
 constexpr double kOvershoot = 0.02;
-
-struct Range {
-  double low, high;
-  [[nodiscard]] double width() const { return high - low; }
-};
-
-Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  const auto known = !values.array().isNaN();
-  return {known.select(values.array(), std::numeric_limits<double>::infinity()).minCoeff(),
-          known.select(values.array(), -std::numeric_limits<double>::infinity()).maxCoeff()};
-}
 
 /// The range of numbers that a counter without a jump may have: a turn of its angle, or of counts the encoder's turn or a usual
 /// number of bits. 0: none.
@@ -97,8 +85,7 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
   if (fitting.count == 0 || !seen || jumps == 0 || map.offset != 0) return as_it_is;
   return fmt::format(
       "{}, and the first value taken as it is, which is open: {:.0f} turns of the counter fit {}; if the joint started "
-      "elsewhere, "
-      "give offset = {:.10g} [{}] times the turns it is off in the column map",
+      "elsewhere, give offset = {:.10g} [{}] times the turns it is off in the column map",
       done, fitting.count, inside, map.scale * wrap, map.unit);
 }
 

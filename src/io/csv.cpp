@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -22,6 +21,8 @@
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
+
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace detail {
@@ -64,35 +65,23 @@ class CheckedSource : public io::ByteSourceBase {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+using forms::trimmed;
 
 void split(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   for (;;) {
-    const void* comma = std::memchr(line.data(), ',', line.size());
-    if (comma == nullptr) break;
-    const auto length = static_cast<std::size_t>(static_cast<const char*>(comma) - line.data());
-    fields.push_back(trimmed(line.substr(0, length)));
-    line.remove_prefix(length + 1);
+    const auto comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
   }
-  fields.push_back(trimmed(line));
 }
 
 enum class Parsed { number, not_finite, empty, text };
 
 Parsed parse(std::string_view text, double& value) {
   if (text.empty()) return Parsed::empty;
-  if (text.front() == '+' && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || error == std::errc::invalid_argument) return Parsed::text;
-  if (error == std::errc::result_out_of_range) {
-    // from_chars leaves the value alone here: too small reads as zero, too large is no number we can use.
-    value = std::strtod(std::string(text).c_str(), nullptr);
-  }
+  if (!forms::parse_decimal(text, value)) return Parsed::text;
   return std::isfinite(value) ? Parsed::number : Parsed::not_finite;
 }
 
@@ -115,7 +104,7 @@ double finite_number(std::string_view text, const std::string& path, long line, 
 }
 
 std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view column) {
-  const auto found = std::find(columns.begin(), columns.end(), column);
+  const auto found = std::ranges::find(columns, column);
   if (found == columns.end()) return std::nullopt;
   return static_cast<std::size_t>(found - columns.begin());
 }
@@ -187,8 +176,7 @@ CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) 
   if (!impl_->next(header)) throw Error("the file is empty", path, "the first line must hold the column names");
   split(header, impl_->fields);
   double ignored_value = 0;
-  if (std::all_of(impl_->fields.begin(), impl_->fields.end(),
-                  [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
+  if (std::ranges::all_of(impl_->fields, [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
     throw Error("the header line is missing: the first line holds numbers only", place(path, impl_->line()),
                 "add a first line with the column names, separated by commas");
   }
@@ -239,12 +227,7 @@ bool CsvReader::next_row() {
 }
 
 double CsvReader::number(std::size_t column) const {
-  double value = 0;
-  const Parsed parsed = parse(impl_->fields[column], value);
-  if (parsed != Parsed::number) {
-    refuse_number(parsed, impl_->fields[column], place(impl_->path, impl_->line(), impl_->columns[column]));
-  }
-  return value;
+  return finite_number(impl_->fields[column], impl_->path, impl_->line(), impl_->columns[column]);
 }
 
 double CsvReader::number_or_nan(std::size_t column) const {

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <string_view>
 
@@ -21,17 +20,17 @@ std::vector<Words> told_apart(const std::vector<std::string>& names) {
   std::vector<Words> words;
   for (const std::string& name : names) {
     words.push_back(words_of(name));
-    std::sort(words.back().begin(), words.back().end());
+    std::ranges::sort(words.back());
   }
   Words shared = words.front();
   for (const Words& one : words) {
     Words both;
-    std::set_intersection(shared.begin(), shared.end(), one.begin(), one.end(), std::back_inserter(both));
+    std::ranges::set_intersection(shared, one, std::back_inserter(both));
     shared = std::move(both);
   }
   for (Words& one : words) {
     Words rest;
-    std::set_difference(one.begin(), one.end(), shared.begin(), shared.end(), std::back_inserter(rest));
+    std::ranges::set_difference(one, shared, std::back_inserter(rest));
     rest.erase(std::unique(rest.begin(), rest.end()), rest.end());
     one = std::move(rest);
   }
@@ -49,8 +48,8 @@ bool is_letter(const std::string& word) {
 std::vector<long> keys_of(const std::vector<Words>& words, bool (*is_key)(const std::string&)) {
   std::vector<long> keys;
   for (const Words& one : words) {
-    if (std::count_if(one.begin(), one.end(), is_key) != 1) return {};
-    const std::string& word = *std::find_if(one.begin(), one.end(), is_key);
+    if (std::ranges::count_if(one, is_key) != 1) return {};
+    const std::string& word = *std::ranges::find_if(one, is_key);
     keys.push_back(is_number(word) ? std::strtol(word.c_str(), nullptr, 10) : static_cast<long>(word.front()));
   }
   return std::set<long>(keys.begin(), keys.end()).size() == keys.size() ? keys : std::vector<long>{};
@@ -60,15 +59,15 @@ std::vector<long> keys_of(const std::vector<Words>& words, bool (*is_key)(const 
 std::vector<long> ranks(const std::vector<long>& keys) {
   std::vector<long> result;
   for (const long key : keys) {
-    result.push_back(1 + std::count_if(keys.begin(), keys.end(), [&](long other) { return other < key; }));
+    result.push_back(1 + std::ranges::count_if(keys, [&](long other) { return other < key; }));
   }
   return result;
 }
 
 bool run_from(const std::vector<long>& keys, std::initializer_list<long> firsts) {
-  const auto [low, high] = std::minmax_element(keys.begin(), keys.end());
+  const auto [low, high] = std::ranges::minmax_element(keys);
   const bool gapless = *high - *low + 1 == static_cast<long>(keys.size());
-  return gapless && std::find(firsts.begin(), firsts.end(), *low) != firsts.end();
+  return gapless && std::ranges::find(firsts, *low) != firsts.end();
 }
 
 /// Places by numbers or letters that run without a gap; nothing if there are none.
@@ -77,8 +76,7 @@ std::vector<long> running_places(const std::vector<std::string>& names) {
   const std::vector<Words> words = told_apart(names);
   const std::vector<long> numbers = keys_of(words, is_number);
   if (!numbers.empty()) return run_from(numbers, {0, 1}) ? ranks(numbers) : std::vector<long>{};
-  const bool any_number =
-      std::any_of(words.begin(), words.end(), [](const Words& one) { return std::any_of(one.begin(), one.end(), is_number); });
+  const bool any_number = std::ranges::any_of(words, [](const Words& one) { return std::ranges::any_of(one, is_number); });
   const std::vector<long> letters = any_number ? std::vector<long>{} : keys_of(words, is_letter);
   return !letters.empty() && run_from(letters, {'a', 'u', 'x'}) ? ranks(letters) : std::vector<long>{};
 }
@@ -96,8 +94,7 @@ std::vector<std::size_t> yaw_names(const std::vector<std::string>& names, bool l
   const std::vector<Words> words = told_apart(names);
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (std::any_of(words[k].begin(), words[k].end(), [&](const std::string& word) { return is_yaw_word(word, letters); }))
-      found.push_back(k);
+    if (std::ranges::any_of(words[k], [&](const std::string& word) { return is_yaw_word(word, letters); })) found.push_back(k);
   }
   return found;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <map>
 #include <tuple>
 
@@ -37,12 +38,10 @@ struct Set {
 };
 
 std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
-  switch (quantity) {
-    case Quantity::position: return defaults.position_unit;
-    case Quantity::velocity: return defaults.velocity_unit;
-    case Quantity::torque: return defaults.torque_unit;
-    default: return "";
-  }
+  static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit, nullptr,
+                                                             &MapDefaults::torque_unit};
+  const auto unit = kUnitFlags[static_cast<std::size_t>(quantity)];
+  return unit == nullptr ? "" : defaults.*unit;
 }
 
 /// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
@@ -120,7 +119,7 @@ std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription
   Set set;
   std::vector<long> places;
   if (members.size() > drives) members = drives_among(members, robot.drives());
-  if (std::all_of(members.begin(), members.end(), is_log_name)) {
+  if (std::ranges::all_of(members, is_log_name)) {
     for (const Candidate& member : members) places.push_back(member.words.numbers.back());
   } else if (members.size() != drives) {
     return std::nullopt;
@@ -177,19 +176,14 @@ std::vector<Set> sets_of(const std::vector<Candidate>& candidates, const RobotDe
   return sets;
 }
 
-std::string names_of(const Set& set) {
+std::string names_of(const std::vector<Candidate>& members) {
   std::vector<std::string> names;
-  for (const Candidate& member : set.of_drive) names.push_back("'" + member.channel->name + "'");
+  for (const Candidate& member : members) names.push_back("'" + member.channel->name + "'");
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string example(Quantity quantity, const std::string& source, const std::string& unit, int drive) {
-  ChannelMap channel;
-  channel.drive = drive;
-  channel.quantity = quantity;
-  channel.source = source;
-  channel.unit = unit;
-  std::string text = to_toml(channel);
+  std::string text = to_toml(ChannelMap{.drive = drive, .quantity = quantity, .source = source, .unit = unit});
   text.pop_back();
   for (auto at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 5)) text.replace(at, 1, "\n    ");
   return "    " + text;
@@ -199,27 +193,14 @@ std::string si_unit(Quantity quantity, DriveKind kind) {
   return customary_unit("/", quantity, kind);
 }
 
-std::string contract_name(const RobotDescription& robot, int drive, Quantity quantity) {
-  const DriveColumns columns = drive_columns(robot, drive);
-  switch (quantity) {
-    case Quantity::position: return columns.q;
-    case Quantity::velocity: return columns.qd;
-    case Quantity::acceleration: return columns.qdd;
-    case Quantity::torque: return columns.tau;
-  }
-  return columns.q;
-}
-
 OpenQuestion missing(const Recording& recording, const RobotDescription& robot, Quantity quantity,
                      const std::vector<Candidate>& candidates) {
-  std::vector<std::string> looks;
-  for (const Candidate& candidate : candidates) looks.push_back("'" + candidate.channel->name + "'");
   const std::string wanted = contract_name(robot, 0, quantity);
   std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}", wanted,
                                  word_of(quantity), list_channels(recording));
-  if (!looks.empty()) {
+  if (!candidates.empty()) {
     what = fmt::format("the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
-                       word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", fmt::join(looks, ", "),
+                       word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", names_of(candidates),
                        list_channels(recording));
   }
   return {quantity, what,
@@ -250,30 +231,33 @@ bool contradicts(const Set& set, const ColumnMap& map, int drives) {
   if (drives != 1 || position == nullptr) return false;
   const std::vector<long> theirs = read_header_words(position->source, "").numbers;
   const std::vector<long>& ours = set.of_drive[0].words.numbers;
-  const auto shared = [&](long number) { return std::find(theirs.begin(), theirs.end(), number) != theirs.end(); };
-  return !theirs.empty() && !ours.empty() && std::none_of(ours.begin(), ours.end(), shared);
+  const auto shared = [&](long number) { return std::ranges::find(theirs, number) != theirs.end(); };
+  return !theirs.empty() && !ours.empty() && std::ranges::none_of(ours, shared);
 }
 
 void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults, ColumnMap& map) {
   for (std::size_t drive = 0; drive < set.of_drive.size(); ++drive) {
-    ChannelMap channel;
-    channel.drive = static_cast<int>(drive) + 1;
-    channel.quantity = quantity;
-    channel.source = set.of_drive[drive].channel->name;
-    channel.unit = unit_of(set.of_drive[drive], quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults);
-    map.channels.push_back(std::move(channel));
+    map.channels.push_back(
+        {.drive = static_cast<int>(drive) + 1,
+         .quantity = quantity,
+         .source = set.of_drive[drive].channel->name,
+         .unit = unit_of(set.of_drive[drive], quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults)});
   }
 }
 
 }  // namespace
 
+std::string contract_name(const RobotDescription& robot, int drive, Quantity quantity) {
+  static constexpr std::string DriveColumns::*kColumns[] = {&DriveColumns::q, &DriveColumns::qd, &DriveColumns::qdd,
+                                                            &DriveColumns::tau};
+  return drive_columns(robot, drive).*kColumns[static_cast<std::size_t>(quantity)];
+}
+
 std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind) {
   const bool turns = kind == DriveKind::revolute;
-  const auto begins = [&](const char* text) { return stem.rfind(text, 0) == 0; };
-  const bool ros = begins("/") || begins("field.");
-  const bool ur = begins("actual_q_") || begins("target_q_") || begins("actual_qd_") || begins("target_qd_") ||
-                  begins("target_qdd_") || begins("actual_current_") || begins("target_current_") || begins("target_moment_");
-  if (!ros && !ur) return "";
+  static constexpr const char* kCustoms[] = {"/",          "field.",      "actual_q_",       "target_q_",       "actual_qd_",
+                                             "target_qd_", "target_qdd_", "actual_current_", "target_current_", "target_moment_"};
+  if (std::ranges::none_of(kCustoms, [&](const char* begin) { return stem.starts_with(begin); })) return "";
   switch (quantity) {
     case Quantity::position: return turns ? "rad" : "m";
     case Quantity::velocity: return turns ? "rad/s" : "m/s";
@@ -287,22 +271,22 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
                                          const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
   const std::vector<Candidate> candidates = candidates_of(recording, quantity, map);
   std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
-  sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const Set& set) { return contradicts(set, map, robot.drives()); }),
-             sets.end());
+  std::erase_if(sets, [&](const Set& set) { return contradicts(set, map, robot.drives()); });
   if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
   // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a current.
   const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
-  std::stable_sort(sets.begin(), sets.end(), [&](const Set& a, const Set& b) { return rank(a) > rank(b); });
+  std::ranges::stable_sort(sets, std::greater(), rank);
   const Set& best = sets.front();
   if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
     return {{quantity,
-             fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity), names_of(best), names_of(sets[1])),
+             fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity), names_of(best.of_drive),
+                         names_of(sets[1].of_drive)),
              fmt::format("say which in a column map (delta-log import --map-out map.toml begins one)\n{}",
                          example(quantity, best.of_drive[0].channel->name,
                                  unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
   }
   if (best.origin == Origin::commanded && quantity != Quantity::torque) {
-    return {{quantity, fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best)),
+    return {{quantity, fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best.of_drive)),
              fmt::format("record the measured one; to take the command all the same, say so in a column map\n{}",
                          example(quantity, best.of_drive[0].channel->name,
                                  unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
@@ -311,7 +295,7 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
   add_set(best, robot, quantity, defaults, map);
   if (!best.doubt.empty()) {
     const std::string note = recording.file + ": " + best.doubt;
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   }
   return {};
 }

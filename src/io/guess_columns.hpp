@@ -17,6 +17,10 @@ struct OpenQuestion {
   std::string what, mend;
 };
 
+/// "q1_rad", "tau1_Nm": the name that a quantity of a drive has in a log of these tools.
+/// \param drive  from 0
+[[nodiscard]] std::string contract_name(const RobotDescription& robot, int drive, Quantity quantity);
+
 /// Units that a maker or a message states by custom, not in the header: ROS (REP 103) is SI, UR's RTDE is rad, A, N m. Empty: none.
 /// \param stem  the column's name without its unit; "/" for a message whose form says the quantity
 [[nodiscard]] std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind);

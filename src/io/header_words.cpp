@@ -14,30 +14,17 @@ using WordList = std::vector<std::string_view>;
 struct Vocabulary {
   WordList alone, within;
   [[nodiscard]] bool holds(std::string_view word) const {
-    if (std::find(alone.begin(), alone.end(), word) != alone.end()) return true;
-    return std::any_of(within.begin(), within.end(),
-                       [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
+    if (std::ranges::find(alone, word) != alone.end()) return true;
+    return std::ranges::any_of(within, [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
   }
 };
 
-const Vocabulary& vocabulary(Quantity quantity) {
-  // English and German words of drives, PLCs, ROS, UR and LinuxCNC; pl, vl, il are Kollmorgen's loops.
-  static const Vocabulary kPosition{{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"},
-                                    {"position", "angle", "winkel", "encoder", "lageist"}};
-  static const Vocabulary kVelocity{{"qd", "dq", "vel", "omega", "vl", "qdot", "qvel", "rpm", "spd"},
-                                    {"veloc", "speed", "geschwindig", "drehzahl"}};
-  static const Vocabulary kAcceleration{{"qdd", "ddq", "acc", "qddot"}, {"accel", "beschleun"}};
-  static const Vocabulary kTorque{{"tau", "trq", "tq", "iq", "il", "amps", "eff"},
-                                  {"torque", "moment", "effort", "current", "strom", "kraft", "force"}};
-  switch (quantity) {
-    case Quantity::position: return kPosition;
-    case Quantity::velocity: return kVelocity;
-    case Quantity::acceleration: return kAcceleration;
-    case Quantity::torque: return kTorque;
-  }
-  return kPosition;
-}
-
+/// English and German words of drives, PLCs, ROS, UR and LinuxCNC for each quantity; pl, vl, il are Kollmorgen's loops.
+const Vocabulary kQuantityWords[] = {
+    {{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"}, {"position", "angle", "winkel", "encoder", "lageist"}},
+    {{"qd", "dq", "vel", "omega", "vl", "qdot", "qvel", "rpm", "spd"}, {"veloc", "speed", "geschwindig", "drehzahl"}},
+    {{"qdd", "ddq", "acc", "qddot"}, {"accel", "beschleun"}},
+    {{"tau", "trq", "tq", "iq", "il", "amps", "eff"}, {"torque", "moment", "effort", "current", "strom", "kraft", "force"}}};
 const Vocabulary kMeasured{{"act", "fb", "fbk", "meas", "ist", "real", "present"},
                            {"actual", "feedback", "measur", "istpos", "istwert", "lageist"}};
 const Vocabulary kCommanded{{"cmd", "des", "ref", "set", "goal", "nominal", "qdes"},
@@ -57,13 +44,13 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, const
   std::vector<Quantity> said;
   for (const std::string& word : words) {
     for (const Quantity quantity : {Quantity::acceleration, Quantity::velocity, Quantity::torque, Quantity::position}) {
-      if (!vocabulary(quantity).holds(word)) continue;
-      if (std::find(said.begin(), said.end(), quantity) == said.end()) said.push_back(quantity);
+      if (!kQuantityWords[static_cast<std::size_t>(quantity)].holds(word)) continue;
+      if (std::ranges::find(said, quantity) == said.end()) said.push_back(quantity);
       break;
     }
   }
   if (unit) {
-    const bool agrees = said.empty() || std::find(said.begin(), said.end(), unit->quantity) != said.end();
+    const bool agrees = said.empty() || std::ranges::find(said, unit->quantity) != said.end();
     return agrees ? std::optional(unit->quantity) : std::nullopt;
   }
   if (said.empty()) return std::nullopt;
@@ -105,7 +92,7 @@ HeaderWords read_header_words(const std::string& column, const std::string& unit
   header.unit = unit.empty() ? parts.unit : unit;
   const std::vector<std::string> words = words_of(header.stem);
   const auto any = [&](const Vocabulary& vocabulary) {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return vocabulary.holds(word); });
+    return std::ranges::any_of(words, [&](const std::string& word) { return vocabulary.holds(word); });
   };
   const auto known = log_unit(header.unit);
   if (!known && time_unit_s(header.unit) && !header.unit.empty()) header.excluded = true;

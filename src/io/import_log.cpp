@@ -9,7 +9,6 @@
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/runtime/error.hpp"
-#include "deltadyn/signal/log_columns.hpp"
 
 #include "common_grid.hpp"
 #include "counter_turns.hpp"
@@ -22,7 +21,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Quantity kQuantities[] = {Quantity::position, Quantity::velocity, Quantity::acceleration, Quantity::torque};
 /// More empty fields than this are no lost samples: the channel has a rate of its own.
 constexpr double kOwnRateShare = 0.2;
 
@@ -40,8 +38,7 @@ Recording merged(std::vector<Recording> recordings) {
                               channel.name, all.file, next.file),
                   next.file,
                   "import them one after the other, and give delta-identify all the logs; if each file holds one drive of one "
-                  "motion, let the "
-                  "column names carry its number");
+                  "motion, let the column names carry its number");
     }
     const std::size_t shift = all.timelines.size();
     for (Timeline& timeline : next.timelines) all.timelines.push_back(std::move(timeline));
@@ -87,17 +84,6 @@ std::vector<Index> own_rows(const RecordedChannel& channel, const Timeline& time
     if (!std::isnan(channel.values(i))) rows.push_back(i);
   }
   return rows;
-}
-
-/// Stamps must go on for interpolation: repeated ones are left out, those that go back are refused.
-void append_sample(SampledChannel& series, Index& count, double t, double value, const std::string& where) {
-  if (std::isnan(t)) return;
-  if (count > 0 && t < series.t_s(count - 1)) {
-    throw Error("the time stamps decrease", where, "sort the rows by time, or put each recording into its own file");
-  }
-  if (count > 0 && t == series.t_s(count - 1)) return;
-  series.t_s(count) = t;
-  series.values(count++) = value;
 }
 
 class Builder {
@@ -173,10 +159,17 @@ class Builder {
     Index count = 0;
     for (Index k = 0; k < n; ++k) {
       const Index row = rows.empty() ? k : rows[static_cast<std::size_t>(k)];
-      const double value = values(row);
-      if (std::isnan(value)) continue;  // a hole, as a lost row
-      append_sample(series, count, timeline.t_s(row) + shift, value,
-                    place(recording_.file, timeline.line[static_cast<std::size_t>(row)], timeline.name));
+      const double t = timeline.t_s(row) + shift;
+      if (std::isnan(values(row)) || std::isnan(t)) continue;  // a hole, as a lost row
+      // Stamps must go on for interpolation: repeated ones are left out, those that go back are refused.
+      if (count > 0 && t < series.t_s(count - 1)) {
+        throw Error("the time stamps decrease",
+                    place(recording_.file, timeline.line[static_cast<std::size_t>(row)], timeline.name),
+                    "sort the rows by time, or put each recording into its own file");
+      }
+      if (count > 0 && t == series.t_s(count - 1)) continue;
+      series.t_s(count) = t;
+      series.values(count++) = values(row);
     }
     series.t_s.conservativeResize(count);
     series.values.conservativeResize(count);
@@ -236,11 +229,10 @@ class Builder {
     }
     const Timeline& timeline = recording_.timelines[one.channel->timeline];
     const SampledChannel series = one.whole ? series_of(values, timeline, {}, 0.0) : SampledChannel{one.series.t_s, values};
-    GridStep how;
-    Eigen::VectorXd result = onto_grid(series, grid_s_, how);
-    one.taken.how = how.low_pass_hz > 0
-                        ? fmt::format("zero-phase low pass of {:.4g} Hz, then cubic interpolation", how.low_pass_hz)
-                        : "cubic interpolation";
+    double low_pass_hz = 0;
+    Eigen::VectorXd result = onto_grid(series, grid_s_, low_pass_hz);
+    one.taken.how = low_pass_hz > 0 ? fmt::format("zero-phase low pass of {:.4g} Hz, then cubic interpolation", low_pass_hz)
+                                    : "cubic interpolation";
     if (one.map->delay_s != 0) one.taken.how += fmt::format(", {:.4g} ms earlier", 1e3 * one.map->delay_s);
     return result;
   }
@@ -254,20 +246,12 @@ class Builder {
     result.time_name = recording_.timelines[grid_of_->channel->timeline].name;
     result.time_unit = recording_.timelines[grid_of_->channel->timeline].unit;
     for (Prepared& one : prepared_) {
-      Eigen::MatrixXd& block = block_of(log, one.map->quantity);
+      static constexpr Eigen::MatrixXd Log::*kBlocks[] = {&Log::q, &Log::qd, &Log::qdd, &Log::tau};
+      Eigen::MatrixXd& block = log.*kBlocks[static_cast<std::size_t>(one.map->quantity)];
       if (block.size() == 0) block.setConstant(n, robot_.drives(), std::nan(""));
       const Eigen::VectorXd values = values_on_grid(one, log.notes);
       block.col(one.map->drive - 1) = one.taken.factor * (one.map->scale * values.array() + one.map->offset);
       result.taken.push_back(one.taken);
-    }
-  }
-
-  static Eigen::MatrixXd& block_of(Log& log, Quantity quantity) {
-    switch (quantity) {
-      case Quantity::velocity: return log.qd;
-      case Quantity::acceleration: return log.qdd;
-      case Quantity::torque: return log.tau;
-      default: return log.q;
     }
   }
 
@@ -280,8 +264,7 @@ class Builder {
       }
       return true;
     };
-    const bool all_on_grid =
-        std::all_of(prepared_.begin(), prepared_.end(), [](const Prepared& one) { return one.taken.how == "as recorded"; });
+    const bool all_on_grid = std::ranges::all_of(prepared_, [](const Prepared& one) { return one.taken.how == "as recorded"; });
     Index begin = 0, end = n;
     if (!all_on_grid) {
       while (begin < end && !complete(begin)) ++begin;
@@ -318,13 +301,8 @@ class Builder {
 std::string what_was_taken(const ImportedLog& result, const Recording& recording, const RobotDescription& robot) {
   std::vector<std::string> parts;
   for (const TakenChannel& taken : result.taken) {
-    const DriveColumns columns = drive_columns(robot, taken.map.drive - 1);
-    const std::string& name = taken.map.quantity == Quantity::position   ? columns.q
-                              : taken.map.quantity == Quantity::velocity ? columns.qd
-                              : taken.map.quantity == Quantity::torque   ? columns.tau
-                                                                         : columns.qdd;
-    parts.push_back(fmt::format("{} from '{}' [{}]{}", name, taken.map.source, taken.map.unit,
-                                taken.how == "as recorded" ? "" : ", " + taken.how));
+    parts.push_back(fmt::format("{} from '{}' [{}]{}", contract_name(robot, taken.map.drive - 1, taken.map.quantity),
+                                taken.map.source, taken.map.unit, taken.how == "as recorded" ? "" : ", " + taken.how));
   }
   return fmt::format("{}: read as {}; time from '{}' [{}]\n  {}", recording.file, recording.form, result.time_name,
                      result.time_unit, fmt::join(parts, "\n  "));
@@ -363,14 +341,13 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     open_.clear();  // the one cause of all that is open
     ask("the header line is missing: the first line holds numbers only",
         "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins one) with the "
-        "numbers of the "
-        "columns as source,\n"
+        "numbers of the columns as source,\n"
         "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    quantity = "
         "\"position\"\n    source = 2\n"
         "    unit = \"rad\"",
         place(recording_.file, 1));
   }
-  for (const Quantity quantity : kQuantities) {
+  for (const Quantity quantity : {Quantity::position, Quantity::velocity, Quantity::acceleration, Quantity::torque}) {
     if (nameless || map_.has(quantity)) continue;
     const bool needed =
         quantity == Quantity::position || (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
@@ -389,10 +366,9 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     // A map without a unit leaves it to the recording, and last to SI.
     const RecordedChannel& recorded = find_channel(recording_, channel.source, map_.file);
     const auto known = log_unit(recorded.unit);
-    const bool turns = robot_.kind_of_drive(channel.drive - 1) == DriveKind::revolute;
-    static constexpr const char* kSi[2][4] = {{"m", "m/s", "m/s2", "N"}, {"rad", "rad/s", "rad/s2", "Nm"}};
-    channel.unit = known && known->quantity == channel.quantity ? recorded.unit
-                                                                : kSi[turns ? 1 : 0][static_cast<std::size_t>(channel.quantity)];
+    channel.unit = known && known->quantity == channel.quantity
+                       ? recorded.unit
+                       : customary_unit("/", channel.quantity, robot_.kind_of_drive(channel.drive - 1));
   }
   defaults.apply(map_);
 }
@@ -406,13 +382,9 @@ ImportedLog LogImport::log() const {
   const auto demand = [&](Quantity quantity) {
     for (int drive = 1; drive <= robot_.drives(); ++drive) {
       if (map_.find(quantity, drive) != nullptr) continue;
-      ChannelMap wanted;
-      wanted.drive = drive;
-      wanted.quantity = quantity;
-      wanted.source = "NAME";
       throw Error(
           fmt::format("the map has no {} of drive {}; the file has {}", word_of(quantity), drive, list_channels(recording_)),
-          map_.file, "add it to the map:\n" + to_toml(wanted));
+          map_.file, "add it to the map:\n" + to_toml(ChannelMap{.drive = drive, .quantity = quantity, .source = "NAME"}));
     }
   };
   demand(Quantity::position);

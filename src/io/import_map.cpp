@@ -2,7 +2,6 @@
 /// The map that an import writes for its user to mend, and what it says of columns that it leaves.
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
@@ -10,6 +9,7 @@
 
 #include "deltadyn/io/import_log.hpp"
 
+#include "common_grid.hpp"
 #include "guess_columns.hpp"
 #include "header_words.hpp"
 
@@ -22,7 +22,7 @@ std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kin
   if (!unit) return {};
   std::vector<std::string> lines;
   const auto want = [&lines](const char* key, const char* what) {
-    lines.push_back(fmt::format("# {} = NUMBER   # STILL OPEN: {}", key, what));
+    lines.push_back(fmt::format("# {} = NUMBER   # STILL OPEN: {}\n", key, what));
   };
   if (unit->dimension == Dimension::current && !channel.torque_constant)
     want("torque_constant_Nm_A", "of the motor [N m per A, as the current is given, peak or rms]");
@@ -33,12 +33,6 @@ std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kin
       unit->dimension == Dimension::angle || unit->dimension == Dimension::counts || unit->dimension == Dimension::moment;
   if (kind == DriveKind::prismatic && of_motor && !channel.lead) want("lead_m_turn", "travel for a turn of the motor [m]");
   return lines;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
 }
 
 }  // namespace
@@ -61,12 +55,11 @@ void LogImport::note_joints_beyond(Quantity quantity) {
 
 bool LogImport::is_taken(const RecordedChannel& channel) const {
   const auto named = [&](const std::string& source) {
-    return source == channel.name || std::find(channel.aliases.begin(), channel.aliases.end(), source) != channel.aliases.end();
+    return source == channel.name || std::ranges::find(channel.aliases, source) != channel.aliases.end();
   };
-  const bool time = std::any_of(recording_.timelines.begin(), recording_.timelines.end(),
-                                [&](const Timeline& line) { return line.name == channel.name; });
+  const bool time = std::ranges::any_of(recording_.timelines, [&](const Timeline& line) { return line.name == channel.name; });
   return time || named(map_.time_source) ||
-         std::any_of(map_.channels.begin(), map_.channels.end(), [&](const ChannelMap& one) { return named(one.source); });
+         std::ranges::any_of(map_.channels, [&](const ChannelMap& one) { return named(one.source); });
 }
 
 /// Lines of a map for the columns that were not taken, as comments: the user fills in what the names do not say.
@@ -93,7 +86,7 @@ std::string LogImport::map_of_the_rest() const {
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
     for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3)) lines.replace(at, 1, "\n# ");
-    text += "\n# " + lines + "\n" + joined(open_constants(one, kind));
+    text += "\n# " + lines + "\n" + fmt::format("{}", fmt::join(open_constants(one, kind), ""));
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY (\"position\", "
@@ -104,8 +97,7 @@ std::string LogImport::map_of_the_rest() const {
 
 /// The time as far as it is known: a live block where nothing is, so that one line is all that is to be filled in.
 std::string LogImport::open_time() const {
-  const bool known =
-      std::all_of(recording_.timelines.begin(), recording_.timelines.end(), [](const Timeline& t) { return t.t_s.size() > 0; });
+  const bool known = std::ranges::all_of(recording_.timelines, [](const Timeline& t) { return t.t_s.size() > 0; });
   if (known) return "";
   if (map_.time_source.empty()) {
     return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or rate_hz = "
@@ -145,21 +137,20 @@ std::string LogImport::map_text() const {
   }
   remarks.push_back("Every column of the recording, with its range:");
   for (const RecordedChannel& channel : recording_.channels) {
-    const auto known = !channel.values.array().isNaN();
-    if (channel.text_line > 0 || !known.any()) {
+    if (channel.text_line > 0 || channel.values.array().isNaN().all()) {
       remarks.push_back(fmt::format("  \"{}\"  no numbers", channel.name));
       continue;
     }
-    const double high = known.select(channel.values.array(), -HUGE_VAL).maxCoeff(),
-                 low = known.select(channel.values.array(), HUGE_VAL).minCoeff();
+    const Range range = range_of(channel.values);
     remarks.push_back(fmt::format("  \"{}\"{}  {:.6g} to {:.6g}", channel.name,
-                                  channel.unit.empty() ? "" : " [" + channel.unit + "]", low, high));
+                                  channel.unit.empty() ? "" : " [" + channel.unit + "]", range.low, range.high));
   }
   ColumnMap head = map_;
   head.channels.clear();
   std::string text = to_toml(head, remarks) + open_time();
   for (const ChannelMap& channel : map_.channels) {
-    text += "\n" + to_toml(channel) + joined(open_constants(channel, robot_.kind_of_drive(channel.drive - 1)));
+    text += "\n" + to_toml(channel) +
+            fmt::format("{}", fmt::join(open_constants(channel, robot_.kind_of_drive(channel.drive - 1)), ""));
   }
   return text + map_of_the_rest();
 }

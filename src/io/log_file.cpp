@@ -1,5 +1,6 @@
 #include "deltadyn/io/log_file.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -15,47 +16,50 @@
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 
+#include "guess_columns.hpp"
+#include "recording/field.hpp"
+
 namespace deltadyn {
 namespace {
-
-enum class Block { q, qd, qdd, tau };
-
-struct Spelling {
-  const char* suffix;
-  double factor;  ///< to SI
-};
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;
 
-const char* prefix_of(Block quantity) {
-  switch (quantity) {
-    case Block::q: return "q";
-    case Block::qd: return "qd";
-    case Block::qdd: return "qdd";
-    case Block::tau: return "tau";
-  }
-  return "";
+constexpr const char* kPrefix[] = {"q", "qd", "qdd", "tau"};
+
+struct Spelling {
+  Quantity quantity;
+  DriveKind kind;
+  const char* suffix;
+  double factor;  ///< to SI
+};
+
+/// Accepted units, of each quantity the SI one first.
+constexpr Spelling kSpellings[] = {
+    {Quantity::position, DriveKind::revolute, "_rad", 1.0},
+    {Quantity::position, DriveKind::revolute, "_deg", kRadPerDegree},
+    {Quantity::position, DriveKind::prismatic, "_m", 1.0},
+    {Quantity::velocity, DriveKind::revolute, "_rad_s", 1.0},
+    {Quantity::velocity, DriveKind::revolute, "_deg_s", kRadPerDegree},
+    {Quantity::velocity, DriveKind::revolute, "_rpm", kRpm},
+    {Quantity::velocity, DriveKind::prismatic, "_m_s", 1.0},
+    {Quantity::acceleration, DriveKind::revolute, "_rad_s2", 1.0},
+    {Quantity::acceleration, DriveKind::revolute, "_deg_s2", kRadPerDegree},
+    {Quantity::acceleration, DriveKind::prismatic, "_m_s2", 1.0},
+    {Quantity::torque, DriveKind::revolute, "_Nm", 1.0},
+    {Quantity::torque, DriveKind::prismatic, "_N", 1.0},
+};
+
+std::vector<Spelling> spellings(Quantity quantity, DriveKind kind) {
+  std::vector<Spelling> fitting;
+  std::ranges::copy_if(kSpellings, std::back_inserter(fitting),
+                       [&](const Spelling& one) { return one.quantity == quantity && one.kind == kind; });
+  return fitting;
 }
 
-/// Accepted units, the SI one first.
-std::vector<Spelling> spellings(Block quantity, DriveKind kind) {
-  const bool turns = kind == DriveKind::revolute;
-  switch (quantity) {
-    case Block::q:
-      return turns ? std::vector<Spelling>{{"_rad", 1.0}, {"_deg", kRadPerDegree}} : std::vector<Spelling>{{"_m", 1.0}};
-    case Block::qd:
-      return turns ? std::vector<Spelling>{{"_rad_s", 1.0}, {"_deg_s", kRadPerDegree}, {"_rpm", kRpm}}
-                   : std::vector<Spelling>{{"_m_s", 1.0}};
-    case Block::qdd:
-      return turns ? std::vector<Spelling>{{"_rad_s2", 1.0}, {"_deg_s2", kRadPerDegree}} : std::vector<Spelling>{{"_m_s2", 1.0}};
-    case Block::tau: return turns ? std::vector<Spelling>{{"_Nm", 1.0}} : std::vector<Spelling>{{"_N", 1.0}};
-  }
-  return {};
-}
-
-std::string si_name(Block quantity, DriveKind kind, int drive) {
-  return fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spellings(quantity, kind).front().suffix);
+/// "q1", from drive 0 on.
+std::string stem_of(Quantity quantity, int drive) {
+  return fmt::format("{}{}", kPrefix[static_cast<std::size_t>(quantity)], drive + 1);
 }
 
 struct Source {
@@ -63,9 +67,9 @@ struct Source {
   double factor;
 };
 
-std::optional<Source> find_source(const CsvReader& reader, Block quantity, DriveKind kind, int drive) {
+std::optional<Source> find_source(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
   for (const Spelling& spelling : spellings(quantity, kind)) {
-    if (const auto column = reader.find(fmt::format("{}{}{}", prefix_of(quantity), drive + 1, spelling.suffix))) {
+    if (const auto column = reader.find(stem_of(quantity, drive) + spelling.suffix)) {
       return Source{*column, spelling.factor};
     }
   }
@@ -88,16 +92,15 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   std::vector<std::string> found;
   for (const std::string& name : reader.columns()) {
     const std::string plain = simplified(name);
-    const bool begins = plain.compare(0, stem.size(), stem) == 0;
+    const bool begins = plain.starts_with(stem);
     const bool other_number = plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
     if (begins && !other_number) found.push_back(name);
   }
   return found;
 }
 
-[[noreturn]] void refuse_missing(const CsvReader& reader, Block quantity, DriveKind kind, int drive) {
-  const std::string wanted = si_name(quantity, kind, drive);
-  const std::string stem = fmt::format("{}{}", prefix_of(quantity), drive + 1);
+[[noreturn]] void refuse_missing(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
+  const std::string stem = stem_of(quantity, drive), wanted = stem + spellings(quantity, kind).front().suffix;
   const auto similar = similar_columns(reader, stem);
   if (similar.empty()) {
     throw Error(fmt::format("the column {} is missing; the file has {}", wanted, fmt::join(reader.columns(), ", ")),
@@ -120,7 +123,7 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
 }
 
 /// Sources of one quantity for all drives; empty if a drive lacks it and it is not needed.
-std::vector<Source> sources(const CsvReader& reader, const RobotDescription& robot, Block quantity, bool needed,
+std::vector<Source> sources(const CsvReader& reader, const RobotDescription& robot, Quantity quantity, bool needed,
                             std::vector<std::string>& notes) {
   std::vector<Source> result;
   std::string missing;
@@ -131,24 +134,21 @@ std::vector<Source> sources(const CsvReader& reader, const RobotDescription& rob
     } else if (needed) {
       refuse_missing(reader, quantity, kind, drive);
     } else if (missing.empty()) {
-      missing = si_name(quantity, kind, drive);
+      missing = contract_name(robot, drive, quantity);
     }
   }
   if (missing.empty()) return result;
   if (!result.empty()) {
     notes.push_back(fmt::format("{}: {} is missing, so the {} columns of the other drives are not used", reader.path(), missing,
-                                prefix_of(quantity)));
+                                kPrefix[static_cast<std::size_t>(quantity)]));
   }
   return {};
 }
 
 std::size_t time_column(const CsvReader& reader) {
   if (const auto column = reader.find("t_s")) return *column;
-  const auto similar = similar_columns(reader, "t");
-  std::vector<std::string> times;
-  for (const auto& name : similar) {
-    if (simplified(name).compare(0, 3, "tau") != 0) times.push_back(name);
-  }
+  std::vector<std::string> times = similar_columns(reader, "t");
+  std::erase_if(times, [](const std::string& name) { return simplified(name).starts_with("tau"); });
   if (times.empty()) times = reader.columns();
   throw Error(fmt::format("the column t_s is missing; the file has {}", fmt::join(times, ", ")), reader.path(),
               "add the time in seconds as column t_s");
@@ -162,12 +162,11 @@ std::string first_line(const std::string& path) {
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
   std::string_view rest = head;
-  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   while (!rest.empty()) {
     const auto end = rest.find('\n');
     const std::string_view line = rest.substr(0, end);
-    const auto begin = line.find_first_not_of(" \t\r");
-    if (begin != std::string_view::npos && line[begin] != '#') return std::string(line);
+    if (const auto plain = forms::trimmed(line); !plain.empty() && plain.front() != '#') return std::string(line);
     if (end == std::string_view::npos) break;
     rest.remove_prefix(end + 1);
   }
@@ -176,7 +175,7 @@ std::string first_line(const std::string& path) {
 
 /// "q12_deg": a position of the contract, of any drive.
 bool is_position_name(std::string_view name) {
-  if (name.substr(0, 1) != "q") return false;
+  if (!name.starts_with('q')) return false;
   const auto end = name.find_first_not_of("0123456789", 1);
   if (end == 1 || end == std::string_view::npos) return false;
   const std::string_view unit = name.substr(end);
@@ -197,9 +196,7 @@ bool is_contract_header(std::string_view line) {
   bool time = false, position = false;
   for (;;) {
     const auto comma = line.find(',');
-    std::string_view name = line.substr(0, comma);
-    const auto begin = name.find_first_not_of(" \t\r");
-    if (begin != std::string_view::npos) name = name.substr(begin, name.find_last_not_of(" \t\r") - begin + 1);
+    const std::string_view name = forms::trimmed(line.substr(0, comma));
     time = time || name == "t_s";
     position = position || is_position_name(name);
     if (comma == std::string_view::npos) return time && position;
@@ -210,23 +207,22 @@ bool is_contract_header(std::string_view line) {
 /// Whether the columns that are needed have the names of the contract.
 bool is_complete(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
   const CsvReader reader(path);
-  const auto has = [&](Block quantity, bool needed) {
+  const auto has = [&](Quantity quantity, bool needed) {
     for (int drive = 0; needed && drive < robot.drives(); ++drive) {
       if (!find_source(reader, quantity, robot.kind_of_drive(drive), drive)) return false;
     }
     return true;
   };
-  return has(Block::q, true) && has(Block::qd, options.need_derivatives) && has(Block::qdd, options.need_derivatives) &&
-         has(Block::tau, options.need_torque);
+  return has(Quantity::position, true) && has(Quantity::velocity, options.need_derivatives) &&
+         has(Quantity::acceleration, options.need_derivatives) && has(Quantity::torque, options.need_torque);
 }
 
 /// A log of another form, with what was taken for what as its first note.
 Log read_foreign(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
-  ImportOptions import;
-  import.map_file = options.map;
-  import.need_torque = options.need_torque;
-  import.need_derivatives = options.need_derivatives;
-  return LogImport({path}, robot, import).log().log;
+  return LogImport({path}, robot,
+                   {.map_file = options.map, .need_torque = options.need_torque, .need_derivatives = options.need_derivatives})
+      .log()
+      .log;
 }
 
 Log read_contract(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
@@ -239,10 +235,10 @@ Log read_contract(const std::string& path, const RobotDescription& robot, const 
     Eigen::MatrixXd* to;
   };
   const Target blocks[] = {
-      {sources(reader, robot, Block::q, true, log.notes), &log.q},
-      {sources(reader, robot, Block::qd, options.need_derivatives, log.notes), &log.qd},
-      {sources(reader, robot, Block::qdd, options.need_derivatives, log.notes), &log.qdd},
-      {sources(reader, robot, Block::tau, options.need_torque, log.notes), &log.tau},
+      {sources(reader, robot, Quantity::position, true, log.notes), &log.q},
+      {sources(reader, robot, Quantity::velocity, options.need_derivatives, log.notes), &log.qd},
+      {sources(reader, robot, Quantity::acceleration, options.need_derivatives, log.notes), &log.qdd},
+      {sources(reader, robot, Quantity::torque, options.need_torque, log.notes), &log.tau},
   };
   if (const auto extra = positions_beyond(reader, robot.drives()); !extra.empty()) {
     const std::string taken = robot.drives() == 1 ? "drive, so q1 was" : fmt::format("drives, so q1 to q{} were", robot.drives());
@@ -297,22 +293,19 @@ std::vector<Log> read_log_parts(const std::string& path, const RobotDescription&
   LogReadOptions unchecked = options;
   unchecked.check = false;
   Log log = read_log(path, robot, unchecked);
-  std::vector<Log> parts;
-  if (options.check) {
-    parts = check_and_split(std::move(log), robot, options.checks);
-  } else {
-    parts.push_back(std::move(log));
-  }
-  return parts;
+  if (!options.check) return {std::move(log)};
+  return check_and_split(std::move(log), robot, options.checks);
 }
 
 void write_log(const std::string& path, const Log& log, const RobotDescription& robot) {
-  const std::pair<Block, const Eigen::MatrixXd*> blocks[] = {
-      {Block::q, &log.q}, {Block::qd, &log.qd}, {Block::qdd, &log.qdd}, {Block::tau, &log.tau}};
+  const std::pair<Quantity, const Eigen::MatrixXd*> blocks[] = {{Quantity::position, &log.q},
+                                                                {Quantity::velocity, &log.qd},
+                                                                {Quantity::acceleration, &log.qdd},
+                                                                {Quantity::torque, &log.tau}};
   std::string header = "t_s";
   std::vector<const Eigen::MatrixXd*> columns;
   for (const auto& [quantity, block] : blocks) {
-    for (int drive = 0; drive < block->cols(); ++drive) header += "," + si_name(quantity, robot.kind_of_drive(drive), drive);
+    for (int drive = 0; drive < block->cols(); ++drive) header += "," + contract_name(robot, drive, quantity);
     columns.push_back(block);
   }
   write_table(path, header, log.t_s, columns);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fmt/format.h>
 #include <numbers>
 
 namespace deltadyn {
@@ -15,7 +16,7 @@ constexpr double kPoundForce = 4.4482216152605;
 constexpr double kKilogramForce = 9.80665;
 
 struct Entry {
-  std::string_view text;  ///< as normalised() leaves it
+  std::string_view texts;  ///< as normalised() leaves them, with blanks between
   LogUnit unit;
 };
 
@@ -25,105 +26,55 @@ using enum Dimension;
 constexpr Entry kUnits[] = {
     {"rad", {position, angle, 1.0}},
     {"mrad", {position, angle, 1e-3}},
-    {"deg", {position, angle, kDegree}},
-    {"degree", {position, angle, kDegree}},
-    {"degrees", {position, angle, kDegree}},
-    {"rev", {position, angle, kTurn}},
-    {"revs", {position, angle, kTurn}},
-    {"turn", {position, angle, kTurn}},
-    {"turns", {position, angle, kTurn}},
+    {"deg degree degrees", {position, angle, kDegree}},
+    {"rev revs turn turns", {position, angle, kTurn}},
     {"m", {position, length, 1.0}},
     {"cm", {position, length, 1e-2}},
     {"mm", {position, length, 1e-3}},
     {"um", {position, length, 1e-6}},
-    {"inch", {position, length, kInch}},
-    {"in", {position, length, kInch}},
-    {"cnt", {position, counts, 1.0}},
-    {"cnts", {position, counts, 1.0}},
-    {"count", {position, counts, 1.0}},
-    {"counts", {position, counts, 1.0}},
-    {"inc", {position, counts, 1.0}},
-    {"incr", {position, counts, 1.0}},
-    {"increments", {position, counts, 1.0}},
-    {"ink", {position, counts, 1.0}},
-    {"pulse", {position, counts, 1.0}},
-    {"pulses", {position, counts, 1.0}},
-    {"lsb", {position, counts, 1.0}},
+    {"inch in", {position, length, kInch}},
+    {"cnt cnts count counts inc incr increments ink pulse pulses lsb", {position, counts, 1.0}},
     {"rad/s", {velocity, angle, 1.0}},
     {"mrad/s", {velocity, angle, 1e-3}},
     {"deg/s", {velocity, angle, kDegree}},
     {"deg/min", {velocity, angle, kDegree / 60.0}},
-    {"rpm", {velocity, angle, kTurn / 60.0}},
+    {"rpm 1/min min-1 r/min u/min rev/min", {velocity, angle, kTurn / 60.0}},
     {"mrpm", {velocity, angle, 1e-3 * kTurn / 60.0}},
-    {"1/min", {velocity, angle, kTurn / 60.0}},
-    {"min-1", {velocity, angle, kTurn / 60.0}},
-    {"r/min", {velocity, angle, kTurn / 60.0}},
-    {"u/min", {velocity, angle, kTurn / 60.0}},
-    {"rev/min", {velocity, angle, kTurn / 60.0}},
-    {"rev/s", {velocity, angle, kTurn}},
-    {"rps", {velocity, angle, kTurn}},
-    {"turns/s", {velocity, angle, kTurn}},
+    {"rev/s rps turns/s", {velocity, angle, kTurn}},
     {"m/s", {velocity, length, 1.0}},
     {"cm/s", {velocity, length, 1e-2}},
     {"mm/s", {velocity, length, 1e-3}},
     {"m/min", {velocity, length, 1.0 / 60.0}},
     {"mm/min", {velocity, length, 1e-3 / 60.0}},
     {"in/s", {velocity, length, kInch}},
-    {"cnt/s", {velocity, counts, 1.0}},
-    {"counts/s", {velocity, counts, 1.0}},
-    {"inc/s", {velocity, counts, 1.0}},
+    {"cnt/s counts/s inc/s", {velocity, counts, 1.0}},
     {"rad/s2", {acceleration, angle, 1.0}},
     {"deg/s2", {acceleration, angle, kDegree}},
     {"rev/s2", {acceleration, angle, kTurn}},
     {"rpm/s", {acceleration, angle, kTurn / 60.0}},
     {"m/s2", {acceleration, length, 1.0}},
     {"mm/s2", {acceleration, length, 1e-3}},
-    {"cnt/s2", {acceleration, counts, 1.0}},
-    {"counts/s2", {acceleration, counts, 1.0}},
-    {"nm", {torque, moment, 1.0}},
-    {"n/m", {torque, moment, 1.0}},  // from N_m; a stiffness is no drive's channel
-    {"n-m", {torque, moment, 1.0}},
-    {"mnm", {torque, moment, 1e-3}},
+    {"cnt/s2 counts/s2", {acceleration, counts, 1.0}},
+    // "n/m" from N_m; a stiffness is no drive's channel
+    {"nm n/m n-m", {torque, moment, 1.0}},
+    {"mnm nmm", {torque, moment, 1e-3}},
     {"unm", {torque, moment, 1e-6}},
-    {"cnm", {torque, moment, 1e-2}},
-    {"ncm", {torque, moment, 1e-2}},
-    {"nmm", {torque, moment, 1e-3}},
+    {"cnm ncm", {torque, moment, 1e-2}},
     {"knm", {torque, moment, 1e3}},
     {"kgfm", {torque, moment, kKilogramForce}},
     {"kgfcm", {torque, moment, kKilogramForce * 1e-2}},
-    {"lbfin", {torque, moment, kPoundForce* kInch}},
-    {"lbin", {torque, moment, kPoundForce* kInch}},
-    {"inlb", {torque, moment, kPoundForce* kInch}},
-    {"lbfft", {torque, moment, kPoundForce * 12.0 * kInch}},
-    {"lbft", {torque, moment, kPoundForce * 12.0 * kInch}},
-    {"ftlb", {torque, moment, kPoundForce * 12.0 * kInch}},
-    {"ozin", {torque, moment, kPoundForce / 16.0 * kInch}},
-    {"ozfin", {torque, moment, kPoundForce / 16.0 * kInch}},
+    {"lbfin lbin inlb", {torque, moment, kPoundForce* kInch}},
+    {"lbfft lbft ftlb", {torque, moment, kPoundForce * 12.0 * kInch}},
+    {"ozin ozfin", {torque, moment, kPoundForce / 16.0 * kInch}},
     {"n", {torque, force, 1.0}},
     {"mn", {torque, force, 1e-3}},
     {"kn", {torque, force, 1e3}},
     {"kgf", {torque, force, kKilogramForce}},
     {"lbf", {torque, force, kPoundForce}},
-    {"a", {torque, current, 1.0}},
-    {"arms", {torque, current, 1.0}},
-    {"amp", {torque, current, 1.0}},
-    {"amps", {torque, current, 1.0}},
-    {"ampere", {torque, current, 1.0}},
-    {"ma", {torque, current, 1e-3}},
-    {"marms", {torque, current, 1e-3}},
-    {"%", {torque, share_of_rated, 1e-2}},
-    {"pct", {torque, share_of_rated, 1e-2}},
-    {"percent", {torque, share_of_rated, 1e-2}},
-    {"%rated", {torque, share_of_rated, 1e-2}},
-    {"%ofrated", {torque, share_of_rated, 1e-2}},
-    {"permille", {torque, share_of_rated, 1e-3}},
-    {"promille", {torque, share_of_rated, 1e-3}},
-    {"permil", {torque, share_of_rated, 1e-3}},
-    {"permilleofrated", {torque, share_of_rated, 1e-3}},
-    {"01%", {torque, share_of_rated, 1e-3}},
-    {"1/1000", {torque, share_of_rated, 1e-3}},
-    {"0/00", {torque, share_of_rated, 1e-3}},
-    {"o/oo", {torque, share_of_rated, 1e-3}},
+    {"a arms amp amps ampere", {torque, current, 1.0}},
+    {"ma marms", {torque, current, 1e-3}},
+    {"% pct percent %rated %ofrated", {torque, share_of_rated, 1e-2}},
+    {"permille promille permil permilleofrated 01% 1/1000 0/00 o/oo", {torque, share_of_rated, 1e-3}},
     {"pu", {torque, share_of_rated, 1.0}},
 };
 
@@ -140,13 +91,13 @@ std::string normalised(std::string_view text) {
     plain += c == '_' ? '/' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   replace_all(plain, "\xE2\x80\xB0", "permille");  // before the degree sign of Latin-1, whose byte it holds
-  replace_all(plain, "\xC2\xB0", "deg");   // degree sign
-  replace_all(plain, "\xB0", "deg");       // the same in Latin-1
-  replace_all(plain, "\xC2\xB2", "2");     // superscript 2
-  replace_all(plain, "\xC2\xB5", "u");     // micro
-  replace_all(plain, "\xCE\xBC", "u");     // Greek mu
-  replace_all(plain, "\xC2\xB7", "");      // middle dot
-  replace_all(plain, "\xE2\x8B\x85", "");  // dot operator
+  replace_all(plain, "\xC2\xB0", "deg");           // degree sign
+  replace_all(plain, "\xB0", "deg");               // the same in Latin-1
+  replace_all(plain, "\xC2\xB2", "2");             // superscript 2
+  replace_all(plain, "\xC2\xB5", "u");             // micro
+  replace_all(plain, "\xCE\xBC", "u");             // Greek mu
+  replace_all(plain, "\xC2\xB7", "");              // middle dot
+  replace_all(plain, "\xE2\x8B\x85", "");          // dot operator
   replace_all(plain, "sec", "s");
   replace_all(plain, "/s/s", "/s2");
   replace_all(plain, "radians", "rad");
@@ -154,8 +105,7 @@ std::string normalised(std::string_view text) {
 }
 
 bool is_index(std::string_view text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
 }
 
 bool known(std::string_view unit) {
@@ -183,9 +133,9 @@ std::optional<Quantity> quantity_of_word(std::string_view word) {
 }
 
 std::optional<LogUnit> log_unit(std::string_view text) {
-  const std::string plain = normalised(text);
+  const std::string plain = fmt::format(" {} ", normalised(text));
   for (const Entry& entry : kUnits) {
-    if (entry.text == plain) return entry.unit;
+    if (fmt::format(" {} ", entry.texts).find(plain) != std::string::npos) return entry.unit;
   }
   return std::nullopt;
 }
@@ -229,13 +179,9 @@ NameAndUnit split_unit(const std::string& column) {
 }
 
 const char* units_of(Quantity quantity) {
-  switch (quantity) {
-    case position: return "rad, deg, turns, m, mm, cnt";
-    case velocity: return "rad/s, deg/s, rpm, m/s, mm/s, cnt/s";
-    case acceleration: return "rad/s2, deg/s2, m/s2, mm/s2";
-    case torque: return "Nm, mNm, N, A, mA, %, permille";
-  }
-  return "";
+  static constexpr std::array kUsual = {"rad, deg, turns, m, mm, cnt", "rad/s, deg/s, rpm, m/s, mm/s, cnt/s",
+                                        "rad/s2, deg/s2, m/s2, mm/s2", "Nm, mNm, N, A, mA, %, permille"};
+  return kUsual[static_cast<std::size_t>(quantity)];
 }
 
 }  // namespace deltadyn

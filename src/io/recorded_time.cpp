@@ -34,10 +34,7 @@ std::string without_blanks(const std::string& name) {
 int time_rank(const RecordedChannel& channel) {
   const NameAndUnit parts = split_unit(channel.name);
   const std::vector<std::string> words = words_of(parts.stem);
-  const auto has = [&](std::initializer_list<const char*> any) {
-    return std::any_of(any.begin(), any.end(),
-                       [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); });
-  };
+  const auto has = [&](std::initializer_list<const char*> any) { return std::ranges::find_first_of(words, any) != words.end(); };
   if (has({"header"}) && has({"stamp"})) return 5;  // ROS: when it was measured, not when it was written down
   if (channel.name == "t_s") return 5;
   const bool named = has({"time", "timestamp", "stamp", "zeit", "zeitstempel", "uhrzeit", "clock", "elapsed", "datetime",
@@ -200,13 +197,6 @@ bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColum
   return other_rate || fewer || (plain(one) == plain(other) && other_stamps);
 }
 
-/// A channel's rows where its group's time column has stamps.
-Eigen::VectorXd picked(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& rows) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t k = 0; k < rows.size(); ++k) result(static_cast<Eigen::Index>(k)) = values(rows[k]);
-  return result;
-}
-
 /// Several time columns in a text, each with a rate of its own for the columns to its right: every one becomes a time line.
 /// Returns whether there were such groups.
 bool split_groups(Recording& recording, const ColumnMap& map) {
@@ -228,7 +218,7 @@ bool split_groups(Recording& recording, const ColumnMap& map) {
     Timeline timeline;
     for (const Eigen::Index row : rows) timeline.line.push_back(whole.line[static_cast<std::size_t>(row)]);
     for (std::size_t k = begin; k < end; ++k) {
-      recording.channels[k].values = picked(recording.channels[k].values, rows);
+      recording.channels[k].values = recording.channels[k].values(rows).eval();
       recording.channels[k].timeline = group;
     }
     take_stamps(recording, recording.channels[times[group].index], times[group].unit, timeline);
@@ -236,14 +226,6 @@ bool split_groups(Recording& recording, const ColumnMap& map) {
   }
   recording.form += fmt::format(", {} groups of columns with time columns of their own", times.size());
   return true;
-}
-
-[[noreturn]] void refuse_no_time(const Recording& recording) {
-  throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
-                          list_channels(recording)),
-              recording.file,
-              "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is none; "
-              "or source or rate_hz below [time] in a column map (--map)");
 }
 
 }  // namespace
@@ -270,9 +252,8 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
   };
   const std::string plain = without_blanks(source);
   for (const auto* found :
-       {unique([&](const RecordedChannel& c) { return c.name == source; }), unique([&](const RecordedChannel& c) {
-          return std::find(c.aliases.begin(), c.aliases.end(), source) != c.aliases.end();
-        }),
+       {unique([&](const RecordedChannel& c) { return c.name == source; }),
+        unique([&](const RecordedChannel& c) { return std::ranges::find(c.aliases, source) != c.aliases.end(); }),
         unique([&](const RecordedChannel& c) { return without_blanks(c.name) == plain; }),
         unique([&](const RecordedChannel& c) { return without_blanks(split_unit(c.name).stem) == plain; })}) {
     if (found != nullptr) return *found;
@@ -282,8 +263,7 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
 }
 
 void resolve_time(Recording& recording, ColumnMap& map) {
-  const bool open =
-      std::any_of(recording.timelines.begin(), recording.timelines.end(), [](const Timeline& t) { return t.t_s.size() == 0; });
+  const bool open = std::ranges::any_of(recording.timelines, [](const Timeline& t) { return t.t_s.size() == 0; });
   for (const Timeline& timeline : recording.timelines) {
     if (timeline.rows() < 2)
       throw Error("the file holds a header but no data rows", recording.file, "check that the recording is complete");
@@ -306,7 +286,13 @@ void resolve_time(Recording& recording, ColumnMap& map) {
   }
   if (!open) return;
   const RecordedChannel* channel = guess_time(recording);
-  if (channel == nullptr) refuse_no_time(recording);
+  if (channel == nullptr) {
+    throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
+                            list_channels(recording)),
+                recording.file,
+                "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is "
+                "none; or source or rate_hz below [time] in a column map (--map)");
+  }
   take_column(recording, *channel, map);
 }
 

@@ -11,8 +11,9 @@ namespace deltadyn::robot_file {
 
 /// Stands for "no limit" in a URDF <limit>; anything at least as large is read as infinite.
 inline constexpr double kUnlimited = 1e30;
-inline constexpr const char* kAccelerationRevolute = "acceleration_limit_rad_s2";
-inline constexpr const char* kAccelerationPrismatic = "acceleration_limit_m_s2";
+inline const char* acceleration_attribute(bool prismatic) {
+  return prismatic ? "acceleration_limit_m_s2" : "acceleration_limit_rad_s2";
+}
 
 inline std::string drive_name(std::size_t index) {
   return fmt::format("drive{}", index + 1);

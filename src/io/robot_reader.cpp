@@ -21,6 +21,7 @@ namespace {
 using robot_file::Joint;
 using robot_file::Loop;
 using robot_file::Pose;
+using robot_file::refuse;
 using robot_file::UrdfTree;
 using Vec = Vector3<double>;
 
@@ -64,20 +65,15 @@ class Reader {
 
  private:
   // --- messages -------------------------------------------------------------------------------
-  [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) const {
-    throw Error(what, where, mend);
-  }
-  [[nodiscard]] std::string at(const Joint& joint) const {
-    return fmt::format("{}, line {}, joint {}", tree_.where, joint.line, joint.name);
-  }
+  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
   [[nodiscard]] std::string at(const Loop& loop) const {
     return fmt::format("{}, line {}, loop {}", tree_.where, loop.line, loop.name);
   }
-  [[nodiscard]] std::string at(const std::string& link) const { return fmt::format("{}, link {}", tree_.where, link); }
+  [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
 
   // --- access and rules for single joints -------------------------------------------------------
-  [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.bodies[static_cast<std::size_t>(index)]; }
-  [[nodiscard]] const Joint& joint(int index) const { return tree_.joints[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.body(index); }
+  [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
 
   /// The only moving joint below a body.
   const Joint& only_joint(int index, const std::string& rule) const {
@@ -124,16 +120,13 @@ class Reader {
       refuse("no moving joint hangs on the base link", at(base.name), "the drives are the joints drive1, drive2, ...");
     for (const int index : base.joints) {
       const Joint& j = joint(index);
-      bool found = false;
-      for (std::size_t k = 0; k < drives_.size(); ++k)
-        if (j.name == robot_file::drive_name(k)) {
-          drives_[k] = &j;
-          found = true;
-        }
-      if (!found)
+      std::size_t k = 0;
+      while (k < drives_.size() && j.name != robot_file::drive_name(k)) ++k;
+      if (k == drives_.size())
         refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}", drives_.size(),
                            drives_.size()),
                at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
+      drives_[k] = &j;
       if (j.mimic) refuse("a drive cannot mimic another joint", at(j), "remove the <mimic> element");
     }
   }
@@ -151,12 +144,8 @@ class Reader {
     LimbGeometry<double> limb;
     limb.azimuth = azimuth(drive);
     limb.p_WD = drive.X_PJ.translation();
-    if (drive.prismatic) {
-      limb.axis_L = drive.axis;
-    } else {
-      require_axis(drive, Vec::UnitY(), false, "a limb's revolute drive");
-      limb.axis_L = Vec::UnitY();
-    }
+    if (!drive.prismatic) require_axis(drive, Vec::UnitY(), false, "a limb's revolute drive");
+    limb.axis_L = drive.prismatic ? drive.axis : Vec(Vec::UnitY());
     return limb;
   }
 
@@ -222,11 +211,7 @@ class Reader {
       const Joint& about_z = only_joint(about_y.child, "a strut's first joint carries its second");
       require_passive(about_z, Vec::UnitZ(), "a strut's second joint");
       require_no_offset(about_z, "a strut's second joint");
-      Strut strut;
-      strut.body = about_z.child;
-      strut.name = body(about_z.child).name;
-      strut.elbow = about_y.X_PJ.translation();
-      pair.push_back(strut);
+      pair.push_back({.body = about_z.child, .name = body(about_z.child).name, .elbow = about_y.X_PJ.translation()});
     }
     if (pair[0].elbow.y() < pair[1].elbow.y()) std::swap(pair[0], pair[1]);
     const Vec across = pair[0].elbow - pair[1].elbow;
@@ -234,8 +219,7 @@ class Reader {
       refuse(fmt::format("the elbow joints of its two struts must lie apart along y of the limb, but they are {} apart",
                          words(across)),
              at(arm.name), "mend the origins of the struts' first joints");
-    struts_.push_back(pair[0]);
-    struts_.push_back(pair[1]);
+    struts_.insert(struts_.end(), pair.begin(), pair.end());
   }
 
   /// The plate hangs on one strut by joints about z and y; the other struts reach it by loops.
@@ -289,7 +273,7 @@ class Reader {
       refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop),
              "a Delta's loops end on the plate");
     const robot_file::LinkPlace& place = tree_.links.at(other->link);
-    const auto strut = std::find_if(struts_.begin(), struts_.end(), [&](const Strut& s) { return s.body == place.body; });
+    const auto strut = std::ranges::find_if(struts_, [&](const Strut& s) { return s.body == place.body; });
     if (strut == struts_.end()) {
       tool_loops_.push_back({&loop, on_plate, other});
       return;
@@ -393,10 +377,9 @@ class Reader {
     if (p_TV.head<2>().norm() > kTolerance || p_TO.head<2>().norm() > kTolerance)
       refuse("the tool's axis must pass through the lower universal joint of the bar", at(loop),
              "set x and y of the tool's origins to 0");
-    TelescopeGeometry<double> bar;
+    TelescopeGeometry<double>& bar = robot_.telescope.emplace();
     bar.p_WU = drive.X_PJ.translation();
     bar.p_BV = closure->on_plate->X_LO.translation() + Vec(0, 0, p_TV.z() - p_TO.z());
-    robot_.telescope = bar;
   }
 
   // --- inertials --------------------------------------------------------------------------------
@@ -426,15 +409,11 @@ class Reader {
              fmt::format("{}, line {}", tree_.where, tree_.extension_line), "mend the type or the tree");
     for (const robot_file::DriveNote& note : tree_.drives) {
       const std::string where = fmt::format("{}, line {}, <drive> of <deltadyn>", tree_.where, note.line);
-      const auto joint_name = note.attributes.find("joint");
-      std::size_t index = drives_.size();
-      for (std::size_t k = 0; k < drives_.size(); ++k)
-        if (joint_name != note.attributes.end() && joint_name->second == drives_[k]->name) index = k;
+      const auto drive = std::ranges::find(drives_, note.joint, &Joint::name);
+      const auto index = static_cast<std::size_t>(drive - drives_.begin());
       if (index == drives_.size()) refuse("it names no drive of this robot", where, "write joint=\"drive1\" or another drive");
-      const char* acceleration =
-          drives_[index]->prismatic ? robot_file::kAccelerationPrismatic : robot_file::kAccelerationRevolute;
+      const char* acceleration = robot_file::acceleration_attribute((*drive)->prismatic);
       for (const auto& [key, value] : note.attributes) {
-        if (key == "joint") continue;
         const double number = robot_file::parse_number(value, where, key);
         if (key == acceleration) {
           robot_.limits[index].acceleration = number;

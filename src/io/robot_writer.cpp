@@ -43,8 +43,9 @@ class Writer {
     root_ = document_.NewElement("robot");
     document_.InsertEndChild(root_);
     root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
-    comment(fmt::format(
-        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type));
+    const std::string words = fmt::format(
+        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type);
+    root_->InsertNewComment(words.c_str());
     base();
     if (robot_.parts.empty()) {
       axis();
@@ -62,45 +63,36 @@ class Writer {
 
  private:
   // --- elements -------------------------------------------------------------------------------
-  static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
-
-  void comment(const std::string& words) { root_->InsertNewComment(words.c_str()); }
-
-  static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
-    XMLElement* element = child(parent, "origin");
-    element->SetAttribute("xyz", number_text(xyz).c_str());
-    element->SetAttribute("rpy", number_text(rpy).c_str());
-  }
-
-  XMLElement* link(const std::string& name) {
-    XMLElement* element = child(root_, "link");
-    element->SetAttribute("name", name.c_str());
+  using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+  static XMLElement* child(XMLElement* parent, const char* name, const Attributes& attributes = {}) {
+    XMLElement* element = parent->InsertNewChildElement(name);
+    for (const auto& [key, value] : attributes) element->SetAttribute(key, value.c_str());
     return element;
   }
 
+  static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
+    child(parent, "origin", {{"xyz", number_text(xyz)}, {"rpy", number_text(rpy)}});
+  }
+
+  XMLElement* link(const std::string& name) { return child(root_, "link", {{"name", name}}); }
+
   XMLElement* joint(const std::string& name, const char* type, const std::string& parent, const std::string& to, const Vec& xyz,
                     const Vec& rpy = Vec::Zero()) {
-    XMLElement* element = child(root_, "joint");
-    element->SetAttribute("name", name.c_str());
-    element->SetAttribute("type", type);
-    child(element, "parent")->SetAttribute("link", parent.c_str());
-    child(element, "child")->SetAttribute("link", to.c_str());
+    XMLElement* element = child(root_, "joint", {{"name", name}, {"type", type}});
+    child(element, "parent", {{"link", parent}});
+    child(element, "child", {{"link", to}});
     origin(element, xyz, rpy);
     return element;
   }
 
-  static void axis_of(XMLElement* element, const Vec& axis) {
-    child(element, "axis")->SetAttribute("xyz", number_text(axis).c_str());
-  }
+  static void axis_of(XMLElement* element, const Vec& axis) { child(element, "axis", {{"xyz", number_text(axis)}}); }
 
   static void limit_of(XMLElement* element, const DriveLimits& limits, bool with_range) {
-    XMLElement* limit = child(element, "limit");
-    if (with_range) {
-      limit->SetAttribute("lower", number_text(finite(limits.lower)).c_str());
-      limit->SetAttribute("upper", number_text(finite(limits.upper)).c_str());
-    }
-    limit->SetAttribute("effort", number_text(finite(limits.effort)).c_str());
-    limit->SetAttribute("velocity", number_text(finite(limits.velocity)).c_str());
+    const auto text = [](double limit) { return number_text(finite(limit)); };
+    XMLElement* limit = with_range ? child(element, "limit", {{"lower", text(limits.lower)}, {"upper", text(limits.upper)}})
+                                   : child(element, "limit");
+    limit->SetAttribute("effort", text(limits.effort).c_str());
+    limit->SetAttribute("velocity", text(limits.velocity).c_str());
   }
 
   /// A passive joint: no effort, half a turn to both sides.
@@ -138,15 +130,11 @@ class Writer {
   void dynamics_of(XMLElement* element, const std::string& name) const {
     const double viscous = value(name + ".viscous"), coulomb = value(name + ".coulomb");
     if (viscous == 0 && coulomb == 0) return;
-    XMLElement* dynamics = child(element, "dynamics");
-    dynamics->SetAttribute("damping", number_text(viscous).c_str());
-    dynamics->SetAttribute("friction", number_text(coulomb).c_str());
+    child(element, "dynamics", {{"damping", number_text(viscous)}, {"friction", number_text(coulomb)}});
   }
 
   static void mimic(XMLElement* element, const std::string& other) {
-    XMLElement* tie = child(element, "mimic");
-    tie->SetAttribute("joint", other.c_str());
-    tie->SetAttribute("multiplier", "-1");
+    child(element, "mimic", {{"joint", other}, {"multiplier", "-1"}});
   }
 
   // --- bodies ---------------------------------------------------------------------------------
@@ -158,9 +146,7 @@ class Writer {
     const Vec z = (to - from) / length;
     // Rz(yaw) Ry(pitch) turns the cylinder's z into the direction wanted.
     origin(element, (from + to) / 2, Vec(0, std::atan2(std::hypot(z.x(), z.y()), z.z()), std::atan2(z.y(), z.x())));
-    XMLElement* cylinder = child(child(element, "geometry"), "cylinder");
-    cylinder->SetAttribute("radius", number_text(radius).c_str());
-    cylinder->SetAttribute("length", number_text(length).c_str());
+    child(child(element, "geometry"), "cylinder", {{"radius", number_text(radius)}, {"length", number_text(length)}});
   }
 
   /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or empty)
@@ -191,17 +177,11 @@ class Writer {
     I -= p[0] * (c.squaredNorm() * Matrix3<double>::Identity() - c * c.transpose());
     XMLElement* element = child(body, "inertial");
     origin(element, c);
-    child(element, "mass")->SetAttribute("value", number_text(p[0]).c_str());
+    child(element, "mass", {{"value", number_text(p[0])}});
     XMLElement* inertia = child(element, "inertia");
     const char* names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
     const double values[] = {I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)};
     for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], number_text(values[k]).c_str());
-  }
-
-  [[nodiscard]] double attachment_radius() const {
-    double radius = 0;
-    for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.head<2>().norm());
-    return radius;
   }
 
   // --- the mechanism --------------------------------------------------------------------------
@@ -265,7 +245,9 @@ class Writer {
     const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
     joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)), Vec(0, 0, -limb.azimuth));
     XMLElement* body = link("platform");
-    visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), std::max(0.02, attachment_radius()));
+    double radius = 0.02;
+    for (const auto& other : robot_.limbs) radius = std::max(radius, other.p_BA.head<2>().norm());
+    visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), radius);
     inertial(body, "platform");
   }
 
@@ -312,15 +294,9 @@ class Writer {
 
   XMLElement* loop(const std::string& name, const char* type, const std::string& predecessor, const Vec& from,
                    const std::string& successor, const Vec& to) {
-    XMLElement* element = child(root_, "loop");
-    element->SetAttribute("name", name.c_str());
-    element->SetAttribute("type", type);
-    XMLElement* first = child(element, "predecessor");
-    first->SetAttribute("link", predecessor.c_str());
-    origin(first, from);
-    XMLElement* second = child(element, "successor");
-    second->SetAttribute("link", successor.c_str());
-    origin(second, to);
+    XMLElement* element = child(root_, "loop", {{"name", name}, {"type", type}});
+    origin(child(element, "predecessor", {{"link", predecessor}}), from);
+    origin(child(element, "successor", {{"link", successor}}), to);
     return element;
   }
 
@@ -339,17 +315,13 @@ class Writer {
   }
 
   void extension() {
-    XMLElement* element = child(root_, "deltadyn");
-    element->SetAttribute("version", 1);
-    element->SetAttribute("type", robot_.type.c_str());
-    child(element, "gravity")->SetAttribute("xyz_m_s2", number_text(robot_.gravity).c_str());
+    XMLElement* element = child(root_, "deltadyn", {{"version", "1"}, {"type", robot_.type}});
+    child(element, "gravity", {{"xyz_m_s2", number_text(robot_.gravity)}});
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
-      XMLElement* entry = child(element, "drive");
-      entry->SetAttribute("joint", robot_file::drive_name(i).c_str());
+      XMLElement* entry = child(element, "drive", {{"joint", robot_file::drive_name(i)}});
       if (i < robot_.limbs.size() && !robot_.parts.empty()) entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
       if (std::isfinite(robot_.limits[i].acceleration))
-        entry->SetAttribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic ? robot_file::kAccelerationPrismatic
-                                                                                              : robot_file::kAccelerationRevolute,
+        entry->SetAttribute(robot_file::acceleration_attribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic),
                             number_text(robot_.limits[i].acceleration).c_str());
     }
   }

@@ -14,14 +14,14 @@ void Summary::add(const std::string& key, double value, const std::string& unit)
 
 void Summary::add(const std::string& key, const std::string& value, const std::string& unit) {
   std::string plain = value;
-  std::replace(plain.begin(), plain.end(), ',', ';');
-  std::replace_if(
-      plain.begin(), plain.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::ranges::replace(plain, ',', ';');
+  std::ranges::replace_if(
+      plain, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   put(key, std::move(plain), unit);
 }
 
 void Summary::put(const std::string& key, std::string value, const std::string& unit) {
-  const auto found = std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return row.key == key; });
+  const auto found = std::ranges::find(rows_, key, &Row::key);
   if (found == rows_.end()) {
     rows_.push_back({key, std::move(value), unit});
   } else {

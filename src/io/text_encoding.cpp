@@ -43,22 +43,11 @@ std::string from_utf16(std::string_view bytes, bool little) {
   return text;
 }
 
-/// Whether all bytes of a text are UTF-8, without surrogates and overlong forms.
 bool is_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned first = byte(i);
-    const std::size_t more = first < 0x80 ? 0 : (first >= 0xC2 && first < 0xE0 ? 1 : (first >= 0xE0 && first < 0xF0 ? 2 : 3));
-    if (first >= 0x80 && (first < 0xC2 || first > 0xF4)) return false;
-    if (i + more >= text.size() && more > 0) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      if ((byte(i + k) & 0xC0) != 0x80) return false;
-    }
-    const unsigned second = more > 0 ? byte(i + 1) : 0;
-    const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second >= 0xA0) || (first == 0xF0 && second < 0x90) ||
-                     (first == 0xF4 && second >= 0x90);
-    if (bad) return false;
-    i += more + 1;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
   }
   return true;
 }
@@ -79,11 +68,23 @@ std::string from_windows_1252(std::string_view bytes) {
 
 }  // namespace
 
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(0), second = byte(1);
+  if (first < 0x80) return text.empty() ? 0 : 1;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0u) != 0x80u) return 0;
+  const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
+                   (first == 0xF4 && second > 0x8F);
+  return bad ? 0 : length;
+}
+
 DecodedText decode_text(std::string bytes) {
   const std::string_view head(bytes);
-  if (head.substr(0, 2) == "\xFF\xFE") return {from_utf16(head.substr(2), true), false};
-  if (head.substr(0, 2) == "\xFE\xFF") return {from_utf16(head.substr(2), false), false};
-  if (head.substr(0, 3) == "\xEF\xBB\xBF") bytes.erase(0, 3);
+  if (head.starts_with("\xFF\xFE")) return {from_utf16(head.substr(2), true), false};
+  if (head.starts_with("\xFE\xFF")) return {from_utf16(head.substr(2), false), false};
+  if (head.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (is_utf8(bytes)) return {std::move(bytes), false};
   return {from_windows_1252(bytes), true};
 }

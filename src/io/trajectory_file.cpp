@@ -23,7 +23,7 @@ constexpr double kLargestJitter = 0.02;  // of the stamps, share of the sample t
 
 /// The named columns if the file has all of them, else nothing.
 Eigen::MatrixXd read_block(const CsvTable& table, const std::vector<std::string>& names) {
-  if (!std::all_of(names.begin(), names.end(), [&](const std::string& name) { return table.find(name).has_value(); })) return {};
+  if (!std::ranges::all_of(names, [&](const std::string& name) { return table.find(name).has_value(); })) return {};
   Eigen::MatrixXd block(static_cast<Eigen::Index>(table.rows()), static_cast<Eigen::Index>(names.size()));
   for (std::size_t k = 0; k < names.size(); ++k) block.col(static_cast<Eigen::Index>(k)) = table.numbers(names[k]);
   return block;
@@ -59,24 +59,22 @@ void fill_derivatives(const std::string& path, const Eigen::VectorXd& t_s, const
 }
 
 bool has_drive_columns(const CsvTable& table) {
-  return std::any_of(table.columns().begin(), table.columns().end(),
-                     [](const std::string& name) { return name.rfind("q1_", 0) == 0; });
+  return std::ranges::any_of(table.columns(), [](const std::string& name) { return name.starts_with("q1_"); });
 }
 
 void require_finite(const TrajectorySamples& samples, const Log& log, const RobotDescription& robot) {
-  const auto check = [&](const Eigen::MatrixXd& block, const auto& column) {
-    for (Eigen::Index row = 0; row < block.rows(); ++row) {
-      for (Eigen::Index drive = 0; drive < block.cols(); ++drive) {
-        if (std::isfinite(block(row, drive))) continue;
-        throw Error("the number is missing or not finite",
-                    place(samples.file, log.line[static_cast<std::size_t>(row)], column(static_cast<int>(drive))),
-                    "fill in the number or remove the column");
+  for (const auto& [block, column] :
+       {std::pair{&samples.q, &DriveColumns::q}, {&samples.qd, &DriveColumns::qd}, {&samples.qdd, &DriveColumns::qdd}}) {
+    for (Eigen::Index row = 0; row < block->rows(); ++row) {
+      for (Eigen::Index drive = 0; drive < block->cols(); ++drive) {
+        if (std::isfinite((*block)(row, drive))) continue;
+        throw Error(
+            "the number is missing or not finite",
+            place(samples.file, log.line[static_cast<std::size_t>(row)], drive_columns(robot, static_cast<int>(drive)).*column),
+            "fill in the number or remove the column");
       }
     }
-  };
-  check(samples.q, [&](int drive) { return drive_columns(robot, drive).q; });
-  check(samples.qd, [&](int drive) { return drive_columns(robot, drive).qd; });
-  check(samples.qdd, [&](int drive) { return drive_columns(robot, drive).qdd; });
+  }
 }
 
 }  // namespace
@@ -94,8 +92,8 @@ TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
     zd.push_back(column.zd);
     zdd.push_back(column.zdd);
   }
-  const bool has_task = !description.parts.empty() &&
-                        std::all_of(z.begin(), z.end(), [&](const std::string& name) { return table.find(name).has_value(); });
+  const bool has_task =
+      !description.parts.empty() && std::ranges::all_of(z, [&](const std::string& name) { return table.find(name).has_value(); });
   const bool has_drives = has_drive_columns(table);
   if (!has_task && !has_drives) {
     const std::string wanted = description.parts.empty() ? z.front() : fmt::format("{}", fmt::join(z, ", "));
@@ -132,14 +130,12 @@ void write_trajectory(const std::string& path, const TrajectorySamples& samples,
   std::vector<const Eigen::MatrixXd*> blocks;
   if (!robot.parts.empty()) {
     const auto columns = task_columns(robot);
-    for (const TaskColumns& column : columns) text += "," + column.z;
-    for (const TaskColumns& column : columns) text += "," + column.zd;
-    for (const TaskColumns& column : columns) text += "," + column.zdd;
+    for (const auto part : {&TaskColumns::z, &TaskColumns::zd, &TaskColumns::zdd})
+      for (const TaskColumns& column : columns) text += "," + column.*part;
     blocks = {&samples.z, &samples.zd, &samples.zdd};
   }
-  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).q;
-  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qd;
-  for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).qdd;
+  for (const auto part : {&DriveColumns::q, &DriveColumns::qd, &DriveColumns::qdd})
+    for (int k = 0; k < robot.drives(); ++k) text += "," + drive_columns(robot, k).*part;
   blocks.insert(blocks.end(), {&samples.q, &samples.qd, &samples.qdd});
   write_table(path, text, samples.t_s, blocks);
 }

@@ -13,7 +13,6 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 
 #include "robot_file_format.hpp"
@@ -22,10 +21,6 @@ namespace deltadyn::robot_file {
 namespace {
 
 using tinyxml2::XMLElement;
-
-[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
-  throw Error(what, where, mend);
-}
 
 std::string at(const std::string& where, const XMLElement* element) {
   const char* name = element->Attribute("name");
@@ -144,18 +139,13 @@ std::string completed(tinyxml2::XMLDocument& document, XMLElement* robot, XmlFac
     if (!limited || joint->FirstChildElement("limit") != nullptr) continue;
     XMLElement* limit = joint->InsertNewChildElement("limit");
     limit->SetAttribute("lower", -kUnlimited);
-    limit->SetAttribute("upper", kUnlimited);
-    limit->SetAttribute("effort", kUnlimited);
-    limit->SetAttribute("velocity", kUnlimited);
+    for (const char* name : {"upper", "effort", "velocity"}) limit->SetAttribute(name, kUnlimited);
   }
   std::vector<std::string> roots;
   for (const auto& [link, line] : facts.link_lines)
     if (hung.count(link) == 0) roots.push_back(link);
-  if (!roots.empty()) {
-    const auto size = [&](const std::string& link) { return size_below(link, children); };
-    std::swap(roots.front(),
-              *std::max_element(roots.begin(), roots.end(), [&](const auto& a, const auto& b) { return size(a) < size(b); }));
-  }
+  const auto size = [&](const std::string& link) { return size_below(link, children); };
+  if (!roots.empty()) std::swap(roots.front(), *std::ranges::max_element(roots, {}, size));
   for (std::size_t k = 1; k < roots.size(); ++k) {
     XMLElement* joint = robot->InsertNewChildElement("joint");
     const std::string name = "loose_" + roots[k];
@@ -235,7 +225,7 @@ void read_inertial(const urdf::Link& link, UrdfTree& tree) {
   to.X_LC = pose_of(from.origin);
   to.I_C << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
   if (!std::isfinite(to.mass) || !to.I_C.allFinite() || !to.X_LC.matrix().allFinite())
-    refuse("the <inertial> holds a number that is not finite", fmt::format("{}, link {}", tree.where, link.name),
+    refuse("the <inertial> holds a number that is not finite", tree.at(link.name),
            "give finite numbers, or leave <inertial> out");
   tree.inertials[link.name] = to;
 }
@@ -245,43 +235,35 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
   const LinkPlace here = tree.links.at(link.name);
   read_inertial(link, tree);
   for (const auto& joint : link.child_joints) {
-    const auto child = [&] {
-      for (const auto& other : link.child_links)
-        if (other->name == joint->child_link_name) return other;
-      return urdf::LinkSharedPtr();
-    }();
-    if (!child) refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "mend the child of the joint");
+    const auto found = std::ranges::find(link.child_links, joint->child_link_name, &urdf::Link::name);
+    if (found == link.child_links.end())
+      refuse(fmt::format("joint '{}' leads nowhere", joint->name), tree.where, "mend the child of the joint");
+    const urdf::LinkSharedPtr& child = *found;
     const Pose X_BJ = here.X_BL * pose_of(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) {
       tree.links[child->name] = {here.body, X_BJ, link.name};
       tree.bodies[static_cast<std::size_t>(here.body)].links.push_back(child->name);
     } else {
-      const int line = facts.joint_lines.at(joint->name);
-      const bool prismatic = joint->type == urdf::Joint::PRISMATIC;
-      const bool floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR;
-      if (!(floating && dialect == UrdfDialect::cad) && !prismatic && joint->type != urdf::Joint::REVOLUTE &&
-          joint->type != urdf::Joint::CONTINUOUS)
-        refuse("the joint is neither revolute, continuous, prismatic nor fixed",
-               fmt::format("{}, line {}, joint {}", tree.where, line, joint->name), "a Delta's tree has no other joints");
-      const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
-      if (!floating && !(axis.norm() > 1e-9))
-        refuse("the axis has no direction", fmt::format("{}, line {}, joint {}", tree.where, line, joint->name),
-               "write a unit vector");
       const int body = static_cast<int>(tree.bodies.size());
+      const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
+      const Joint moving{.name = joint->name,
+                         .line = facts.joint_lines.at(joint->name),
+                         .parent_link = link.name,
+                         .prismatic = joint->type == urdf::Joint::PRISMATIC,
+                         .parent = here.body,
+                         .child = body,
+                         .X_PJ = X_BJ,
+                         // A unit vector stays as written, to the last digit.
+                         .axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized()),
+                         .mimic = joint->mimic != nullptr,
+                         .floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR,
+                         .limits = limits_of(*joint)};
+      if (!(moving.floating && dialect == UrdfDialect::cad) && !moving.prismatic && joint->type != urdf::Joint::REVOLUTE &&
+          joint->type != urdf::Joint::CONTINUOUS)
+        refuse("the joint is neither revolute, continuous, prismatic nor fixed", tree.at(moving),
+               "a Delta's tree has no other joints");
+      if (!moving.floating && !(axis.norm() > 1e-9)) refuse("the axis has no direction", tree.at(moving), "write a unit vector");
       tree.bodies[static_cast<std::size_t>(here.body)].joints.push_back(static_cast<int>(tree.joints.size()));
-      Joint moving;
-      moving.name = joint->name;
-      moving.line = line;
-      moving.parent_link = link.name;
-      moving.prismatic = prismatic;
-      moving.parent = here.body;
-      moving.child = body;
-      moving.X_PJ = X_BJ;
-      // A unit vector stays as written, to the last digit.
-      moving.axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized());
-      moving.mimic = joint->mimic != nullptr;
-      moving.floating = floating;
-      moving.limits = limits_of(*joint);
       tree.joints.push_back(moving);
       tree.bodies.push_back({child->name, {}, {child->name}});
       tree.links[child->name] = {body, Pose::Identity(), {}};
@@ -303,18 +285,17 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
     tree.gravity = parse_vector(attribute(gravity, "xyz_m_s2", there), there, "xyz_m_s2");
   }
   for (auto* drive = extension->FirstChildElement("drive"); drive != nullptr; drive = drive->NextSiblingElement("drive")) {
-    DriveNote note;
+    DriveNote& note = tree.drives.emplace_back();
     note.line = drive->GetLineNum();
     for (auto* entry = drive->FirstAttribute(); entry != nullptr; entry = entry->Next())
-      note.attributes[entry->Name()] = entry->Value();
-    tree.drives.push_back(std::move(note));
+      (std::string_view(entry->Name()) == "joint" ? note.joint : note.attributes[entry->Name()]) = entry->Value();
   }
 }
 
 void read_loops(const XMLElement* robot, UrdfDialect dialect, UrdfTree& tree) {
   for (auto* element = robot->FirstChildElement("loop"); element != nullptr; element = element->NextSiblingElement("loop")) {
     const std::string place = at(tree.where, element);
-    Loop loop;
+    Loop& loop = tree.loops.emplace_back();
     loop.name = attribute(element, "name", place);
     loop.type = attribute(element, "type", place);
     loop.line = element->GetLineNum();
@@ -325,7 +306,6 @@ void read_loops(const XMLElement* robot, UrdfDialect dialect, UrdfTree& tree) {
         refuse(fmt::format("unknown link '{}'", end->link), place, "mend the name of the link");
     if (const XMLElement* axis = element->FirstChildElement("axis"))
       loop.axis = parse_vector(attribute(axis, "xyz", place), place, "xyz").normalized();
-    tree.loops.push_back(std::move(loop));
   }
   if (auto* coupling = robot->FirstChildElement("coupling"); coupling != nullptr && dialect == UrdfDialect::robot_file)
     refuse("a <coupling> ties two joints, which no robot of a known type has", at(tree.where, coupling),
@@ -333,6 +313,17 @@ void read_loops(const XMLElement* robot, UrdfDialect dialect, UrdfTree& tree) {
 }
 
 }  // namespace
+
+void refuse(const std::string& what, const std::string& where, const std::string& mend, ExitCode code) {
+  throw Error(what, where, mend, code);
+}
+
+std::string UrdfTree::at(const Joint& joint) const {
+  return fmt::format("{}, line {}, joint {}", where, joint.line, joint.name);
+}
+std::string UrdfTree::at(const std::string& link) const {
+  return fmt::format("{}, link {}", where, link);
+}
 
 InertialVector<double> LinkInertial::in_frame(const Pose& X_FL) const {
   const Pose X_FC = X_FL * X_LC;

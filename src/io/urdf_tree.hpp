@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn::robot_file {
@@ -65,7 +66,8 @@ struct LinkInertial {
 /// One `<drive>` of the `<deltadyn>` element; attributes as written.
 struct DriveNote {
   int line = 0;
-  std::map<std::string, std::string> attributes;
+  std::string joint;
+  std::map<std::string, std::string> attributes;  ///< the others
 };
 
 struct UrdfTree {
@@ -80,7 +82,17 @@ struct UrdfTree {
   int extension_line = 0;
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);  ///< in the frame of the root link
   std::vector<DriveNote> drives;
+
+  [[nodiscard]] const Body& body(int index) const { return bodies[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const Joint& joint(int index) const { return joints[static_cast<std::size_t>(index)]; }
+  /// "cad.urdf, line 12, joint J1", "cad.urdf, link arm".
+  [[nodiscard]] std::string at(const Joint& joint) const;
+  [[nodiscard]] std::string at(const std::string& link) const;
 };
+
+/// Throws deltadyn::Error.
+[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend,
+                         ExitCode code = ExitCode::bad_input);
 
 /// robot_file: what the tools take. cad: any tree of a CAD program; joints may float or lack limits, and there may be several trees,
 /// whose roots are then joined to the largest one by floating joints, in the place that the file's origin gives them.

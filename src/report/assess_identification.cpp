@@ -90,8 +90,7 @@ Check check_consistency(const Identification& identification) {
   } else {
     check.meaning =
         "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong length, a wrong "
-        "prior "
-        "with too much weight, or an effect that the model lacks.";
+        "prior with too much weight, or an effect that the model lacks.";
   }
   return check;
 }
@@ -112,8 +111,7 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   } else {
     check.meaning = fmt::format(
         "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches further and "
-        "accelerates "
-        "harder, and trust the model only near the recorded motions.",
+        "accelerates harder, and trust the model only near the recorded motions.",
         format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
   }
   return check;
@@ -152,36 +150,21 @@ Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
   return check;
 }
 
-struct SourceCounts {
-  int fitted = 0, data = 0, both = 0, sums = 0, prior = 0, neither = 0;
-};
-
-SourceCounts count_sources(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility) {
-  SourceCounts counts;
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (!fit.fitted[i]) continue;
-    ++counts.fitted;
-    switch (decided_by(fit, visibility[i], static_cast<Index>(i))) {
-      case DecidedBy::data: ++counts.data; break;
-      case DecidedBy::both: ++counts.both; break;
-      case DecidedBy::sums: ++counts.sums; break;
-      case DecidedBy::prior: ++counts.prior; break;
-      case DecidedBy::neither: ++counts.neither; break;
-    }
-  }
-  return counts;
-}
-
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility, const std::vector<PriorGap>& gaps) {
-  const SourceCounts counts = count_sources(fit, visibility);
-  const bool motion_lacks = std::any_of(gaps.begin(), gaps.end(), [](const PriorGap& gap) { return gap.by_motion; });
+  std::vector<DecidedBy> sources;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    if (fit.fitted[i]) sources.push_back(decided_by(fit, visibility[i], static_cast<Index>(i)));
+  }
+  const auto count = [&sources](DecidedBy source) { return std::ranges::count(sources, source); };
+  const auto sums = count(DecidedBy::sums), prior = count(DecidedBy::prior), neither = count(DecidedBy::neither);
+  const bool motion_lacks = std::ranges::any_of(gaps, &PriorGap::by_motion);
   Check check{"Data against prior", "", motion_lacks ? Verdict::caution : Verdict::good, ""};
   check.figure = fmt::format("{} of {} fitted parameters from the data, {} from both, {} known only in sums, {} from the prior",
-                             counts.data, counts.fitted, counts.both, counts.sums, counts.prior);
-  if (counts.neither > 0) check.figure += fmt::format(", {} from neither", counts.neither);
+                             count(DecidedBy::data), sources.size(), count(DecidedBy::both), sums, prior);
+  if (neither > 0) check.figure += fmt::format(", {} from neither", neither);
   if (motion_lacks) {
     check.meaning = "Some parameters that a motion can show were not shown by these logs; the report names them.";
-  } else if (counts.prior + counts.sums + counts.neither > 0) {
+  } else if (prior + sums + neither > 0) {
     check.meaning =
         "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values are not "
         "measured.";
@@ -196,18 +179,17 @@ std::string trusted_values(const ConsistentFitSummary& fit, const std::vector<Vi
   const auto measured = [&](std::size_t i) { return fit.fitted[i] && is_measured(fit, visibility[i], static_cast<Index>(i)); };
 
   std::vector<std::string> names;
-  int friction = 0, friction_from_data = 0;
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (!fit.parameters[i].is_friction()) continue;
-    ++friction;
-    friction_from_data += measured(i) ? 1 : 0;
+  const auto& all = fit.parameters;
+  std::size_t friction = 0, friction_from_data = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    friction += all[i].is_friction() ? 1 : 0;
+    friction_from_data += all[i].is_friction() && measured(i) ? 1 : 0;
   }
   const bool all_friction = friction > 0 && friction == friction_from_data;
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (all_friction && fit.parameters[i].is_friction()) continue;
-    if (measured(i)) names.push_back(parameter_name(fit.parameters[i]));
+  if (all_friction) names.emplace_back("friction of all joints");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (measured(i) && !(all_friction && all[i].is_friction())) names.push_back(parameter_name(all[i]));
   }
-  if (all_friction) names.insert(names.begin(), "friction of all joints");
   constexpr std::size_t kNamed = 8;  // more do not fit a line; all stand in the table
   if (names.size() > kNamed) {
     const std::size_t others = names.size() - kNamed;

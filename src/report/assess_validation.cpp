@@ -2,11 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/report/format.hpp"
-
-#include "assessment_limits.hpp"
 #include "assessment_parts.hpp"
-#include "drive_names.hpp"
 
 namespace deltadyn {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 
 #include "assessment_limits.hpp"
 #include "assessment_parts.hpp"
+#include "drive_figures.hpp"
 #include "drive_names.hpp"
 
 namespace deltadyn {
@@ -155,8 +157,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
         "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust parameters as "
-        "far as "
-        "their intervals say, and record the torque faster or through a low pass.",
+        "far as their intervals say, and record the torque faster or through a low pass.",
         format_number(noise, torque_unit_of(robot, drive), 3));
     return check;
   }
@@ -170,8 +171,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::bad:
       check.meaning =
           "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear "
-          "ratios, and "
-          "that position and torque belong to the same instant.";
+          "ratios, and that position and torque belong to the same instant.";
       break;
   }
   return check;
@@ -200,12 +200,6 @@ std::string meaning_of_dependence(const std::string& coordinate) {
   return "inertia is missing there (a rotor), or torque and position are not of the same instant (a lag)";
 }
 
-/// Last part of a path.
-std::string file_name(const std::string& path) {
-  const auto slash = path.find_last_of('/');
-  return slash == std::string::npos ? path : path.substr(slash + 1);
-}
-
 bool worth_acting_on(const StructureLeft& structure) {
   return structure.of_torque > kRelevantStructure || structure.of_torque_there > kGoodResidual;
 }
@@ -215,7 +209,7 @@ std::string structure_in_words(const StructureLeft& structure) {
       structure.coordinate == "time" ? "slow waves that follow none of its coordinates" : "following its " + structure.coordinate;
   std::string text =
       fmt::format("structure is left in the residual of {} ({}), {}: {} of the torque in this log", drive_name(structure.drive),
-                  file_name(structure.file), what, format_percent(structure.of_torque, 2));
+                  short_name(structure.file), what, format_percent(structure.of_torque, 2));
   if (structure.of_torque_there > 0) {
     text += fmt::format(", at speeds of {} to {} (SI) {} of the torque there", format_number(structure.speed_low, 2),
                         format_number(structure.speed_high, 2), format_percent(structure.of_torque_there, 2));
@@ -230,7 +224,7 @@ Check check_residual_shape(const std::optional<StructureLeft>& structure) {
     check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
     return check;
   }
-  const std::string drive = drive_name(structure->drive), log = file_name(structure->file);
+  const std::string drive = drive_name(structure->drive), log = short_name(structure->file);
   check.figure = structure->coordinate == "time"
                      ? fmt::format("slow waves in {} ({})", drive, log)
                      : fmt::format("{} of it follows the {} of {} ({})", format_percent(structure->share, 2),
@@ -283,16 +277,8 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
   return check;
 }
 
-std::string headline_of(const std::string& opening, const Check& check) {
-  std::string subject = check.subject;
-  if (!subject.empty() && subject[0] >= 'A' && subject[0] <= 'Z') subject[0] = static_cast<char>(subject[0] - 'A' + 'a');
-  return fmt::format("{}: {} ({}).", opening, subject, check.figure);
-}
-
-Verdict worst_of(const std::vector<Check>& checks) {
-  Verdict worst = Verdict::good;
-  for (const Check& check : checks) worst = std::max(worst, check.verdict);
-  return worst;
+const Check& worst_of(const std::vector<Check>& checks) {
+  return *std::ranges::max_element(checks, {}, &Check::verdict);
 }
 
 std::vector<std::string> Assessment::told() const {
@@ -303,14 +289,14 @@ std::vector<std::string> Assessment::told() const {
 }
 
 void conclude(const Headlines& headlines, Assessment& out) {
-  out.verdict = worst_of(out.checks);
-  const auto first =
-      std::find_if(out.checks.begin(), out.checks.end(), [&](const Check& check) { return check.verdict == out.verdict; });
-  switch (out.verdict) {
-    case Verdict::good: out.headline = headlines.good; break;
-    case Verdict::caution: out.headline = headline_of(headlines.caution, *first); break;
-    case Verdict::bad: out.headline = headline_of(headlines.bad, *first); break;
-  }
+  const Check& worst = worst_of(out.checks);
+  out.verdict = worst.verdict;
+  std::string subject = worst.subject;
+  subject[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(subject[0])));
+  out.headline =
+      out.verdict == Verdict::good
+          ? headlines.good
+          : fmt::format("{}: {} ({}).", out.verdict == Verdict::bad ? headlines.bad : headlines.caution, subject, worst.figure);
   for (const Verdict level : {Verdict::bad, Verdict::caution}) {
     for (const Check& check : out.checks) {
       if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));

@@ -26,9 +26,12 @@ struct DriveFigures {
 [[nodiscard]] Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives);
 [[nodiscard]] Check check_residual_shape(const std::optional<StructureLeft>& structure);
 [[nodiscard]] Check check_reversals(const std::vector<DriveFigures>& drives);
-/// "Usable with care", check -> "Usable with care: size of the residual (7 % of ...)."
-[[nodiscard]] std::string headline_of(const std::string& opening, const Check& check);
-[[nodiscard]] Verdict worst_of(const std::vector<Check>& checks);
+/// The first of the checks with the worst verdict.
+[[nodiscard]] const Check& worst_of(const std::vector<Check>& checks);
+/// The colour of a verdict in a report.
+[[nodiscard]] inline Tone tone_of(Verdict verdict) {
+  return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
+}
 /// How a headline begins.
 struct Headlines {
   std::string good;     ///< the whole of it

@@ -10,6 +10,8 @@
 #include "deltadyn/report/html_report.hpp"
 #include "deltadyn/report/log_report.hpp"
 
+#include "drive_names.hpp"
+
 namespace deltadyn {
 
 using Eigen::Index;
@@ -20,23 +22,13 @@ namespace {
 constexpr int kBins = 40;
 constexpr Index kMostPoints = 1500;  // of a curve over time: more than a screen shows
 
-std::string torque_unit(const Robot& robot, int drive) {
-  return robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
-}
-std::string position_unit(const Robot& robot, int drive) {
-  return robot.description().kind_of_drive(drive) == DriveKind::revolute ? "rad" : "m";
-}
-
 std::string p_text(double p) {
   return p < 1e-4 ? "below 0.0001" : format_number(p, 2);
 }
 
-Verdict tone_of(const Diagnosis& d) {
-  switch (d.verdict) {
-    case DiagnosisVerdict::nothing_missing: return Verdict::good;
-    case DiagnosisVerdict::named: return d.gap_shrink > 0.5 || std::isnan(d.gap_shrink) ? Verdict::good : Verdict::caution;
-    default: return Verdict::caution;
-  }
+Verdict verdict_of(const Diagnosis& d) {
+  const bool proven = d.verdict == DiagnosisVerdict::named && !(d.gap_shrink <= 0.5);
+  return d.verdict == DiagnosisVerdict::nothing_missing || proven ? Verdict::good : Verdict::caution;
 }
 
 /// Means of the residual in bins of a coordinate, with the standard error of each.
@@ -53,7 +45,7 @@ BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
       if (trace.usable(k, drive)) points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
     }
   }
-  std::sort(points.begin(), points.end());
+  std::ranges::sort(points);
   const auto bins = static_cast<std::size_t>(std::min<std::size_t>(kBins, points.size() / 10));
   BinnedResidual out;
   for (VectorXd* v : {&out.x, &out.before, &out.after, &out.error}) *v = VectorXd::Zero(static_cast<Index>(bins));
@@ -76,21 +68,15 @@ BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
 PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::string& x_label, const std::string& title,
                 const std::function<double(const DiagnosisTrace&, Index)>& coordinate) {
   const BinnedResidual bins = binned(d, drive, false, coordinate);
-  PlotSpec plot;
-  plot.title = title;
-  plot.x_label = x_label;
-  plot.y_label = "mean residual [" + torque_unit(robot, drive) + "]";
-  plot.height = 230;
-  Series before{"model fitted to these logs, with standard error", bins.x, bins.before, SeriesStyle::errorbars};
-  before.y_error = bins.error;
-  before.color = PlotColor::vermillion;
-  plot.series.push_back(before);
-  if (!d.named.empty()) {
-    Series after{"with the named effect", bins.x, bins.after, SeriesStyle::line};
-    after.color = PlotColor::blue;
-    plot.series.push_back(after);
-  }
-  plot.horizontal_markers.push_back({0.0, ""});
+  PlotSpec plot{.title = title,
+                .x_label = x_label,
+                .y_label = fmt::format("mean residual [{}]", torque_unit_of(robot, drive)),
+                .horizontal_markers = {{0.0, ""}},
+                .height = 230};
+  plot.series.push_back({"model fitted to these logs, with standard error", bins.x, bins.before, SeriesStyle::errorbars,
+                         bins.error, PlotColor::vermillion});
+  if (!d.named.empty())
+    plot.series.push_back({"with the named effect", bins.x, bins.after, SeriesStyle::line, {}, PlotColor::blue});
   return plot;
 }
 
@@ -98,9 +84,8 @@ PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::st
 std::vector<int> drives_to_show(const Diagnosis& d) {
   std::vector<int> out, all;
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
-    const bool reached = std::any_of(d.named.begin(), d.named.end(), [j](const NamedEffect& one) {
-      return std::count(one.drives.begin(), one.drives.end(), static_cast<int>(j)) > 0;
-    });
+    const bool reached = std::ranges::any_of(
+        d.named, [j](const NamedEffect& one) { return std::ranges::count(one.drives, static_cast<int>(j)) > 0; });
     all.push_back(static_cast<int>(j));
     if (reached || (d.named.empty() && d.drives[j].structure > 0.1)) out.push_back(static_cast<int>(j));
   }
@@ -108,35 +93,33 @@ std::vector<int> drives_to_show(const Diagnosis& d) {
 }
 
 VectorXd thinned(const VectorXd& x, Index step) {
-  VectorXd out((x.size() + step - 1) / step);
-  for (Index k = 0; k < out.size(); ++k) out(k) = x(k * step);
-  return out;
+  return x(Eigen::seqN(0, (x.size() + step - 1) / step, step));
 }
 
 void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
       "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model fitted to "
-      "these "
-      "logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were known. "
-      "The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All that "
-      "follows speaks of the fitted model.");
+      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were "
+      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All "
+      "that follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
-               {"parameters as given", Align::right},
-               {"fitted", Align::right},
-               {"noise floor", Align::right},
-               {"share of the residual that follows the motion", Align::right},
-               {"chance of that by noise", Align::right},
+               {"parameters as given"},
+               {"fitted"},
+               {"noise floor"},
+               {"share of the residual that follows the motion"},
+               {"chance of that by noise"},
                {"residual follows", Align::left}});
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
     const DriveFit& drive = d.drives[j];
-    const std::string unit = torque_unit(robot, static_cast<int>(j));
+    const char* unit = torque_unit_of(robot, static_cast<int>(j));
     const bool fits = drive.structure < 0.12;
-    std::string follows;
+    std::vector<std::string> follows;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, drive.follows.size()) && !fits; ++k)
-      follows += (k > 0 ? ", " : "") + drive.follows[k].first;
+      follows.push_back(drive.follows[k].first);
     table.row({std::to_string(j + 1), format_number(drive.rms_given, unit, 3), format_number(drive.rms, unit, 3),
-               format_number(drive.floor, unit, 3), format_percent(drive.structure), p_text(drive.p_value), follows},
+               format_number(drive.floor, unit, 3), format_percent(drive.structure), p_text(drive.p_value),
+               fmt::format("{}", fmt::join(follows, ", "))},
               fits ? Tone::plain : Tone::caution);
   }
   report.table(table);
@@ -146,10 +129,9 @@ void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
       "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is right, two "
-      "of "
-      "three bars (one standard error) cross zero; a curve is physics that the model lacks.");
+      "of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
-    const std::string name = "drive " + std::to_string(j + 1), unit = position_unit(robot, j);
+    const std::string name = "drive " + std::to_string(j + 1), unit = position_unit_of(robot, j);
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
                        [j](const DiagnosisTrace& trace, Index k) { return trace.qd(k, j); }));
     report.plot(map_of(d, robot, j, "position of " + name + " [" + unit + "]", name + ": residual over its position",
@@ -163,12 +145,10 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
   report.heading("3. What could it be?");
   std::vector<const ConsideredEffect*> order;
   for (const ConsideredEffect& one : d.considered) order.push_back(&one);
-  std::sort(order.begin(), order.end(),
-            [](const ConsideredEffect* a, const ConsideredEffect* b) { return a->gain_alone > b->gain_alone; });
+  std::ranges::sort(order, std::greater(), &ConsideredEffect::gain_alone);
   report.paragraph(
       fmt::format("{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
-                  "sign that physics "
-                  "allows, against {} simulated logs of this motion that miss nothing.",
+                  "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
                   d.considered.size(), d.null_runs));
   const auto fill = [](Table& table, const ConsideredEffect& one) {
     const Tone tone = one.ruling == "found" ? Tone::strong : (one.ruling == "no evidence" ? Tone::muted : Tone::plain);
@@ -176,9 +156,8 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
                one.ruling},
               tone);
   };
-  const std::vector<TableColumn> columns = {{"effect", Align::left},        {"at", Align::left},
-                                            {"class", Align::left},         {"explains [chi²]", Align::right},
-                                            {"chance alone", Align::right}, {"chance beside the found", Align::right},
+  const std::vector<TableColumn> columns = {{"effect", Align::left}, {"at", Align::left}, {"class", Align::left},
+                                            {"explains [chi²]"},     {"chance alone"},    {"chance beside the found"},
                                             {"ruling", Align::left}};
   Table top(columns);
   for (std::size_t k = 0; k < std::min<std::size_t>(12, order.size()); ++k) fill(top, *order[k]);
@@ -194,17 +173,12 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
             "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. Smallest size: the "
             "amplitude that would be named at the noise of these logs. Hardly told from: effects whose torques are alike in "
             "these motions, with the cosine between them.");
-        Table table({{"effect", Align::left},
-                     {"at", Align::left},
-                     {"visible", Align::right},
-                     {"smallest size", Align::right},
-                     {"hardly told from", Align::left}});
+        Table table(
+            {{"effect", Align::left}, {"at", Align::left}, {"visible"}, {"smallest size"}, {"hardly told from", Align::left}});
         for (const ConsideredEffect& one : d.considered) {
-          std::string like;
-          for (const std::string& other : one.like) like += (like.empty() ? "" : "; ") + other;
-          table.row(
-              {one.name, one.joint, format_percent(one.kept, 2), format_number(one.detectable, pretty_unit(one.unit), 3), like},
-              one.kept < 0.002 ? Tone::muted : Tone::plain);
+          table.row({one.name, one.joint, format_percent(one.kept, 2), format_number(one.detectable, pretty_unit(one.unit), 3),
+                     fmt::format("{}", fmt::join(one.like, "; "))},
+                    one.kept < 0.002 ? Tone::muted : Tone::plain);
         }
         inner.table(table);
       });
@@ -220,7 +194,7 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     const EffectKind& kind = effect_kind(one.effect.id);
     report.subheading(one.name + " at " + one.joint);
     report.paragraph(fmt::format("In words: {}. It acts at {}.", kind.meaning, one.region));
-    Table table({{"parameter", Align::left}, {"value ± standard deviation", Align::right}, {"95 % interval", Align::right}});
+    Table table({{"parameter", Align::left}, {"value ± standard deviation"}, {"95 % interval"}});
     for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
       const auto at = static_cast<Index>(k);
       const std::string unit = pretty_unit(effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
@@ -262,15 +236,15 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 
 void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("5. Does it hold on a log that took no part?");
-  const auto held = std::find_if(d.traces.begin(), d.traces.end(), [](const DiagnosisTrace& t) { return t.holdout; });
+  const auto held = std::ranges::find_if(d.traces, [](const DiagnosisTrace& t) { return t.holdout; });
   if (held == d.traces.end()) {
     report.paragraph("There was no hold-out log (--holdout), so nothing can be proven.");
     return;
   }
   if (!d.named.empty()) {
-    Table table({{"effect", Align::left}, {"residual before", Align::right}, {"after", Align::right}, {"floor", Align::right}});
+    Table table({{"effect", Align::left}, {"residual before"}, {"after"}, {"floor"}});
     for (const NamedEffect& one : d.named) {
-      const std::string unit = torque_unit(robot, one.drives.empty() ? 0 : one.drives.front());
+      const char* unit = torque_unit_of(robot, one.drives.empty() ? 0 : one.drives.front());
       table.row({one.name + " at " + one.joint, format_number(one.rms_before, unit, 3), format_number(one.rms_after, unit, 3),
                  format_number(one.rms_floor, unit, 3)});
     }
@@ -278,9 +252,9 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     report.paragraph(fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
                                  100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
   } else {
-    Table table({{"drive", Align::left}, {"residual", Align::right}, {"floor", Align::right}});
+    Table table({{"drive", Align::left}, {"residual"}, {"floor"}});
     for (std::size_t j = 0; j < d.drives.size(); ++j) {
-      const std::string unit = torque_unit(robot, static_cast<int>(j));
+      const char* unit = torque_unit_of(robot, static_cast<int>(j));
       table.row({std::to_string(j + 1), format_number(d.drives[j].rms_holdout, unit, 3),
                  format_number(d.drives[j].floor_holdout, unit, 3)});
     }
@@ -289,36 +263,27 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   for (const int j : drives_to_show(d)) {
     const Index step = std::max<Index>(1, held->t_s.size() / kMostPoints);
     const VectorXd t = thinned(held->t_s, step);
-    PlotSpec torque;
-    torque.title = fmt::format("Drive {}: torque on the hold-out log", j + 1);
-    torque.x_label = "time [s]";
-    torque.y_label = "torque [" + torque_unit(robot, j) + "]";
-    torque.height = 240;
-    torque.series.push_back({"measured", t, thinned(held->torque.col(j), step)});
     const bool changed = !d.named.empty();
-    torque.series.push_back({changed ? "model before" : "model", t, thinned(held->torque.col(j) - held->before.col(j), step)});
-    torque.series[0].color = PlotColor::grey;
-    torque.series[1].color = PlotColor::vermillion;
-    if (changed) {
-      torque.series.push_back({"model after", t, thinned(held->torque.col(j) - held->after.col(j), step)});
-      torque.series[2].color = PlotColor::blue;
-      torque.series[2].dashed = true;
-    }
-    PlotSpec residual;
-    residual.title = fmt::format("Drive {}: residual", j + 1);
-    residual.x_label = "time [s]";
-    residual.y_label = "residual [" + torque_unit(robot, j) + "]";
-    residual.height = 240;
+    PlotSpec torque{.title = fmt::format("Drive {}: torque on the hold-out log", j + 1),
+                    .x_label = "time [s]",
+                    .y_label = fmt::format("torque [{}]", torque_unit_of(robot, j)),
+                    .height = 240};
+    PlotSpec residual{.title = fmt::format("Drive {}: residual", j + 1),
+                      .x_label = "time [s]",
+                      .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
+                      .height = 240};
+    const auto add = [&t, step](PlotSpec& plot, const char* label, const VectorXd& y, PlotColor color, bool dashed = false) {
+      plot.series.push_back({label, t, thinned(y, step), SeriesStyle::line, {}, color, dashed});
+    };
+    add(torque, "measured", held->torque.col(j), PlotColor::grey);
+    add(torque, changed ? "model before" : "model", held->torque.col(j) - held->before.col(j), PlotColor::vermillion);
+    if (changed) add(torque, "model after", held->torque.col(j) - held->after.col(j), PlotColor::blue, true);
     VectorXd before = held->before.col(j), after = held->after.col(j);
     for (Index k = 0; k < before.size(); ++k) {
       if (!held->usable(k, j)) before(k) = after(k) = std::nan("");  // near reversals nothing is claimed
     }
-    residual.series.push_back({changed ? "before" : "model", t, thinned(before, step)});
-    residual.series[0].color = PlotColor::vermillion;
-    if (changed) {
-      residual.series.push_back({"after", t, thinned(after, step)});
-      residual.series[1].color = PlotColor::blue;
-    }
+    add(residual, changed ? "before" : "model", before, PlotColor::vermillion);
+    if (changed) add(residual, "after", after, PlotColor::blue);
     report.plot({torque, residual});
   }
 }
@@ -329,7 +294,7 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   HtmlReport report("What is the model missing?", context.robot_file);
   std::vector<std::string> lines = d.lines;
   for (const std::string& next : d.next) lines.push_back("Next: " + next);
-  report.verdict(tone_of(d), d.headline, lines);
+  report.verdict(verdict_of(d), d.headline, lines);
   add_log_check(report, context.findings);
   std::vector<KeyFigure> figures = {{"verdict", verdict_name(d.verdict)}};
   if (!d.named.empty()) {

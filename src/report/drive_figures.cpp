@@ -94,7 +94,7 @@ std::string name_of_group(const std::vector<int>& drives) {
 Series interval_means(const Eigen::VectorXd& x, const Eigen::VectorXd& e, double correlation) {
   std::vector<Index> order(static_cast<std::size_t>(x.size()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return x(a) < x(b); });
+  std::ranges::stable_sort(order, [&](Index a, Index b) { return x(a) < x(b); });
   const Index intervals = std::max<Index>(1, std::min<Index>(kIntervals, x.size() / 8));
   Series means{"mean, ± 95 %",         Eigen::VectorXd(intervals), Eigen::VectorXd(intervals),
                SeriesStyle::errorbars, Eigen::VectorXd(intervals), PlotColor::vermillion};
@@ -133,18 +133,13 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
     std::vector<PlotSpec> panels;
     bool grey = false, cut_off = false;
     for (int j = 0; j < robot.drives(); ++j) {
-      PlotSpec torque;
-      torque.title = fmt::format("Drive {}", j + 1);
-      torque.x_label = "time [s]";
-      torque.y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j));
-      torque.height = 210;
-      torque.series.push_back({"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue});
-      torque.series.push_back({"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true});
-      panels.push_back(std::move(torque));
-      PlotSpec rest;
-      rest.x_label = "time [s]";
-      rest.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
-      rest.height = 150;
+      panels.push_back({.title = fmt::format("Drive {}", j + 1),
+                        .x_label = "time [s]",
+                        .y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j)),
+                        .series = {{"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue},
+                                   {"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true}},
+                        .height = 210});
+      PlotSpec rest{.x_label = "time [s]", .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)), .height = 150};
       const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)),
                             reversal = piece(masked_residual(p, j, false, true));
       if (reversal.array().isFinite().any()) {
@@ -178,12 +173,11 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
   constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::vermillion, PlotColor::green};
   std::vector<PlotSpec> panels;
   for (int j = 0; j < robot.drives(); ++j) {
-    PlotSpec spec;
-    spec.title = fmt::format("Drive {}", j + 1);
-    spec.x_label = "frequency [Hz]";
-    spec.y_label = turns(robot, j) ? "[(N m)²/Hz]" : "[N²/Hz]";
-    spec.log_y = true;
-    spec.height = 175;
+    PlotSpec spec{.title = fmt::format("Drive {}", j + 1),
+                  .x_label = "frequency [Hz]",
+                  .y_label = turns(robot, j) ? "[(N m)²/Hz]" : "[N²/Hz]",
+                  .log_y = true,
+                  .height = 175};
     for (std::size_t l = 0; l < std::min(kLogsShown, validation.logs.size()); ++l) {
       const ValidatedLog& log = validation.logs[l];
       const Eigen::VectorXd residual = masked_residual(log.prediction, j, true, true);
@@ -194,19 +188,17 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
                                ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio * validation.processing.cutoff_hz
                                : std::numeric_limits<double>::infinity();
         const Index bins = std::max<Index>(2, (spectrum.frequency_hz.array() <= end).count() - 1);
-        spec.series.push_back({validation.logs.size() > 1 ? short_name(log.file) : "",
-                               spectrum.frequency_hz.segment(1, bins),
-                               spectrum.density.segment(1, bins),
-                               SeriesStyle::line,
-                               {},
-                               kColors[l]});
+        spec.series.push_back({.label = validation.logs.size() > 1 ? short_name(log.file) : "",
+                               .x = spectrum.frequency_hz.segment(1, bins),
+                               .y = spectrum.density.segment(1, bins),
+                               .color = kColors[l]});
       } catch (const Error&) {
         continue;  // too short a log, or no stretch without repaired samples: nothing to draw
       }
     }
     if (validation.processing.filter && !spec.series.empty())
       spec.vertical_markers.push_back({validation.processing.cutoff_hz, j == 0 ? "cut-off of the motion" : ""});
-    const bool flat = std::all_of(spec.series.begin(), spec.series.end(), [](const Series& s) { return !(s.y.maxCoeff() > 0); });
+    const bool flat = std::ranges::all_of(spec.series, [](const Series& s) { return !(s.y.maxCoeff() > 0); });
     if (!spec.series.empty() && !flat) panels.push_back(std::move(spec));
   }
   if (panels.empty()) {
@@ -215,8 +207,7 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
   }
   report.plot(panels,
               "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low pass; "
-              "what stands "
-              "out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
+              "what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
 }
 
 void add_residual_over(HtmlReport& report, const Robot& robot, const Validation& validation, Coordinate coordinate) {
@@ -238,21 +229,15 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
       const Eigen::VectorXd X = Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
       const Eigen::VectorXd E = Eigen::Map<Eigen::VectorXd>(e.data(), static_cast<Index>(e.size()));
       const Index step = std::max<Index>(1, (X.size() + kPointsShown - 1) / kPointsShown), points = (X.size() + step - 1) / step;
-      PlotSpec spec;
-      spec.title = fmt::format("Drive {}", j + 1);
-      spec.x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
-                              : fmt::format("position [{}]", position_unit_of(robot, j));
-      spec.y_label = fmt::format("residual [{}]", torque_unit_of(robot, j));
-      spec.height = 180;
-      spec.series.push_back({"one row",
-                             X(Eigen::seqN(0, points, step)),
-                             E(Eigen::seqN(0, points, step)),
-                             SeriesStyle::points,
-                             {},
-                             PlotColor::grey});
-      spec.series.push_back(interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation));
-      spec.horizontal_markers.push_back({0.0, ""});
-      panels.push_back(std::move(spec));
+      const auto shown = Eigen::seqN(0, points, step);
+      panels.push_back({.title = fmt::format("Drive {}", j + 1),
+                        .x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
+                                            : fmt::format("position [{}]", position_unit_of(robot, j)),
+                        .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
+                        .series = {{"one row", X(shown), E(shown), SeriesStyle::points, {}, PlotColor::grey},
+                                   interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation)},
+                        .horizontal_markers = {{0.0, ""}},
+                        .height = 180});
     }
     if (panels.empty()) continue;
     report.plot(panels,
@@ -283,8 +268,7 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
   }
   report.table(table,
                "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
-               "rows that tell "
-               "as much as one of white noise.");
+               "rows that tell as much as one of white noise.");
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
@@ -315,14 +299,10 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
 void add_check_table(HtmlReport& report, const Assessment& assessment) {
   Table table({{"", Align::center}, {"question", Align::left}, {"finding", Align::left}, {"meaning", Align::left}});
   for (const Check& check : assessment.checks) {
-    const bool good = check.verdict == Verdict::good, bad = check.verdict == Verdict::bad;
-    table.row({good  ? "✓"
-               : bad ? "✗"
-                     : "!",
-               check.subject, check.figure, check.meaning},
-              good  ? Tone::plain
-              : bad ? Tone::bad
-                    : Tone::caution);
+    const auto [mark, tone] = check.verdict == Verdict::good  ? std::pair("✓", Tone::plain)
+                              : check.verdict == Verdict::bad ? std::pair("✗", Tone::bad)
+                                                              : std::pair("!", Tone::caution);
+    table.row({mark, check.subject, check.figure, check.meaning}, tone);
   }
   report.table(table);
 }

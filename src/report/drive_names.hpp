@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <string>
+#include <vector>
 
 #include "deltadyn/runtime/robot.hpp"
 
@@ -12,16 +16,9 @@ inline std::string drive_name(int drive) {
 }
 
 /// The text with spaces that do not break.
-inline std::string unbroken(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == ' ') {
-      out += "\u00A0";
-    } else {
-      out += c;
-    }
-  }
-  return out;
+inline std::string unbroken(std::string text) {
+  for (auto at = text.find(' '); at != std::string::npos; at = text.find(' ', at)) text.replace(at, 1, "\u00A0");
+  return text;
 }
 
 /// A body or joint in plain words, e.g. "lower part of the telescope bar", "drive 2".
@@ -58,16 +55,18 @@ inline const char* inertia_unit_of(const Robot& robot) {
 }
 
 /// "a, b and c".
-template <class Strings>
-std::string join_words(const Strings& words) {
-  std::string text;
-  std::size_t k = 0;
-  for (const std::string& word : words) {
-    if (k > 0) text += k + 1 == words.size() ? " and " : ", ";
-    text += word;
-    ++k;
-  }
-  return text;
+inline std::string join_words(const std::vector<std::string>& words) {
+  if (words.size() < 2) return fmt::format("{}", fmt::join(words, ""));
+  return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+/// "1 log", "2 logs".
+inline std::string counted(std::ptrdiff_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+/// "delta4, 4 drives".
+inline std::string robot_in_words(const RobotDescription& robot) {
+  return fmt::format("{}, {}", robot.type, counted(robot.drives(), "drive"));
 }
 
 }  // namespace deltadyn

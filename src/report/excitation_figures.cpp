@@ -9,8 +9,6 @@
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/trajectory/task_columns.hpp"
 
-#include "drive_names.hpp"
-
 namespace deltadyn {
 namespace {
 
@@ -86,16 +84,21 @@ struct View {
 };
 
 PlotRange range_of(const VectorXd& a, const VectorXd& b, double margin) {
-  PlotRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  PlotRange range{HUGE_VAL, -HUGE_VAL};
   for (const VectorXd* v : {&a, &b}) {
-    for (Index i = 0; i < v->size(); ++i) {
-      if (!std::isfinite((*v)(i))) continue;
-      range.low = std::min(range.low, (*v)(i));
-      range.high = std::max(range.high, (*v)(i));
-    }
+    const auto known = v->array().isFinite();
+    range.low = std::min(range.low, known.select(v->array(), HUGE_VAL).minCoeff());
+    range.high = std::max(range.high, known.select(v->array(), -HUGE_VAL).maxCoeff());
   }
   const double extra = margin * std::max(1e-9, range.high - range.low);
   return {range.low - extra, range.high + extra};
+}
+
+const PlanPart& part_at(const MotionPlan& plan, double t_s) {
+  const PlanPart* part = &plan.parts.front();
+  for (const PlanPart& other : plan.parts)
+    if (t_s >= other.start_s - 1e-9) part = &other;
+  return *part;
 }
 
 /// Rows of the samples while a segment runs, or the parts between.
@@ -104,12 +107,10 @@ MatrixX3d rows_of(const ExcitationReportInput& input, int segment, bool periodic
   MatrixX3d path = input.samples.z.leftCols<3>();
   for (Index i = 0; i < path.rows(); ++i) {
     const double t = input.samples.t_s(i);
-    const PlanPart* part = &input.plan.parts.front();
-    for (const PlanPart& other : input.plan.parts)
-      if (t >= other.start_s - 1e-9) part = &other;
-    const bool one_period = t - part->start_s <= input.segments[static_cast<std::size_t>(part->segment)].series.period_s() + 1e-3;
+    const PlanPart& part = part_at(input.plan, t);
+    const bool one_period = t - part.start_s <= input.segments[static_cast<std::size_t>(part.segment)].series.period_s() + 1e-3;
     const bool shown =
-        periodic ? part->kind == PartKind::periodic && part->segment == segment && one_period : part->kind != PartKind::periodic;
+        periodic ? part.kind == PartKind::periodic && part.segment == segment && one_period : part.kind != PartKind::periodic;
     if (!shown) path.row(i).setConstant(nan);
   }
   return path;
@@ -130,20 +131,10 @@ void add_path_figures(HtmlReport& report, const ExcitationReportInput& input) {
   };
   constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::vermillion, PlotColor::green, PlotColor::purple};
   for (const View& view : views) {
-    PlotSpec spec;
-    spec.title = view.title;
-    spec.x_label = view.x_label;
-    spec.y_label = view.y_label;
-    spec.width = kPathWidth;
-    spec.height = kPathHeight;
+    PlotSpec spec{
+        .title = view.title, .x_label = view.x_label, .y_label = view.y_label, .width = kPathWidth, .height = kPathHeight};
     const auto add = [&](const std::string& label, const MatrixX3d& points, PlotColor color, bool dashed) {
-      Series series;
-      series.label = label;
-      series.x = points * view.right;
-      series.y = points * view.up;
-      series.color = color;
-      series.dashed = dashed;
-      spec.series.push_back(series);
+      spec.series.push_back({label, points * view.right, points * view.up, SeriesStyle::line, {}, color, dashed});
     };
     add("workspace", border, PlotColor::grey, false);
     for (std::size_t k = 0; k < input.segments.size(); ++k) {
@@ -178,22 +169,16 @@ void add_limit_figures(HtmlReport& report, const ExcitationReportInput& input) {
   };
   std::vector<PlotSpec> specs;
   for (const Panel& panel : panels) {
-    PlotSpec spec;
-    spec.title = panel.title;
-    spec.x_label = "time [s]";
-    spec.y_label = "used share [%]";
-    spec.horizontal_markers.push_back({100, "limit"});
-    spec.y_range = PlotRange{0, 110};
+    PlotSpec spec{.title = panel.title,
+                  .x_label = "time [s]",
+                  .y_label = "used share [%]",
+                  .horizontal_markers = {{100, "limit"}},
+                  .y_range = PlotRange{0, 110}};
     for (const LimitedQuantity quantity : panel.quantities) {
-      Series series;
-      series.label = word_of(quantity);
-      series.x = input.samples.t_s;
-      series.y = VectorXd::Constant(count, -1);
+      Series series{.label = word_of(quantity), .x = input.samples.t_s, .y = VectorXd::Constant(count, -1)};
       for (Index i = 0; i < count; ++i) {
-        const PlanPart* part = &input.plan.parts.front();
-        for (const PlanPart& other : input.plan.parts)
-          if (input.samples.t_s(i) >= other.start_s - 1e-9) part = &other;
-        const MotionLimits& limits = input.segments[static_cast<std::size_t>(part->segment)].limits;
+        const PlanPart& part = part_at(input.plan, input.samples.t_s(i));
+        const MotionLimits& limits = input.segments[static_cast<std::size_t>(part.segment)].limits;
         LimitedState state;
         state.x.resize(3 * n);
         state.drives.resize(3 * n);

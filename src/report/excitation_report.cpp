@@ -1,7 +1,6 @@
 #include "deltadyn/report/excitation_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/trajectory/task_columns.hpp"
 
+#include "assessment_parts.hpp"
 #include "drive_names.hpp"
 #include "excitation_figures.hpp"
 
@@ -67,16 +67,10 @@ Check check_reversals(const ExcitationReportInput& input) {
   if (share < input.least_away - kRounding) {
     check.verdict = Verdict::caution;
     check.meaning += fmt::format(
-        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a "
-        "wider workspace.",
+        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a wider workspace.",
         format_percent(input.least_away, 2));
   }
   return check;
-}
-
-void add_verdict(HtmlReport& report, const ExcitationReportInput& input) {
-  const Assessment assessment = assess_excitation(input);
-  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
 }
 
 void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
@@ -110,15 +104,14 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
     noise += (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
   }
-  report.paragraph(
-      fmt::format("Predicted standard deviations for one run of this trajectory with white torque noise of {} in the "
-                  "drives. Expected values are those of {}; the last column but one is the standard deviation as a share of the "
-                  "size that the combination may have.",
-                  noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
+  report.paragraph(fmt::format(
+      "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. Expected values "
+      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination may have.",
+      noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  std::ranges::stable_sort(order,
+                           [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
   const auto fill = [&](Table& table, bool only_hidden) {
     for (const Eigen::Index k : order) {
       const double relative = relative_std(input, k);
@@ -144,8 +137,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     report.paragraph("Nothing: every combination will be known to half of its size or better.");
   } else {
     report.table(hidden,
-                 "Their effect on the torque is small in every motion inside these limits, or of this length; more "
-                 "periods lower the standard deviation with the root of their number.");
+                 "Their effect on the torque is small in every motion inside these limits, or of this length; more periods lower "
+                 "the standard deviation with the root of their number.");
   }
   report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
     Table all(columns);
@@ -158,11 +151,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     if (input.base.B.col(k).cwiseAbs().maxCoeff() <= 0)
       none.push_back(input.robot.parameter_names()[static_cast<std::size_t>(k)]);
   }
-  if (!none.empty()) {
-    std::string text = "No motion of the drives shows these parameters: ";
-    for (std::size_t k = 0; k < none.size(); ++k) text += (k > 0 ? ", " : "") + none[k];
-    report.note(text + ".");
-  }
+  if (!none.empty()) report.note(fmt::format("No motion of the drives shows these parameters: {}.", fmt::join(none, ", ")));
 }
 
 void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
@@ -180,11 +169,11 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
   facts.emplace_back(
       "Search", fmt::format("{} of {} starts and polishing runs, {} evaluations with gradient, {}", e.finished_starts, e.starts,
                             format_count(e.evaluations), format_duration(e.total_time_s)));
-  facts.emplace_back("Upper bound",
-                     fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a "
-                                 "share, certified to {}",
-                                 format_count(input.bound.shares.size()), input.bound.support,
-                                 format_percent(input.bound.gap(input.base.count()), 2)));
+  facts.emplace_back(
+      "Upper bound",
+      fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a share, certified to {}",
+                  format_count(input.bound.shares.size()), input.bound.support,
+                  format_percent(input.bound.gap(input.base.count()), 2)));
   report.facts(facts);
 }
 
@@ -195,19 +184,13 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
   const VisibilityCounts c = counts(input);
   Assessment out;
   out.checks = {check_efficiency(input), check_reversals(input)};
-  for (const Check& check : out.checks) out.verdict = std::max(out.verdict, check.verdict);
-  const char* words = out.verdict == Verdict::good
-                          ? "A good excitation"
-                          : (out.verdict == Verdict::caution ? "A usable excitation" : "A weak excitation");
-  out.headline = words;
-  for (const Check& check : out.checks) {
-    if (check.verdict != out.verdict || check.verdict == Verdict::good) continue;
-    out.headline += fmt::format(": {}", check.figure);
-    break;
-  }
+  const Check& worst = worst_of(out.checks);
+  out.verdict = worst.verdict;
+  out.headline = out.verdict == Verdict::good      ? "A good excitation"
+                 : out.verdict == Verdict::caution ? "A usable excitation: " + worst.figure
+                                                   : "A weak excitation: " + worst.figure;
   out.lines.push_back(
-      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} "
-                  "to spare.",
+      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} to spare.",
                   input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
   for (const Check& check : out.checks)
     out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
@@ -226,9 +209,9 @@ std::string excitation_report(const ExcitationReportInput& input, const ReportCo
                 "make them with the same robot", ExitCode::usage);
   const RobotDescription& description = input.robot.description();
   HtmlReport report("Excitation of " + description.name,
-                    fmt::format("{}, {} {}, {:.4g} s", description.type, description.drives(),
-                                description.drives() == 1 ? "drive" : "drives", input.plan.duration_s));
-  add_verdict(report, input);
+                    fmt::format("{}, {:.4g} s", robot_in_words(description), input.plan.duration_s));
+  const Assessment assessment = assess_excitation(input);
+  report.verdict(assessment.verdict, assessment.headline, assessment.lines);
   add_key_figures(report, input);
   report.heading("Path");
   add_path_figures(report, input);

@@ -136,39 +136,27 @@ std::string format_duration(double seconds) {
 
 std::string pretty_unit(std::string_view unit) {
   // The names of columns cannot hold a stroke: there the parts behind the first are divisors, except after kg.
-  static constexpr std::array<std::pair<std::string_view, const char*>, 14> kColumnUnits{{{"Nm", "N m"},
-                                                                                          {"Nms", "N m s"},
-                                                                                          {"rad_s", "rad/s"},
-                                                                                          {"rad_s2", "rad/s²"},
-                                                                                          {"m_s", "m/s"},
-                                                                                          {"m_s2", "m/s²"},
-                                                                                          {"deg_s", "deg/s"},
-                                                                                          {"kg_m", "kg m"},
-                                                                                          {"kg_m2", "kg m²"},
-                                                                                          {"kgm2", "kg m²"},
-                                                                                          {"Nm_s_rad", "N m s/rad"},
-                                                                                          {"N_s_m", "N s/m"},
-                                                                                          {"Nms/rad", "N m s/rad"},
-                                                                                          {"percent", "%"}}};
+  static constexpr std::pair<std::string_view, const char*> kColumnUnits[] = {{"Nm", "N m"},
+                                                                              {"Nms", "N m s"},
+                                                                              {"rad_s", "rad/s"},
+                                                                              {"rad_s2", "rad/s²"},
+                                                                              {"m_s", "m/s"},
+                                                                              {"m_s2", "m/s²"},
+                                                                              {"deg_s", "deg/s"},
+                                                                              {"kg_m", "kg m"},
+                                                                              {"kg_m2", "kg m²"},
+                                                                              {"kgm2", "kg m²"},
+                                                                              {"Nm_s_rad", "N m s/rad"},
+                                                                              {"N_s_m", "N s/m"},
+                                                                              {"Nms/rad", "N m s/rad"},
+                                                                              {"percent", "%"}};
   for (const auto& [plain_name, text] : kColumnUnits)
     if (unit == plain_name) return text;
 
-  std::string result;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit[i] == '*')
-      result += ' ';
-    else if (unit[i] != '^')
-      result += unit[i];
-    else if (i + 1 < unit.size() && unit[i + 1] == '2')
-      result += "²", ++i;
-    else if (i + 1 < unit.size() && unit[i + 1] == '3')
-      result += "³", ++i;
-    else if (unit.substr(i + 1, 2) == "-1")
-      result += "⁻¹", i += 2;
-    else if (unit.substr(i + 1, 2) == "-2")
-      result += "⁻²", i += 2;
-    else
-      result += '^';
+  std::string result(unit);
+  for (const auto& [from, to] :
+       {std::pair<std::string_view, std::string_view>{"*", " "}, {"^2", "²"}, {"^3", "³"}, {"^-1", "⁻¹"}, {"^-2", "⁻²"}}) {
+    for (auto at = result.find(from); at != std::string::npos; at = result.find(from)) result.replace(at, from.size(), to);
   }
   return result;
 }

@@ -20,7 +20,7 @@ constexpr double kLegendSample = 46.0;  // its piece of line and the spaces arou
 constexpr double kLargest = 1e300;      // gnuplot takes larger values for undefined
 
 constexpr std::array<const char*, 8> kHexOfColor{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                             "#E69F00", "#56B4E9", "#222222", "#7F7F7F"};
+                                                 "#E69F00", "#56B4E9", "#222222", "#7F7F7F"};
 // The order in which curves without a colour of their own get one.
 constexpr std::array<PlotColor, 8> kOrder{PlotColor::blue,  PlotColor::vermillion, PlotColor::green, PlotColor::purple,
                                           PlotColor::black, PlotColor::orange,     PlotColor::sky,   PlotColor::grey};
@@ -51,7 +51,7 @@ std::string quote_format(std::string_view text) {
 }
 
 std::size_t letters(std::string_view utf8) {
-  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::ranges::count_if(utf8, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string where(const PlotSpec& spec) {

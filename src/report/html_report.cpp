@@ -1,8 +1,10 @@
 #include "deltadyn/report/html_report.hpp"
 
+#include <cctype>
 #include <fmt/format.h>
 #include <utility>
 
+#include "deltadyn/io/text_encoding.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "html_style.hpp"
@@ -11,51 +13,28 @@ namespace deltadyn {
 namespace {
 
 const char* name_of(Tone tone) {
-  switch (tone) {
-    case Tone::plain: return "plain";
-    case Tone::good: return "good";
-    case Tone::caution: return "caution";
-    case Tone::bad: return "bad";
-    case Tone::muted: return "muted";
-    case Tone::strong: return "strong";
-  }
-  return "plain";
+  static constexpr const char* kNames[] = {"plain", "good", "caution", "bad", "muted", "strong"};
+  return kNames[static_cast<std::size_t>(tone)];
 }
 
 const char* name_of(Align align) {
-  switch (align) {
-    case Align::left: return "left";
-    case Align::center: return "center";
-    case Align::right: return "right";
-  }
-  return "left";
+  static constexpr const char* kNames[] = {"left", "center", "right"};
+  return kNames[static_cast<std::size_t>(align)];
 }
 
 /// Class of the box and its mark: a sign besides the colour, for readers and printers without colours.
 std::pair<const char*, const char*> look_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::good: return {"good", "✓"};
-    case Verdict::caution: return {"caution", "!"};
-    case Verdict::bad: return {"bad", "✗"};
-  }
-  return {"bad", "✗"};
+  static constexpr std::pair<const char*, const char*> kLooks[] = {{"good", "✓"}, {"caution", "!"}, {"bad", "✗"}};
+  return kLooks[static_cast<std::size_t>(verdict)];
 }
 
 /// Length of the UTF-8 sequence at the start of \p text that XML allows, 0 if there is none.
 std::size_t valid_sequence(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return first >= 0x20 || first == '\n' || first == '\t' ? (first == 0x7f ? 0 : 1) : 0;
-  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (length == 0) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0u) != 0x80u) return 0;
-  const unsigned second = byte(1);
-  // Overlong forms, surrogates, and what lies beyond U+10FFFF or is no character.
-  if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
-      (first == 0xF4 && second > 0x8F) || (first == 0xEF && second == 0xBF && byte(2) >= 0xBE))
-    return 0;
-  return length;
+  const std::size_t length = utf8_length(text);
+  const bool control =
+      length == 1 && std::iscntrl(static_cast<unsigned char>(text[0])) != 0 && text[0] != '\n' && text[0] != '\t';
+  const bool no_character = text.starts_with("\xEF\xBF\xBE") || text.starts_with("\xEF\xBF\xBF");
+  return control || no_character ? 0 : length;
 }
 
 }  // namespace
@@ -114,8 +93,7 @@ HtmlReport& HtmlReport::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "<div class=\"figures\">\n";
   for (const KeyFigure& figure : figures) {
     body_ += fmt::format(
-        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div>"
-        "<div class=\"small\">{}</div></div>\n",
+        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div><div class=\"small\">{}</div></div>\n",
         name_of(figure.tone), escape_html(figure.label), escape_html(figure.value), escape_html(figure.note));
   }
   body_ += "</div>\n";

@@ -62,7 +62,6 @@ dd { margin: 0; overflow-wrap: anywhere; }
 figure { margin: 12px 0 18px; }
 figure svg { display: block; width: 100%; height: auto; }
 figcaption { margin-top: 2px; max-width: 90ch; }
-pre { background: var(--pale); border: 1px solid var(--line); border-radius: 4px; padding: 8px 12px; font-size: 12.5px; overflow-x: auto; white-space: pre-wrap; }
 details { border: 1px solid var(--line); border-radius: 4px; padding: 6px 14px; margin: 10px 0 14px; }
 summary { cursor: pointer; font-weight: 600; }
 details[open] summary { margin-bottom: 6px; }

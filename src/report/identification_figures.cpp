@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/report/format.hpp"
@@ -11,32 +10,30 @@ namespace deltadyn {
 
 using Eigen::Index;
 
+static constexpr PlotColor kCurveColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
+
 void add_cutoff_figure(HtmlReport& report, const Identification& identification) {
   if (!identification.cutoff) return;
-  constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
-  PlotSpec spec;
-  spec.x_label = "frequency [Hz]";
-  spec.y_label = "position / encoder noise, power";
-  spec.log_x = spec.log_y = true;
-  spec.height = 260;
+  PlotSpec spec{.x_label = "frequency [Hz]",
+                .y_label = "position / encoder noise, power",
+                .log_x = true,
+                .log_y = true,
+                .horizontal_markers = {{1.0, "noise"}},
+                .height = 260};
   // Of each drive the log in which its motion reaches highest.
   const auto& logs = identification.cutoff->bands;
   for (std::size_t j = 0; j < logs.front().size(); ++j) {
-    const auto fastest =
-        std::max_element(logs.begin(), logs.end(), [j](const auto& a, const auto& b) { return a[j].top_hz < b[j].top_hz; });
+    const auto fastest = std::ranges::max_element(logs, [j](const auto& a, const auto& b) { return a[j].top_hz < b[j].top_hz; });
     const MotionBand& band = (*fastest)[j];
     if (!(band.noise_density > 0)) continue;
-    spec.series.push_back({drive_name(static_cast<int>(j)),
-                           band.frequency_hz,
-                           band.density / band.noise_density,
-                           SeriesStyle::line,
-                           {},
-                           kColors[j % std::size(kColors)]});
+    spec.series.push_back({.label = drive_name(static_cast<int>(j)),
+                           .x = band.frequency_hz,
+                           .y = band.density / band.noise_density,
+                           .color = kCurveColors[j % std::size(kCurveColors)]});
   }
   if (spec.series.empty()) return;
   spec.vertical_markers.push_back({identification.processing.cutoff_hz,
                                    fmt::format("chosen: {}", format_number(identification.processing.cutoff_hz, "Hz", 3))});
-  spec.horizontal_markers.push_back({1.0, "noise"});
   report.plot(
       spec,
       fmt::format(
@@ -64,26 +61,20 @@ void add_regularization_figure(HtmlReport& report, const ConsistentFitSummary& f
   constexpr double kSmallestRise = 1e-6;
   rise = rise.cwiseMax(kSmallestRise);
   const auto panel = [&](const std::string& y_label, const Eigen::VectorXd& y, PlotColor color) {
-    PlotSpec spec;
-    spec.x_label = "weight of the prior λ";
-    spec.y_label = y_label;
-    spec.log_x = true;
-    spec.log_y = y.minCoeff() > 0;
-    spec.height = 180;
-    spec.series.push_back({"", lambda, y, SeriesStyle::line, {}, color});
-    spec.series.push_back({"", lambda, y, SeriesStyle::points, {}, color});
-    return spec;
+    return PlotSpec{.x_label = "weight of the prior λ",
+                    .y_label = y_label,
+                    .series = {{"", lambda, y, SeriesStyle::line, {}, color}, {"", lambda, y, SeriesStyle::points, {}, color}},
+                    .log_x = true,
+                    .log_y = y.minCoeff() > 0,
+                    .height = 180};
   };
   std::vector<PlotSpec> panels = {panel("rise of χ²", rise, PlotColor::blue),
                                   panel("distance from prior", distance, PlotColor::orange)};
   panels[0].vertical_markers.push_back({fit.lambda, fmt::format("chosen: λ = {}", format_number(fit.lambda, 3))});
   panels[1].vertical_markers.push_back({fit.lambda, ""});
-  report.plot(
-      panels,
-      fmt::format(
-          "Choice of the regularisation: the largest weight of the prior that the data do not feel. At the chosen one χ² is {} "
-          "above its minimum on the physically consistent set.",
-          format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
+  report.plot(panels, fmt::format("Choice of the regularisation: the largest weight of the prior that the data do not feel. At "
+                                  "the chosen one χ² is {} above its minimum on the physically consistent set.",
+                                  format_number(std::max(0.0, fit.data_cost - fit.data_cost_min), 2)));
 }
 
 void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSurvey& survey) {
@@ -95,27 +86,23 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
   }
   report.paragraph(
       fmt::format("{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. Smallest "
-                  "eigenvalue at x {:.3f}, y {:.3f}, "
-                  "z {:.3f} m.",
+                  "eigenvalue at x {:.3f}, y {:.3f}, z {:.3f} m.",
                   survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
                   format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
                   format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
-  constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::green, PlotColor::orange, PlotColor::purple};
   constexpr Index kPointsShown = 700;  // of each eigenvalue; a point takes 80 bytes
   const Index points = std::min(survey.task.rows(), kPointsShown);
-  PlotSpec spec;
-  spec.x_label = "height of the plate z [m]";
-  spec.y_label = fmt::format("eigenvalues of M [{}]", unit);
-  spec.log_y = survey.eigenvalues.topRows(points).minCoeff() > 0;
-  spec.height = 300;
+  PlotSpec spec{.x_label = "height of the plate z [m]",
+                .y_label = fmt::format("eigenvalues of M [{}]", unit),
+                .log_y = survey.eigenvalues.topRows(points).minCoeff() > 0,
+                .height = 300};
   for (Index i = 0; i < survey.eigenvalues.cols(); ++i) {
     const char* label = i == 0 ? "smallest" : i + 1 == survey.eigenvalues.cols() ? "largest" : "";
-    spec.series.push_back({label,
-                           survey.task.col(2).head(points),
-                           survey.eigenvalues.col(i).head(points),
-                           SeriesStyle::points,
-                           {},
-                           kColors[static_cast<std::size_t>(i) % std::size(kColors)]});
+    spec.series.push_back({.label = label,
+                           .x = survey.task.col(2).head(points),
+                           .y = survey.eigenvalues.col(i).head(points),
+                           .style = SeriesStyle::points,
+                           .color = kCurveColors[static_cast<std::size_t>(i) % std::size(kCurveColors)]});
   }
   if (!spec.log_y) spec.horizontal_markers.push_back({0.0, ""});
   report.plot(spec, "Eigenvalues of the mass matrix over the workspace. Where one falls to zero, the model has no inverse.");

@@ -12,7 +12,6 @@
 #include "drive_figures.hpp"
 #include "drive_names.hpp"
 #include "identification_sections.hpp"
-#include "tone_of.hpp"
 
 namespace deltadyn {
 namespace {
@@ -89,10 +88,8 @@ std::string identification_report(const Robot& robot, const Identification& iden
   Assessment assessment = assess_identification(robot, identification, survey, evidence);
   weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
-  HtmlReport report(
-      "Identification of " + description.name,
-      fmt::format("{}, {} {}, {} {}", description.type, description.drives(), description.drives() == 1 ? "drive" : "drives",
-                  training.logs.size(), training.logs.size() == 1 ? "log" : "logs"));
+  HtmlReport report("Identification of " + description.name,
+                    fmt::format("{}, {}", robot_in_words(description), counted(std::ssize(training.logs), "log")));
   report.verdict(assessment.verdict, assessment.headline, assessment.told());
   add_log_check(report, context.findings);
   report.key_figures(key_figures(robot, identification, survey));

@@ -16,23 +16,13 @@ using Eigen::Index;
 constexpr double kInterval95 = 1.96;
 
 const char* words_for(DecidedBy decided) {
-  switch (decided) {
-    case DecidedBy::data: return "data";
-    case DecidedBy::both: return "both";
-    case DecidedBy::sums: return "only sums";
-    case DecidedBy::prior: return "prior";
-    case DecidedBy::neither: return "neither";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"data", "both", "only sums", "prior", "neither"};
+  return kWords[static_cast<std::size_t>(decided)];
 }
 
 const char* words_for(Visibility visibility) {
-  switch (visibility) {
-    case Visibility::alone: return "on its own";
-    case Visibility::combined: return "in sums";
-    case Visibility::hidden: return "not at all";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"on its own", "in sums", "not at all"};
+  return kWords[static_cast<std::size_t>(visibility)];
 }
 
 /// "a, b and c", broken only between the items.
@@ -94,30 +84,25 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
               : visibility[i] == Visibility::hidden ? Tone::muted
                                                     : Tone::caution);
   }
-  report.table(table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took "
-                                  "away, where the prior counts "
-                                  "with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly tell: they lean "
-                                  "on the prior and on the rest of "
-                                  "their body; grey ones do not act on the drives at all.",
-                                  100 * kPriorDecides));
+  report.table(
+      table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
+                         "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
+                         "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
+                         100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
-      "parameters below "
-      "say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole interval. It "
-      "matters if you "
-      "use the body on its own.");
+      "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole "
+      "interval. It matters if you use the body on its own.");
   if (any_neither) {
     report.note(
         "(?): neither the data nor the prior, at the weight that was chosen, hold the value; it moved to keep its body "
-        "consistent. Take it "
-        "as unknown. It acts too little on the torque to matter there.");
+        "consistent. Take it as unknown. It acts too little on the torque to matter there.");
   }
   if (!others.empty()) {
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
           "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do "
-          "not feel "
-          "follow the prior.");
+          "not feel follow the prior.");
       inside.table(others);
     });
   }
@@ -162,10 +147,10 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
                                                                                                       : Tone::plain);
     }
   }
-  report.table(table,
-               "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on "
-               "their own: one value "
-               "measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
+  report.table(
+      table,
+      "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on their own: "
+      "one value measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
 }
 
 void add_base_parameters(HtmlReport& report, const Identification& identification) {
@@ -174,7 +159,7 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   const Eigen::VectorXd std = estimate.std();
   const Index count = base.count();
   Eigen::VectorXd index(count), deviation(count);
-  Table table({{"", Align::right},
+  Table table({{""},
                {"base parameter", Align::left},
                {"unit", Align::left},
                {"least squares ± std"},
@@ -197,18 +182,15 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   }
   report.paragraph(fmt::format(
       "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above "
-      "{:.0f} %, marked); "
-      "condition number {}.",
+      "{:.0f} %, marked); condition number {}.",
       count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
-  PlotSpec spec;
-  spec.x_label = "base parameter (number in the table)";
-  spec.y_label = "deviation [std]";
-  spec.height = 220;
-  spec.series.push_back({"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue});
-  spec.series.push_back({"", index, deviation, SeriesStyle::points, {}, PlotColor::blue});
-  spec.horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}};
-  spec.x_range = PlotRange{0.0, static_cast<double>(count + 1)};
-  report.plot(spec,
+  report.plot({.x_label = "base parameter (number in the table)",
+               .y_label = "deviation [std]",
+               .series = {{"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue},
+                          {"", index, deviation, SeriesStyle::points, {}, PlotColor::blue}},
+               .horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}},
+               .x_range = PlotRange{0.0, static_cast<double>(count + 1)},
+               .height = 220},
               fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
                           far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
                                    : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.",

@@ -8,6 +8,7 @@
 #include "deltadyn/report/log_table.hpp"
 
 #include "drive_figures.hpp"
+#include "drive_names.hpp"
 
 namespace deltadyn {
 namespace {
@@ -18,13 +19,9 @@ struct LevelWords {
 };
 
 LevelWords words_of(FindingLevel level) {
-  switch (level) {
-    case FindingLevel::fine: return {"fine", Tone::plain};
-    case FindingLevel::mended: return {"mended", Tone::good};
-    case FindingLevel::warning: return {"warning", Tone::caution};
-    case FindingLevel::fault: return {"fault", Tone::bad};
-  }
-  return {"", Tone::plain};
+  static constexpr LevelWords kWords[] = {
+      {"fine", Tone::plain}, {"mended", Tone::good}, {"warning", Tone::caution}, {"fault", Tone::bad}};
+  return kWords[static_cast<std::size_t>(level)];
 }
 
 std::string figure_of(const LogFinding& f) {
@@ -36,33 +33,7 @@ std::string figure_of(const LogFinding& f) {
   return std::isfinite(f.std) ? format_with_uncertainty(factor * f.value, factor * f.std, unit) : format_number(f.value, unit, 4);
 }
 
-}  // namespace
-
-Verdict verdict_of(const std::vector<LogFinding>& findings) {
-  Verdict verdict = Verdict::good;
-  for (const LogFinding& f : findings) {
-    if (f.level == FindingLevel::fault) return Verdict::bad;
-    if (f.level == FindingLevel::warning) verdict = Verdict::caution;
-  }
-  return verdict;
-}
-
-std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
-  const auto count = [&](FindingLevel level) {
-    return std::count_if(findings.begin(), findings.end(), [level](const LogFinding& f) { return f.level == level; });
-  };
-  const auto many = [](std::ptrdiff_t number, const char* one) {
-    return number == 0 ? std::string() : fmt::format(", {} {}{}", number, one, number == 1 ? "" : "s");
-  };
-  const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning), mended = count(FindingLevel::mended);
-  const std::string rest =
-      many(warnings, "warning") + (mended == 0 ? "" : fmt::format(", {} finding{} mended", mended, mended == 1 ? "" : "s"));
-  if (faults > 0)
-    return fmt::format("a model from these logs is not to be trusted: {} fault{}{}", faults, faults == 1 ? "" : "s", rest);
-  if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
-  return "no fault was found" + rest;
-}
-
+/// The findings that are more than a measured property in order; nothing if there are none.
 void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
   Table table(
       {{"", Align::left}, {"finding", Align::left}, {"figure"}, {"drive"}, {"log", Align::left}, {"what to do", Align::left}});
@@ -78,8 +49,29 @@ void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findin
   if (!table.empty()) report.table(table, "What the check of the logs found; ± is one standard deviation.");
 }
 
+}  // namespace
+
+Verdict verdict_of(const std::vector<LogFinding>& findings) {
+  Verdict verdict = Verdict::good;
+  for (const LogFinding& f : findings) {
+    if (f.level == FindingLevel::fault) return Verdict::bad;
+    if (f.level == FindingLevel::warning) verdict = Verdict::caution;
+  }
+  return verdict;
+}
+
+std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
+  const auto count = [&](FindingLevel level) { return std::ranges::count(findings, level, &LogFinding::level); };
+  const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning), mended = count(FindingLevel::mended);
+  const std::string rest = (warnings == 0 ? "" : ", " + counted(warnings, "warning")) +
+                           (mended == 0 ? "" : ", " + counted(mended, "finding") + " mended");
+  if (faults > 0) return fmt::format("a model from these logs is not to be trusted: {}{}", counted(faults, "fault"), rest);
+  if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
+  return "no fault was found" + rest;
+}
+
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings) {
-  if (std::all_of(findings.begin(), findings.end(), [](const LogFinding& f) { return f.level == FindingLevel::fine; })) return;
+  if (std::ranges::all_of(findings, [](const LogFinding& f) { return f.level == FindingLevel::fine; })) return;
   report.heading("Check of the logs");
   add_finding_table(report, findings, false);
 }
@@ -105,8 +97,7 @@ void weigh_findings(const std::vector<LogFinding>& findings, Assessment& assessm
 std::string log_report(const Robot& robot, const std::vector<Log>& logs, const ReportContext& context) {
   const RobotDescription& description = robot.description();
   HtmlReport report("Check of logs of " + description.name,
-                    fmt::format("{}, {} {}, {} {}", description.type, description.drives(),
-                                description.drives() == 1 ? "drive" : "drives", logs.size(), logs.size() == 1 ? "log" : "logs"));
+                    fmt::format("{}, {}", robot_in_words(description), counted(std::ssize(logs), "log")));
   const Verdict verdict = verdict_of(context.findings);
   std::vector<std::string> lines;
   for (const LogFinding& f : context.findings) {

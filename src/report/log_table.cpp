@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
 
 #include "deltadyn/report/format.hpp"
 
 #include "drive_figures.hpp"
-#include "drive_names.hpp"
 
 namespace deltadyn {
 namespace {
@@ -18,15 +16,13 @@ constexpr double kEven = 1e-6;  // of the time between rows: rounding of the sta
 constexpr std::array<const char*, 8> kHead = {"drive",       "travel",       "position step",  "position noise",
                                               "torque step", "torque noise", "position fresh", "moving"};
 
-double& place_of(const std::string& key, ChannelFigures& drive, double& other) {
-  if (key == "travel") return drive.travel;
-  if (key == "step") return drive.step;
-  if (key == "noise") return drive.noise;
-  if (key == "torque_step") return drive.torque_step;
-  if (key == "torque_noise") return drive.torque_noise;
-  if (key == "stale") return drive.fresh_every;
-  return other;
-}
+/// Where the figure of a finding goes.
+constexpr std::pair<const char*, double ChannelFigures::*> kFigures[] = {{"travel", &ChannelFigures::travel},
+                                                                         {"step", &ChannelFigures::step},
+                                                                         {"noise", &ChannelFigures::noise},
+                                                                         {"torque_step", &ChannelFigures::torque_step},
+                                                                         {"torque_noise", &ChannelFigures::torque_noise},
+                                                                         {"stale", &ChannelFigures::fresh_every}};
 
 void take(const LogFinding& f, LogFigures& log) {
   if (f.key == "rate_hz") log.rate_hz = f.value;
@@ -34,9 +30,10 @@ void take(const LogFinding& f, LogFigures& log) {
   if (f.key == "lost_rows") log.lost_rows += f.value;
   if (f.key == "held_rows") log.held_rows += f.value;
   if (f.drive < 0 || static_cast<std::size_t>(f.drive) >= log.drives.size()) return;
-  double other = 0;
-  double& place = place_of(f.key, log.drives[static_cast<std::size_t>(f.drive)], other);
-  place = std::isnan(place) ? f.value : std::max(place, f.value);
+  for (const auto& [key, figure] : kFigures) {
+    double& place = log.drives[static_cast<std::size_t>(f.drive)].*figure;
+    if (f.key == key) place = std::isnan(place) ? f.value : std::max(place, f.value);
+  }
 }
 
 /// Share of the samples of all parts in which a drive moves.
@@ -50,13 +47,9 @@ void take_moving(const Log& part, LogFigures& log) {
 }
 
 /// A number with its unit in so many digits, as a page or a terminal shows it.
-using Writer = std::function<std::string(double, const std::string&, int)>;
+using Writer = std::string (*)(double, std::string_view, int);
 
-std::string for_page(double value, const std::string& unit, int digits) {
-  return format_number(value, unit, digits);
-}
-
-std::string for_terminal(double value, const std::string& unit, int digits) {
+std::string for_terminal(double value, std::string_view unit, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}g} {}", value, digits, unit);
 }
 
@@ -65,7 +58,7 @@ std::string rows_in_words(double every) {
   return every > 1 ? fmt::format("every {:.3g} rows", every) : "every row";
 }
 
-std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, const Writer& write) {
+std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, Writer write) {
   const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
   const std::string length = turns ? "rad" : "m", effort = turns ? "N m" : "N";
   const auto step = [&](double value, const std::string& unit) { return value == 0 ? "not visible" : write(value, unit, 2); };
@@ -135,7 +128,7 @@ void add_channel_table(HtmlReport& report, const RobotDescription& robot, const 
     for (const char* name : kHead) head.push_back({name});
     Table table(std::move(head));
     for (std::size_t j = 0; j < log.drives.size(); ++j) {
-      const auto cells = cells_of(robot, static_cast<int>(j), log.drives[j], for_page);
+      const auto cells = cells_of(robot, static_cast<int>(j), log.drives[j], format_number);
       table.row({cells.begin(), cells.end()});
     }
     if (!table.empty()) report.table(table, fmt::format("{}: {}.", short_name(log.file), timing_in_words(log)));

@@ -45,21 +45,11 @@ std::string draw(const std::vector<PlotSpec>& panels, const std::string& termina
 }  // namespace
 
 std::string render_svg(const std::vector<PlotSpec>& panels, std::string_view id_prefix) {
-  const std::string svg = draw(panels, "svg", 12.5, 1);
-  return tidy_svg(svg, id_prefix, first_title(panels));
-}
-
-std::string render_svg(const PlotSpec& spec, std::string_view id_prefix) {
-  return render_svg(std::vector<PlotSpec>{spec}, id_prefix);
+  return tidy_svg(draw(panels, "svg", 12.5, 1), id_prefix, first_title(panels));
 }
 
 void render_png(const std::vector<PlotSpec>& panels, const std::filesystem::path& path) {
-  const std::string png = draw(panels, "pngcairo fontscale 2 linewidth 2 pointscale 2", 9.5, 2);
-  write_file(path.string(), png);
-}
-
-void render_png(const PlotSpec& spec, const std::filesystem::path& path) {
-  render_png(std::vector<PlotSpec>{spec}, path);
+  write_file(path.string(), draw(panels, "pngcairo fontscale 2 linewidth 2 pointscale 2", 9.5, 2));
 }
 
 bool gnuplot_available() {

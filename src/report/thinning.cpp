@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <unordered_set>
 
 namespace deltadyn {
@@ -144,7 +145,7 @@ std::vector<Index> one_a_cell(const Series& series, const Pixels& pixels, const 
     if (reach(i, 1.0) > reach(entry->second[1], 1.0)) entry->second[1] = i;
   }
   for (const auto& [column, ends] : extremes) kept.insert(kept.end(), ends.begin(), ends.end());
-  std::sort(kept.begin(), kept.end());
+  std::ranges::sort(kept);
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   return kept;
 }
@@ -155,7 +156,7 @@ Series thin(const Series& series, const PlotFrame& frame) {
   const Pixels pixels = to_pixels(series, frame);
   const auto n = static_cast<std::size_t>(series.x.size());
   std::vector<Index> kept(n);
-  for (std::size_t i = 0; i < n; ++i) kept[i] = static_cast<Index>(i);
+  std::iota(kept.begin(), kept.end(), Index{0});
 
   if (series.style == SeriesStyle::points || series.style == SeriesStyle::errorbars) {
     for (double cell = 1.0; kept.size() > kMaxPoints; cell *= 1.5) kept = one_a_cell(series, pixels, frame, cell);

@@ -10,7 +10,6 @@
 #include "assessment_parts.hpp"
 #include "drive_figures.hpp"
 #include "drive_names.hpp"
-#include "tone_of.hpp"
 
 namespace deltadyn {
 namespace {
@@ -62,9 +61,8 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   Assessment assessment = assess_validation(robot, validation);
   weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
-  HtmlReport report("Validation of " + description.name,
-                    fmt::format("{}, {} drives, {} {}", description.type, description.drives(), validation.logs.size(),
-                                validation.logs.size() == 1 ? "log" : "logs"));
+  HtmlReport report("Validation of " + description.name, fmt::format("{}, {} drives, {}", description.type, description.drives(),
+                                                                     counted(std::ssize(validation.logs), "log")));
   report.verdict(assessment.verdict, assessment.headline, assessment.told());
   add_log_check(report, context.findings);
   std::vector<KeyFigure> figures;

@@ -26,29 +26,17 @@ void check(double sample_rate_hz, double cutoff_hz, int order) {
   }
 }
 
-/// State of a section in transposed direct form II.
-struct State {
-  double s1 = 0.0;
-  double s2 = 0.0;
-};
-
-/// State that a constant input x leaves unchanged. Every section has unit gain, so its output is x too.
-State steady_state(const SecondOrderSection& section, double x) {
-  State state;
-  state.s2 = (section.b2 - section.a2) * x;
-  state.s1 = (section.b1 - section.a1) * x + state.s2;
-  return state;
-}
-
+/// Transposed direct form II.
 void pass(const std::vector<SecondOrderSection>& sections, Eigen::Ref<Eigen::VectorXd> x) {
   const double first = x(0);
   for (const SecondOrderSection& section : sections) {
-    State state = steady_state(section, first);
+    // The state that a constant input leaves unchanged: every section has unit gain, so its output is the input.
+    double s2 = (section.b2 - section.a2) * first, s1 = (section.b1 - section.a1) * first + s2;
     for (Index i = 0; i < x.size(); ++i) {
       const double in = x(i);
-      const double out = section.b0 * in + state.s1;
-      state.s1 = section.b1 * in - section.a1 * out + state.s2;
-      state.s2 = section.b2 * in - section.a2 * out;
+      const double out = section.b0 * in + s1;
+      s1 = section.b1 * in - section.a1 * out + s2;
+      s2 = section.b2 * in - section.a2 * out;
       x(i) = out;
     }
   }

@@ -1,6 +1,5 @@
 #include "deltadyn/signal/fir_decimator.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

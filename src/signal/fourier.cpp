@@ -17,9 +17,9 @@ namespace {
 using Eigen::Index;
 using std::numbers::pi;
 
-constexpr double kNoiseRatio = 4.0;   // positions one period apart differ by at most this many times their noise,
-constexpr double kRangeRatio = 3e-4;  // or this share of the drive's range (real drives do not repeat to the last count)
-constexpr int kFewestPeriods = 2;     // a period seen fewer times is no period
+constexpr double kNoiseRatio = 4.0;     // positions one period apart differ by at most this many times their noise,
+constexpr double kShareOfRange = 3e-4;  // or this share of the drive's range (real drives do not repeat to the last count)
+constexpr int kFewestPeriods = 2;       // a period seen fewer times is no period
 
 /// Basis functions at the given times, times x (1 + 2 harmonics).
 Eigen::MatrixXd basis(const Eigen::Ref<const Eigen::VectorXd>& t_s, double base_frequency_hz, int harmonics, int derivative) {
@@ -52,8 +52,7 @@ Mismatch mismatch(const Log& log, Index lag, const Eigen::VectorXd& allowed) {
   const Index n = log.samples();
   const double h = log.sample_time_s();
   const Index count = n - lag - 2;
-  double along = 0;
-  double square = 0;
+  double along = 0, square = 0;
   Mismatch result;
   const auto difference = [&](Index d) { return log.q.col(d).segment(1 + lag, count) - log.q.col(d).segment(1, count); };
   const auto rate = [&](Index d) {
@@ -112,9 +111,7 @@ std::optional<Period> find_period(const Log& log) {
   const Index longest = n / kFewestPeriods + 1;
   if (n < 20) return std::nullopt;
   const double h = log.sample_time_s();
-  Eigen::VectorXd allowed(log.drives());
-  Eigen::VectorXd deviation(log.drives());
-  Eigen::VectorXd fastest(log.drives());
+  Eigen::VectorXd allowed(log.drives()), deviation(log.drives()), fastest(log.drives());
   for (Index d = 0; d < log.drives(); ++d) {
     const auto q = log.q.col(d);
     const double range = q.maxCoeff() - q.minCoeff();
@@ -123,7 +120,7 @@ std::optional<Period> find_period(const Log& log) {
       continue;
     }
     // The difference of two noisy values has sqrt(2) of the noise.
-    allowed(d) = std::max(kNoiseRatio * std::numbers::sqrt2 * position_noise(q), kRangeRatio * range);
+    allowed(d) = std::max(kNoiseRatio * std::numbers::sqrt2 * position_noise(q), kShareOfRange * range);
     deviation(d) = std::sqrt((q.array() - q.mean()).square().mean());
     fastest(d) = (q.tail(n - 1) - q.head(n - 1)).cwiseAbs().maxCoeff();
   }
@@ -179,30 +176,6 @@ std::optional<Period> find_period(const Log& log) {
   return best;
 }
 
-int choose_harmonics(const Log& log, double period_s, int max_harmonics) {
-  const int periods = whole_periods(log, period_s);
-  const double h = log.sample_time_s();
-  const auto count = std::min(log.samples(), static_cast<Index>(std::lround(periods * period_s / h)));
-  const int limit = std::min(max_harmonics, static_cast<int>(0.45 * period_s / h));
-  if (periods < 1 || limit < 1) {
-    throw Error("the log holds no whole period", log.file, "record at least two periods", ExitCode::bad_input);
-  }
-  const Eigen::VectorXd t_s = log.t_s.head(count).array() - log.t_s(0);
-  const FourierFit fit = fit_fourier(t_s, log.q.topRows(count), 1.0 / period_s, limit);
-  int chosen = 1;
-  for (Index d = 0; d < log.drives(); ++d) {
-    // Noise of one amplitude: from the sample noise, or, where it is larger, from the amplitudes themselves beyond the motion.
-    const double white = position_noise(log.q.col(d)) * std::sqrt(2.0 / static_cast<double>(count));
-    std::vector<double> amplitudes;
-    for (int k = 1; k <= limit; ++k) amplitudes.push_back(std::hypot(fit.coefficients(2 * k - 1, d), fit.coefficients(2 * k, d)));
-    const double floor = std::max(white, limit >= 20 ? upper_median(amplitudes) : 0.0);
-    for (int k = 1; k <= limit; ++k) {
-      if (amplitudes[static_cast<std::size_t>(k - 1)] > 4.0 * floor) chosen = std::max(chosen, k);
-    }
-  }
-  return chosen;
-}
-
 PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   const double h = log.sample_time_s();
   PeriodMean mean;
@@ -213,7 +186,6 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   }
   const auto count = std::min(log.samples(), static_cast<Index>(std::lround(mean.periods * period_s / h)));
   const Eigen::VectorXd t_s = log.t_s.array() - log.t_s(0);
-  if (harmonics <= 0) harmonics = choose_harmonics(log, period_s);
   mean.series = fit_fourier(t_s.head(count), log.q.topRows(count), 1.0 / period_s, harmonics);
 
   const auto points = static_cast<Index>(std::lround(period_s / h));
@@ -228,17 +200,11 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
 
   const bool whole_samples = std::abs(period_s / h - static_cast<double>(points)) < 1e-6;
   const Index drives = log.drives();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(points, drives);
-  Eigen::MatrixXd used = Eigen::MatrixXd::Zero(points, drives);
-  const Eigen::RowVectorXd reference = log.tau.colwise().mean();  // stands where no sample does
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(points, drives), used = sum;
+  const Eigen::RowVectorXd reference = log.tau.colwise().mean();
   for (int period = 0; period < mean.periods; ++period) {
-    Eigen::MatrixXd tau;
     const Eigen::VectorXd when = one.t_s.array() + period * period_s;
-    if (whole_samples) {
-      tau = log.tau.middleRows(period * points, points);
-    } else {
-      tau = resample(t_s, log.tau, when);
-    }
+    const Eigen::MatrixXd tau = whole_samples ? log.tau.middleRows(period * points, points).eval() : resample(t_s, log.tau, when);
     for (Index i = 0; i < points; ++i) {
       const Index nearest = std::min(log.samples() - 1, static_cast<Index>(std::lround(when(i) / h)));
       if (log.is_filled(nearest)) continue;
@@ -249,20 +215,13 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
       }
     }
   }
-  one.tau.resize(points, drives);
+  one.tau = sum.cwiseQuotient(used.cwiseMax(1.0)).rowwise() + reference;
+  const auto missing = (used.array() < 1.0).eval();
+  if (missing.any()) one.torque_out = missing;
   for (Index i = 0; i < points; ++i) {
-    if ((used.row(i).array() < 1.0).all()) {
-      one.filled.resize(static_cast<std::size_t>(points), Log::kMeasured);
-      one.filled[static_cast<std::size_t>(i)] = Log::kLeftOut;
-    }
-    for (Index d = 0; d < drives; ++d) {
-      const double n = used(i, d);
-      one.tau(i, d) = reference(d) + (n > 0 ? sum(i, d) / n : 0.0);
-      if (n < 1.0) {
-        if (one.torque_out.size() == 0) one.torque_out.setConstant(points, drives, false);
-        one.torque_out(i, d) = true;
-      }
-    }
+    if (!missing.row(i).all()) continue;
+    one.filled.resize(static_cast<std::size_t>(points), Log::kMeasured);
+    one.filled[static_cast<std::size_t>(i)] = Log::kLeftOut;
   }
   return mean;
 }

@@ -30,17 +30,9 @@ void add_figures(std::vector<Log>& parts, double largest_jitter, double recorded
   Log& first = parts.front();
   const auto add = [&](const char* key, double value, const char* unit, const std::string& text) {
     for (const Log& part : parts) {
-      for (const LogFinding& one : part.findings) {
-        if (one.key == key) return;
-      }
+      if (std::ranges::find(part.findings, key, &LogFinding::key) != part.findings.end()) return;
     }
-    LogFinding finding;
-    finding.key = key;
-    finding.file = first.file;
-    finding.value = value;
-    finding.unit = unit;
-    finding.text = first.file + ": " + text;
-    first.findings.push_back(std::move(finding));
+    first.findings.push_back({.key = key, .file = first.file, .value = value, .unit = unit, .text = first.file + ": " + text});
   };
   add("rate_hz", recorded_rate_hz, "Hz", fmt::format("recorded at {:.6g} Hz", recorded_rate_hz));
   add("jitter", largest_jitter, "",
@@ -98,16 +90,15 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
     } catch (const checks::UnusablePart& error) {
       if (parts.size() == 1) throw;
       if (!refused) refused = error;
-      LogFinding finding;
-      finding.level = FindingLevel::warning;
-      finding.key = "unusable_part";
-      finding.file = part.file;
-      finding.text = fmt::format("{}: part {} is not used: {}", error.where(), part.part, error.problem());
-      finding.mend = error.mend().empty() ? "record this part again if it is needed; the others are used" : error.mend();
       carried.insert(carried.end(), part.findings.begin(), part.findings.end());
       carried_notes.insert(carried_notes.end(), part.notes.begin(), part.notes.end());
-      carried_notes.push_back(finding.text);
-      carried.push_back(std::move(finding));
+      carried_notes.push_back(fmt::format("{}: part {} is not used: {}", error.where(), part.part, error.problem()));
+      carried.push_back(
+          {.level = FindingLevel::warning,
+           .key = "unusable_part",
+           .file = part.file,
+           .text = carried_notes.back(),
+           .mend = error.mend().empty() ? "record this part again if it is needed; the others are used" : error.mend()});
     }
   }
   if (usable.empty()) throw *refused;

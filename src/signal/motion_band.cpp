@@ -39,23 +39,25 @@ double power_of_acceleration(double density, double frequency_hz) {
   return density * std::pow(2 * std::numbers::pi * frequency_hz, 4) * width_of(frequency_hz);
 }
 
-/// Acceleration power below a frequency that is no motion: the floor, and what stands above it beyond the motion's band (humps of an
-/// interpolated or jittering record).
-double noise_power(const MotionBand& band, double cutoff_hz) {
-  double power = band.noise_density * std::pow(2 * std::numbers::pi, 4) * std::pow(cutoff_hz, 5) / 5;
+/// Acceleration power above the floor in the bands from `above` to `cutoff_hz`.
+double power_between(const MotionBand& band, double above, double cutoff_hz, double power = 0) {
   for (Index k = 0; k < band.frequency_hz.size() && band.frequency_hz(k) <= cutoff_hz; ++k) {
-    if (band.frequency_hz(k) > band.top_hz)
+    if (band.frequency_hz(k) > above)
       power += power_of_acceleration(std::max(0.0, band.density(k) - band.noise_density), band.frequency_hz(k));
   }
   return power;
 }
 
+/// Acceleration power below a frequency that is no motion: the floor, and what stands above it beyond the motion's band (humps of an
+/// interpolated or jittering record).
+double noise_power(const MotionBand& band, double cutoff_hz) {
+  return power_between(band, band.top_hz, cutoff_hz,
+                       band.noise_density * std::pow(2 * std::numbers::pi, 4) * std::pow(cutoff_hz, 5) / 5);
+}
+
 /// Acceleration power of the motion below a frequency.
 double motion_power(const MotionBand& band, double cutoff_hz) {
-  double power = 0;
-  for (Index k = 0; k < band.frequency_hz.size() && band.frequency_hz(k) <= std::min(cutoff_hz, band.top_hz); ++k)
-    power += power_of_acceleration(std::max(0.0, band.density(k) - band.noise_density), band.frequency_hz(k));
-  return power;
+  return power_between(band, 0, std::min(cutoff_hz, band.top_hz));
 }
 
 /// Mean density, over frequency, of the bands that are nearly as low as the lowest one: noise is much the same in all of them.

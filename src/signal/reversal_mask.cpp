@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/statistics.hpp"

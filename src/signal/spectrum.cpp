@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <fmt/format.h>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
@@ -52,10 +51,7 @@ PowerSpectrum welch_spectrum(const Eigen::VectorXd& signal, double rate_hz, Inde
   const Index step = (segment + 1) / 2;
   for (Index begin = 0; begin + segment <= signal.size(); begin += step) {
     piece = signal.segment(begin, segment);
-    if (!piece.allFinite()) {
-      ++result.skipped;
-      continue;
-    }
+    if (!piece.allFinite()) continue;
     piece.array() -= piece.mean();
     piece.array() *= window.array();
     fft.fwd(transformed, piece);
@@ -70,8 +66,6 @@ PowerSpectrum welch_spectrum(const Eigen::VectorXd& signal, double rate_hz, Inde
   result.density *= 2.0 / (rate_hz * window.squaredNorm() * averages);
   result.density(0) *= 0.5;  // zero and half the sampling rate have no mirror image
   if (segment % 2 == 0) result.density(bins - 1) *= 0.5;
-  // Neighbouring pieces share half their samples: the correlation of their Hann-windowed noise is 1/6.
-  result.relative_std = std::sqrt((1.0 + 2.0 / 36.0 * (averages - 1.0) / averages) / averages);
   return result;
 }
 

@@ -14,8 +14,7 @@ void fit_line(const Eigen::Ref<const Eigen::VectorXd>& t_s, TimeGrid& grid) {
   double mean_index = 0;
   for (const Eigen::Index k : grid.index) mean_index += static_cast<double>(k) / static_cast<double>(n);
   const double mean_time = t_s.mean();
-  double numerator = 0;
-  double denominator = 0;
+  double numerator = 0, denominator = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double k = static_cast<double>(grid.index[static_cast<std::size_t>(i)]) - mean_index;
     numerator += k * (t_s(i) - mean_time);

@@ -41,7 +41,7 @@ void FrictionLaw::add(const Effect& effect, double count) {
   Term term{effect.id, shape_of(effect), amplitudes_of(effect), kMostMemories};
   for (double& amplitude : term.amplitude) amplitude *= count;
   if (kind.memory) {
-    const bool twice = std::any_of(terms_.begin(), terms_.end(), [&](const Term& other) { return other.id == effect.id; });
+    const bool twice = std::ranges::find(terms_, effect.id, &Term::id) != terms_.end();
     if (twice || memories_ == kMostMemories)
       throw Error(fmt::format("{} is given twice for one joint", kind.name), where, "give it once", ExitCode::usage);
     term.memory = memories_++;

@@ -180,6 +180,15 @@ struct Plant::Impl : detail::JointDynamics {
     now = end;
   }
 
+  /// Of the coordinates that begin at `first`, those of the drives on the side where their encoders sit.
+  [[nodiscard]] DriveVector at_encoders(const State& all, int first) const {
+    DriveVector drives = all.segment(first, n);
+    for (int e = 0; e < soft; ++e) {
+      if (parts.soft[at(e)].encoder_on_motor) drives(parts.soft[at(e)].drive) = all(first + n + e);
+    }
+    return drives;
+  }
+
   State x, rate_now;
   double now = 0, step_size = 1e-3;
   bool inverse_begun = false;
@@ -265,32 +274,13 @@ double Plant::time() const {
 }
 
 DriveVector Plant::q() const {
-  const Impl& m = *impl_;
-  DriveVector q = m.x.head(m.n);
-  for (int e = 0; e < m.soft; ++e) {
-    if (m.parts.soft[Impl::at(e)].encoder_on_motor) q(m.parts.soft[Impl::at(e)].drive) = m.x(m.n + e);
-  }
-  return q;
+  return impl_->at_encoders(impl_->x, 0);
 }
-
 DriveVector Plant::qd() const {
-  const Impl& m = *impl_;
-  DriveVector qd = m.x.segment(m.coordinates(), m.n);
-  for (int e = 0; e < m.soft; ++e) {
-    if (m.parts.soft[Impl::at(e)].encoder_on_motor) qd(m.parts.soft[Impl::at(e)].drive) = m.x(m.coordinates() + m.n + e);
-  }
-  return qd;
+  return impl_->at_encoders(impl_->x, impl_->coordinates());
 }
-
 DriveVector Plant::qdd() const {
-  const Impl& m = *impl_;
-  DriveVector qdd = m.rate_now.segment(m.coordinates(), m.n);
-  for (int e = 0; e < m.soft; ++e) {
-    if (m.parts.soft[Impl::at(e)].encoder_on_motor) {
-      qdd(m.parts.soft[Impl::at(e)].drive) = m.rate_now(m.coordinates() + m.n + e);
-    }
-  }
-  return qdd;
+  return impl_->at_encoders(impl_->rate_now, impl_->coordinates());
 }
 
 DriveVector Plant::torque() const {
@@ -300,10 +290,7 @@ DriveVector Plant::torque() const {
 }
 
 std::vector<int> Plant::directions() const {
-  const Impl& m = *impl_;
-  std::vector<int> all;
-  for (int j = 0; j < m.joints; ++j) all.push_back(m.direction[Impl::at(j)]);
-  return all;
+  return impl_->direction;
 }
 
 const PlantCounts& Plant::counts() const {
@@ -362,15 +349,13 @@ DriveVector Plant::inverse(double time, const DriveVector& q, const DriveVector&
   DriveVector load = terms.robot.M * qdd - terms.force.head(m.n);
   std::vector<JointMotion> motions;
   for (int j = 0; j < m.joints; ++j) {
-    JointMotion motion;
-    motion.rate = terms.robot.rate(j);
-    motion.direction = sense(j);
-    motion.position = terms.robot.position(j);
-    motion.time = time;
-    motion.side_load = across;
-    motion.memory = m.inverse_memory[Impl::at(j)].memory;
-    if (j >= m.n) load += terms.robot.J.row(j).transpose() * m.parts.laws[Impl::at(j)].required(0, motion);
-    motions.push_back(motion);
+    motions.push_back({.rate = terms.robot.rate(j),
+                       .direction = sense(j),
+                       .position = terms.robot.position(j),
+                       .time = time,
+                       .side_load = across,
+                       .memory = m.inverse_memory[Impl::at(j)].memory});
+    if (j >= m.n) load += terms.robot.J.row(j).transpose() * m.parts.laws[Impl::at(j)].required(0, motions.back());
   }
   DriveVector tau(m.n);
   for (int j = 0; j < m.n; ++j) tau(j) = m.parts.laws[Impl::at(j)].required(load(j), motions[Impl::at(j)]);

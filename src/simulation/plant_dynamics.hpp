@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -26,6 +25,7 @@ using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxState, 1>;
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCoordinates, 1>;
 using CoordinateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxCoordinates>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxCoordinates>;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxJoints>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 
 constexpr double kBeyondAnyForce = 1e30;  // [N m | N]
@@ -80,10 +80,7 @@ struct JointDynamics {
 
   /// Forces of effects do not depend on the plate's acceleration; those that do change the machine.
   [[nodiscard]] Eigen::Vector3d force_on_plate(const Effect& effect, const MechanismTerms& robot) const {
-    PlateInput<double> in;
-    in.position = robot.r;
-    in.velocity = robot.v;
-    in.gravity = parts.gravity;
+    const PlateInput<double> in{.position = robot.r, .velocity = robot.v, .gravity = parts.gravity};
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     visit_effect(effect.id, [&](auto type) {
       using E = decltype(type);
@@ -132,14 +129,13 @@ struct JointDynamics {
   }
 
   [[nodiscard]] JointMotion motion_of(int j, double time, const Terms& terms, int sense, double side_load) const {
-    JointMotion motion;
-    motion.rate = terms.robot.rate(j);
-    motion.direction = sense;
-    motion.position = terms.robot.position(j);
-    motion.time = time;
-    motion.side_load = side_load;
-    if (parts.laws[at(j)].has_memory()) motion.memory = memory_at(j, motion.position);
-    return motion;
+    const double position = terms.robot.position(j);
+    return {.rate = terms.robot.rate(j),
+            .direction = sense,
+            .position = position,
+            .time = time,
+            .side_load = side_load,
+            .memory = parts.laws[at(j)].has_memory() ? memory_at(j, position) : LawMemories{}};
   }
 
   /// Memories need no state of their own: since the last reversal they are functions of the position alone.
@@ -184,8 +180,7 @@ struct JointDynamics {
       J.row(k) = terms.J.row(rows[at(k)]);
       bias(k) = terms.robot.bias_rate(rows[at(k)]);
     }
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxJoints> MinvJ =
-        terms.cholesky.solve(J.transpose());
+    const Columns MinvJ = terms.cholesky.solve(J.transpose());
     const JointVector u = least_forces(J * MinvJ, -(J * out.acceleration + bias));
     out.acceleration += MinvJ * u;
     for (int k = 0; k < held; ++k) {
@@ -226,10 +221,7 @@ struct JointDynamics {
     for (int j = 0; j < joints; ++j) {
       const double tau = torque_of_joint(j, time), v = scratch.robot.rate(j);
       power += tau * v;
-      if (!stuck(j))
-        loss += (tau - solution.transmitted(j)) * v;
-      else
-        loss += tau * v;  // v is zero but for rounding
+      loss += (stuck(j) ? tau : tau - solution.transmitted(j)) * v;  // of a stuck joint v is zero but for rounding
     }
     rate(2 * c) = power;
     rate(2 * c + 1) = loss;
@@ -258,10 +250,7 @@ struct JointDynamics {
   bool release(double time, Terms& terms, bool act) {
     Solution free;
     const double side_load = solve_with_side_load(time, terms, free);
-    std::vector<int> rest;
-    for (int j = 0; j < joints; ++j) {
-      if (stuck(j)) rest.push_back(j);
-    }
+    const std::vector<int> rest = joints_at_rest();
     if (rest.empty()) return false;
     // Accelerations with nothing passed on by the joints at rest.
     Coordinates force = terms.force;
@@ -322,15 +311,11 @@ struct JointDynamics {
     }
     if (!others || terms_at(state, scratch) != Status::ok) return false;
     // Passive joints: the smallest change in the metric of M, as an impulse would do it.
-    std::vector<int> rest;
-    for (int j = 0; j < joints; ++j) {
-      if (stuck(j)) rest.push_back(j);
-    }
+    const std::vector<int> rest = joints_at_rest();
     const auto count = static_cast<Eigen::Index>(rest.size());
     Rows J(count, c);
     for (Eigen::Index k = 0; k < count; ++k) J.row(k) = scratch.J.row(rest[static_cast<std::size_t>(k)]);
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCoordinates, kMaxJoints> MinvJ =
-        scratch.cholesky.solve(J.transpose());
+    const Columns MinvJ = scratch.cholesky.solve(J.transpose());
     state.segment(c, c) -= MinvJ * least_forces(J * MinvJ, J * state.segment(c, c));
     for (int j = 0; j < n; ++j) {
       if (stuck(j)) state(c + coordinate_of_drive[at(j)]) = 0;
@@ -343,6 +328,14 @@ struct JointDynamics {
     if (!parts.laws[at(j)].has_memory()) return;
     const double position = terms.robot.position(j);
     turned[at(j)] = {memory_at(j, position), position};
+  }
+
+  [[nodiscard]] std::vector<int> joints_at_rest() const {
+    std::vector<int> rest;
+    for (int j = 0; j < joints; ++j) {
+      if (stuck(j)) rest.push_back(j);
+    }
+    return rest;
   }
 
   [[nodiscard]] bool any_stuck() const {

@@ -71,9 +71,8 @@ class Builder {
     for (const auto& [id, more] : machine_.parameters) values_[id] += more;
     MechanismOptions options;
     options.home_offset = machine_.home_offset;
-    options.passive_joints = std::any_of(effects.begin(), effects.end(), [](const Effect& effect) {
-      return effect_kind(effect.id).place == EffectPlace::passive_joints;
-    });
+    options.passive_joints = std::ranges::any_of(
+        effects, [](const Effect& effect) { return effect_kind(effect.id).place == EffectPlace::passive_joints; });
     parts_.gravity = machine_.description.gravity;
     parts_.mechanism = make_mechanism(machine_.description, values_.all(), options);
     add_laws(effects);
@@ -84,7 +83,7 @@ class Builder {
  private:
   void change(const Effect& effect) {
     const std::vector<int> joints = effect_joints(effect.id, machine_.description);
-    if (std::find(joints.begin(), joints.end(), effect.joint) == joints.end())
+    if (std::ranges::find(joints, effect.joint) == joints.end())
       refuse(effect, "this robot has no such place for the effect", "look at delta-simulate --list-effects");
     check_sizes(
         effect, [&effect](std::string_view) { return std::string(effect_kind(effect.id).name); }, ExitCode::usage);
@@ -135,21 +134,12 @@ class Builder {
                               spring.motor_share, drive + 1),
                   "--effect", "give the motor (or the play) a share between 0 and 1", ExitCode::usage);
     }
-    SoftDrive soft;
-    soft.drive = drive;
-    soft.motor_inertia = motor;
-    soft.gap = spring.gap;
-    soft.encoder_on_motor = spring.encoder_on_motor;
+    SoftDrive soft{.drive = drive, .motor_inertia = motor, .gap = spring.gap, .encoder_on_motor = spring.encoder_on_motor};
     soft.stiffness = spring.inertia_over_stiffness > 0
                          ? (spring.encoder_on_motor ? inertia - motor : motor) / spring.inertia_over_stiffness
                          : reduced * std::pow(2 * std::numbers::pi * spring.flank_hz, 2);
-    set_damping(soft, inertia);
-    parts_.soft.push_back(soft);
-  }
-
-  static void set_damping(SoftDrive& soft, double inertia) {
-    const double reduced = soft.motor_inertia * (inertia - soft.motor_inertia) / inertia;
     soft.damping = 2 * kDampingRatio * std::sqrt(soft.stiffness * reduced);
+    parts_.soft.push_back(soft);
   }
 
   ChangedMachine machine_;

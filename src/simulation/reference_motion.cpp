@@ -53,13 +53,10 @@ ReferenceMotion::ReferenceMotion(const TrajectorySamples& samples, int repeats)
                   samples.file, "leave out --repeat, or plan with delta-excite --periodic", ExitCode::usage);
     }
     period_ += step;
-    const auto append = [n](Eigen::MatrixXd& m) {
-      m.conservativeResize(n + 1, Eigen::NoChange);
-      m.row(n) = m.row(0);
-    };
-    append(q_);
-    append(qd_);
-    append(qdd_);
+    for (Eigen::MatrixXd* m : {&q_, &qd_, &qdd_}) {
+      m->conservativeResize(n + 1, Eigen::NoChange);
+      m->row(n) = m->row(0).eval();
+    }
     t_.conservativeResize(n + 1);
     t_(n) = period_;
   }
@@ -68,9 +65,7 @@ ReferenceMotion::ReferenceMotion(const TrajectorySamples& samples, int repeats)
 void ReferenceMotion::at(double time, State& state) const {
   const Eigen::Index n = t_.size();
   const int count = drives();
-  state.q.resize(count);
-  state.qd.resize(count);
-  state.qdd.resize(count);
+  for (Eigen::VectorXd* v : {&state.q, &state.qd, &state.qdd}) v->resize(count);
   double t = time;
   if (repeats_ > 1) {
     // The end of the last run belongs to it, not to one more.

@@ -27,10 +27,10 @@ class Recorder {
  public:
   Recorder(Eigen::Index rows, int drives) {
     t.resize(rows);
-    for (Eigen::MatrixXd* m : {&q, &qd, &qdd, &tau, &reading}) m->resize(rows, drives);
+    for (Eigen::MatrixXd* m : {&qd, &qdd, &tau, &reading}) m->resize(rows, drives);
   }
   Eigen::VectorXd t;
-  Eigen::MatrixXd q, qd, qdd, tau, reading;
+  Eigen::MatrixXd qd, qdd, tau, reading;
 
   void finish(const std::vector<Effect>& effects, const SimulationOptions& options, SimulationResult& result) const {
     result.log.t_s = t;
@@ -46,13 +46,13 @@ class Recorder {
   const std::string loop = "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains";
   const std::string why = clipped > 0 ? fmt::format("the drives met their torque limits at {} control samples", clipped)
                                       : "the loop is unstable or too weak";
-  throw Error(
-      fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why), "simulation",
-      clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the robot "
-                    "file the drives' true effort, or, if the loop is unstable, " +
-                        loop
-                  : loop,
-      ExitCode::no_convergence);
+  throw Error(fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why),
+              "simulation",
+              clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the "
+                            "robot file the drives' true effort, or, if the loop is unstable, " +
+                                loop
+                          : loop,
+              ExitCode::no_convergence);
 }
 
 SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,
@@ -69,7 +69,6 @@ SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std
     if (k < first) continue;
     const Eigen::Index row = k - first;
     record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-    record.q.row(row) = state.q;
     record.qd.row(row) = state.qd;
     record.qdd.row(row) = state.qdd;
     record.tau.row(row) = tau;
@@ -143,15 +142,12 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
     const Eigen::Index row = k / ratio - first;
     if (k % ratio == 0 && row >= 0) {
       record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-      record.q.row(row) = plant.q();
       record.qd.row(row) = plant.qd();
       record.qdd.row(row) = 0.5 * (qdd_before + qdd_now);
       record.tau.row(row) = 0.5 * (tau_before + tau_now);
       record.reading.row(row) = reading;
-      const Eigen::VectorXd error = wanted.q - record.q.row(row).transpose();
-      if (!(error.cwiseAbs().maxCoeff() < kLost)) {
-        lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
-      }
+      const Eigen::VectorXd error = wanted.q - plant.q();
+      if (!(error.cwiseAbs().maxCoeff() < kLost)) lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
       squares += error.cwiseAbs2();
       result.largest_error = result.largest_error.cwiseMax(error.cwiseAbs());
     }

@@ -14,14 +14,11 @@ double LimitCheck::margin() const {
 }
 
 const LimitUse& LimitCheck::tightest() const {
-  return *std::max_element(uses.begin(), uses.end(), [](const LimitUse& a, const LimitUse& b) { return a.load < b.load; });
+  return *std::ranges::max_element(uses, {}, &LimitUse::load);
 }
 
 void LimitCheck::merge(const LimitCheck& other, double starts_at_s) {
-  if (!other.reachable && reachable) {
-    reachable = false;
-    unreachable_at_s = other.unreachable_at_s + starts_at_s;
-  }
+  reachable = reachable && other.reachable;
   if (uses.empty()) uses.resize(other.uses.size());
   for (std::size_t k = 0; k < std::min(uses.size(), other.uses.size()); ++k) {
     if (!uses[k].limit.name.empty() && uses[k].load >= other.uses[k].load) continue;
@@ -45,8 +42,7 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
   state.x.resize(3 * n);
   state.drives.resize(3 * n);
   state.tau.resize(n);
-  Eigen::VectorXd q(n), qd(n), qdd(n);
-  Eigen::VectorXd friction(n);
+  Eigen::VectorXd q(n), qd(n), qdd(n), friction(n);
   const auto time_of = [&](Index i) { return motion.duration_s * static_cast<double>(i) / samples; };
   for (Index i = 0; i <= samples; ++i) {
     const TaskState task = motion.at(time_of(i));
@@ -54,7 +50,6 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
     if (status == Status::ok && torque) status = robot.regressor(q, qd, qdd, Y);
     if (status != Status::ok) {
       check.reachable = false;
-      check.unreachable_at_s = time_of(i);
       return check;
     }
     if (torque) {

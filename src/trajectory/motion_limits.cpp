@@ -1,6 +1,5 @@
 #include "deltadyn/trajectory/motion_limits.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -41,17 +40,9 @@ void require_size(const Eigen::VectorXd& v, int n, const char* what) {
 }  // namespace
 
 const char* word_of(LimitedQuantity quantity) {
-  switch (quantity) {
-    case LimitedQuantity::z:
-    case LimitedQuantity::q: return "position";
-    case LimitedQuantity::zd:
-    case LimitedQuantity::qd: return "velocity";
-    case LimitedQuantity::zdd:
-    case LimitedQuantity::qdd: return "acceleration";
-    case LimitedQuantity::tau: return "torque";
-    case LimitedQuantity::region: return "workspace";
-  }
-  return "";
+  static constexpr const char* kWords[] = {"workspace", "position", "velocity",     "acceleration",
+                                           "position",  "velocity", "acceleration", "torque"};
+  return kWords[static_cast<std::size_t>(quantity)];
 }
 
 MotionLimits::MotionLimits(const RobotDescription& robot) {

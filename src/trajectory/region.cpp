@@ -1,5 +1,6 @@
 #include "deltadyn/trajectory/region.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -11,14 +12,8 @@ namespace deltadyn {
 using Eigen::Vector3d;
 
 int Region::walls() const {
-  switch (shape) {
-    case RegionShape::ball: return 1;
-    case RegionShape::half_ball: return 2;
-    case RegionShape::cylinder:
-    case RegionShape::cone: return 3;
-    case RegionShape::box: return 6;
-  }
-  return 0;
+  static constexpr int kWalls[] = {1, 2, 3, 3, 6};
+  return kWalls[static_cast<std::size_t>(shape)];
 }
 
 std::string Region::wall_name(int wall) const {
@@ -85,11 +80,6 @@ Vector3d Region::upper() const {
   return corner;
 }
 
-Vector3d Region::middle() const {
-  // The largest ball inside a half ball has half its radius.
-  return shape == RegionShape::half_ball ? Vector3d(centre - Vector3d(0, 0, radius / 2)) : centre;
-}
-
 std::string Region::text() const {
   // What rounding left of a zero is not told.
   const auto told = [](double length) { return std::abs(length) < 1e-6 ? 0.0 : length; };
@@ -129,11 +119,9 @@ void Region::validate() const {
 }
 
 RegionShape region_shape(const std::string& word) {
-  if (word == "half-ball") return RegionShape::half_ball;
-  if (word == "ball") return RegionShape::ball;
-  if (word == "cylinder") return RegionShape::cylinder;
-  if (word == "cone") return RegionShape::cone;
-  if (word == "box") return RegionShape::box;
+  static constexpr const char* kWords[] = {"ball", "half-ball", "cylinder", "cone", "box"};
+  const auto found = std::ranges::find(kWords, word);
+  if (found != std::end(kWords)) return static_cast<RegionShape>(found - kWords);
   throw Error("'" + word + "' is not a shape of a workspace", "workspace", "use half-ball, ball, cylinder, cone or box",
               ExitCode::usage);
 }

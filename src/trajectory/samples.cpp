@@ -16,9 +16,7 @@ namespace {
 
 void complete_drives(const Robot& robot, TrajectorySamples& samples) {
   const Eigen::Index n = samples.samples();
-  samples.q.resize(n, robot.drives());
-  samples.qd.resize(n, robot.drives());
-  samples.qdd.resize(n, robot.drives());
+  samples.q = samples.qd = samples.qdd = Eigen::MatrixXd::Zero(n, robot.drives());
   Eigen::VectorXd q(robot.drives()), qd(robot.drives()), qdd(robot.drives());
   for (Eigen::Index row = 0; row < n; ++row) {
     if (const Status status = robot.to_drives(samples.task(row), q, qd, qdd); status != Status::ok) refuse(samples, row, status);
@@ -30,9 +28,7 @@ void complete_drives(const Robot& robot, TrajectorySamples& samples) {
 
 void complete_task(const Robot& robot, TrajectorySamples& samples) {
   const Eigen::Index n = samples.samples();
-  samples.z.resize(n, robot.drives());
-  samples.zd.resize(n, robot.drives());
-  samples.zdd.resize(n, robot.drives());
+  samples.z = samples.zd = samples.zdd = Eigen::MatrixXd::Zero(n, robot.drives());
   TaskState task;
   for (Eigen::Index row = 0; row < n; ++row) {
     const Status status =

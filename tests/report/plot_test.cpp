@@ -1,13 +1,12 @@
 #include "deltadyn/report/plot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -77,7 +76,7 @@ class EmptyFolder {
 };
 
 TEST(RenderSvg, ShowsTitleAxesWithUnitsAndLegend) {
-  const auto found = texts(render_svg(simple()), "text");
+  const auto found = texts(render_svg({simple()}), "text");
   EXPECT_THAT(found, Contains("Drive 1"));
   EXPECT_THAT(found, Contains("time [s]"));
   EXPECT_THAT(found, Contains("torque [N m]"));
@@ -107,9 +106,9 @@ TEST(RenderSvg, HostileTextIsDrawnAsItIsAndNeverRun) {
     spec.title = spec.x_label = spec.y_label = spec.series[0].label = text;
     spec.horizontal_markers = {{0.5, text}};
     spec.vertical_markers = {{5.0, text}};
-    EXPECT_EQ(std::ranges::count(texts(render_svg(spec), "text"), text), 6) << text;
+    EXPECT_EQ(std::ranges::count(texts(render_svg({spec}), "text"), text), 6) << text;
     spec.x_tick_labels = {text};
-    EXPECT_EQ(std::ranges::count(texts(render_svg(spec), "text"), text), 7) << text;
+    EXPECT_EQ(std::ranges::count(texts(render_svg({spec}), "text"), text), 7) << text;
   }
   EXPECT_TRUE(folder.files().empty());
 }
@@ -117,14 +116,14 @@ TEST(RenderSvg, HostileTextIsDrawnAsItIsAndNeverRun) {
 TEST(RenderSvg, LineBreaksInTextCannotStartACommand) {
   PlotSpec spec = simple();
   spec.title = "one\nexit\ntwo";
-  EXPECT_THAT(texts(render_svg(spec), "text"), Contains("one exit two"));
+  EXPECT_THAT(texts(render_svg({spec}), "text"), Contains("one exit two"));
 }
 
 TEST(RenderSvg, IdsAreUniqueCarryThePrefixAndEveryReferenceHasItsTarget) {
   PlotSpec spec = simple();
   spec.series.push_back(sine("samples", 20));
   spec.series.back().style = SeriesStyle::points;
-  const std::string svg = render_svg(spec, "fig7-");
+  const std::string svg = render_svg({spec}, "fig7-");
   const auto ids = attributes(svg, "id");
   ASSERT_FALSE(ids.empty());
   EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
@@ -135,7 +134,7 @@ TEST(RenderSvg, IdsAreUniqueCarryThePrefixAndEveryReferenceHasItsTarget) {
 }
 
 TEST(RenderSvg, ScalesWithThePageAndSaysWhatItShows) {
-  const std::string svg = render_svg(simple());
+  const std::string svg = render_svg({simple()});
   EXPECT_TRUE(svg.starts_with("<svg"));
   testing::for_each_element(svg, [](const tinyxml2::XMLElement& element) {
     if (std::string(element.Name()) != "svg") return;
@@ -147,7 +146,7 @@ TEST(RenderSvg, ScalesWithThePageAndSaysWhatItShows) {
 }
 
 TEST(RenderSvg, SameInputGivesTheSameBytes) {
-  EXPECT_EQ(render_svg(simple()), render_svg(simple()));
+  EXPECT_EQ(render_svg({simple()}), render_svg({simple()}));
 }
 
 TEST(RenderSvg, ALongSeriesStaysSmall) {
@@ -155,7 +154,7 @@ TEST(RenderSvg, ALongSeriesStaysSmall) {
   spec.series = {sine("measured", 1'000'000), sine("model", 1'000'000), sine("points", 1'000'000)};
   spec.series[2].style = SeriesStyle::points;
   spec.series[2].y = Eigen::VectorXd::Random(1'000'000);
-  EXPECT_LT(render_svg(spec).size(), 300'000u);
+  EXPECT_LT(render_svg({spec}).size(), 300'000u);
 }
 
 TEST(RenderSvg, DrawsEveryStyle) {
@@ -170,8 +169,8 @@ TEST(RenderSvg, DrawsEveryStyle) {
       spec.series[0].y_error = Eigen::VectorXd::Constant(30, 0.2);
       empty.series[0].y_error = Eigen::VectorXd::Constant(200, 0.2);
     }
-    EXPECT_THAT(render_svg(spec), HasSubstr("plot-gnuplot_plot_1"));
-    EXPECT_THAT(texts(render_svg(empty), "text"), Contains("no data"));
+    EXPECT_THAT(render_svg({spec}), HasSubstr("plot-gnuplot_plot_1"));
+    EXPECT_THAT(texts(render_svg({empty}), "text"), Contains("no data"));
   }
 }
 
@@ -189,12 +188,12 @@ TEST(RenderSvg, OddDataIsDrawnWithoutComplaint) {
     for (const bool log : {false, true}) {
       PlotSpec variant = spec;
       variant.log_y = log;
-      EXPECT_NO_THROW(static_cast<void>(render_svg(variant)));
+      EXPECT_NO_THROW(static_cast<void>(render_svg({variant})));
     }
   }
   PlotSpec none = simple();
   none.series.clear();
-  EXPECT_THAT(texts(render_svg(none), "text"), Contains("no data"));
+  EXPECT_THAT(texts(render_svg({none}), "text"), Contains("no data"));
 }
 
 TEST(RenderSvg, LogAxesLeaveOutWhatIsNotPositive) {
@@ -202,7 +201,7 @@ TEST(RenderSvg, LogAxesLeaveOutWhatIsNotPositive) {
   spec.log_x = spec.log_y = true;
   spec.series[0].x = Eigen::Vector4d(-1.0, 0.0, 1.0, 1e6);
   spec.series[0].y = Eigen::Vector4d(1.0, 1.0, 1e-9, 1e-2);
-  const auto found = texts(render_svg(spec), "text");
+  const auto found = texts(render_svg({spec}), "text");
   EXPECT_THAT(found, Contains("10-8"));  // the exponent stands higher, as a part of the same text
   EXPECT_THAT(found, Contains("105"));
 }
@@ -211,7 +210,7 @@ TEST(RenderSvg, MarkersOutsideTheRangeAreLeftOut) {
   PlotSpec spec = simple();
   spec.y_range = PlotRange{-2.0, 2.0};
   spec.horizontal_markers = {{1.5, "inside"}, {3.0, "outside"}};
-  const auto found = texts(render_svg(spec), "text");
+  const auto found = texts(render_svg({spec}), "text");
   EXPECT_THAT(found, Contains("inside"));
   EXPECT_THAT(found, Not(Contains("outside")));
 }
@@ -232,7 +231,7 @@ TEST(RenderSvg, PanelsShareTheTimeAxisAndOneLegend) {
 TEST(RenderSvg, ContradictionsAreRefused) {
   const auto refused = [](const PlotSpec& spec) {
     try {
-      static_cast<void>(render_svg(spec));
+      static_cast<void>(render_svg({spec}));
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ExitCode::usage);
       EXPECT_THAT(error.where(), HasSubstr("Drive 1"));
@@ -267,14 +266,14 @@ TEST(RenderSvg, WithoutGnuplotSaysWhatToInstall) {
   const EnvironmentGuard path("PATH", folder.path().string());
   EXPECT_FALSE(gnuplot_available());
   try {
-    static_cast<void>(render_svg(simple()));
+    static_cast<void>(render_svg({simple()}));
     FAIL() << "drawn without gnuplot";
   } catch (const Error& error) {
     EXPECT_THAT(error.problem(), HasSubstr("gnuplot cannot be started"));
     EXPECT_THAT(error.mend(), HasSubstr("install gnuplot-nox"));
     EXPECT_EQ(error.code(), ExitCode::bad_input);
   }
-  EXPECT_THROW(render_png(simple(), folder.path() / "plot.png"), Error);
+  EXPECT_THROW(render_png({simple()}, folder.path() / "plot.png"), Error);
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -286,7 +285,7 @@ TEST(RenderSvg, AGnuplotThatFailsIsReportedWithItsOwnWords) {
   PlotSpec spec = simple();  // much more input than a channel holds, which the child never reads
   for (int i = 0; i < 40; ++i) spec.series.push_back(sine("s", 2'000));
   try {
-    static_cast<void>(render_svg(spec));
+    static_cast<void>(render_svg({spec}));
     FAIL() << "a failed gnuplot went unnoticed";
   } catch (const Error& error) {
     EXPECT_THAT(error.problem(), HasSubstr("exit code 3"));
@@ -296,7 +295,7 @@ TEST(RenderSvg, AGnuplotThatFailsIsReportedWithItsOwnWords) {
 
 TEST(RenderPng, WritesAPictureOfTwiceTheSizeAndLeavesNothingElse) {
   const EmptyFolder folder;
-  render_png(simple(), folder.path() / "plot.png");
+  render_png({simple()}, folder.path() / "plot.png");
   EXPECT_THAT(folder.files(), ElementsAre("plot.png"));
   std::ifstream file(folder.path() / "plot.png", std::ios::binary);
   std::string head(24, '\0');
@@ -311,7 +310,7 @@ TEST(RenderPng, WritesAPictureOfTwiceTheSizeAndLeavesNothingElse) {
 
 TEST(RenderPng, AFolderThatDoesNotExistIsAnError) {
   const EmptyFolder folder;
-  EXPECT_THROW(render_png(simple(), folder.path() / "missing" / "plot.png"), Error);
+  EXPECT_THROW(render_png({simple()}, folder.path() / "missing" / "plot.png"), Error);
 }
 
 }  // namespace

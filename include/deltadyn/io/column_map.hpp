@@ -17,19 +17,19 @@ namespace deltadyn {
 struct ChannelMap {
   int drive = 0;  ///< from 1
   Quantity quantity = Quantity::position;
-  std::string source;  ///< name of the column
-  std::string unit;    ///< as log_unit() knows it; empty: the one the recording states
+  std::string source = {};  ///< name of the column
+  std::string unit = {};    ///< as log_unit() knows it; empty: the one the recording states
   double scale = 1.0;
-  double offset = 0.0;                    ///< [unit]
-  double sign = 1.0;                      ///< 1 or -1
-  std::optional<double> gear_ratio;       ///< turns of the motor for one of the drive; where the recording is of the motor
-  std::optional<double> torque_constant;  ///< [N m/A], of a prismatic drive without lead [N/A]
-  std::optional<double> rated_torque;     ///< [N m], of a prismatic drive without lead [N]
-  std::optional<double> counts_per_turn;  ///< of the encoder
-  std::optional<double> lead;             ///< of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
-  std::optional<double> wrap;             ///< the recorded number begins again after this much (65536, 360, ...)
-  double delay_s = 0.0;                   ///< the recorded value is this much older than its time stamp
-  long line = 0;                          ///< in the map file, for messages
+  double offset = 0.0;                         ///< [unit]
+  double sign = 1.0;                           ///< 1 or -1
+  std::optional<double> gear_ratio = {};       ///< turns of the motor for one of the drive; where the recording is of the motor
+  std::optional<double> torque_constant = {};  ///< [N m/A], of a prismatic drive without lead [N/A]
+  std::optional<double> rated_torque = {};     ///< [N m], of a prismatic drive without lead [N]
+  std::optional<double> counts_per_turn = {};  ///< of the encoder
+  std::optional<double> lead = {};             ///< of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
+  std::optional<double> wrap = {};             ///< the recorded number begins again after this much (65536, 360, ...)
+  double delay_s = 0.0;                        ///< the recorded value is this much older than its time stamp
+  long line = 0;                               ///< in the map file, for messages
 };
 
 struct ColumnMap {

@@ -13,8 +13,8 @@
 namespace deltadyn {
 
 struct ImportOptions {
-  std::string map_file;  ///< column map; what it leaves open is guessed from the names
-  MapDefaults defaults;  ///< from flags, win over the map
+  std::string map_file = {};  ///< column map; what it leaves open is guessed from the names
+  MapDefaults defaults = {};  ///< from flags, win over the map
   bool need_torque = true;
   bool need_derivatives = false;
 };

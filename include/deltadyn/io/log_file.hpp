@@ -9,7 +9,6 @@
 #include "deltadyn/runtime/robot_description.hpp"
 #include "deltadyn/signal/log.hpp"
 #include "deltadyn/signal/log_check.hpp"
-#include "deltadyn/signal/log_columns.hpp"
 
 namespace deltadyn {
 

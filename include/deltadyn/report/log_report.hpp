@@ -17,9 +17,6 @@ namespace deltadyn {
 /// The page of `delta-log check`. Findings are those of the context.
 [[nodiscard]] std::string log_report(const Robot& robot, const std::vector<Log>& logs, const ReportContext& context);
 
-/// A table of the findings that are more than a measured property in order; nothing if there are none.
-void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine);
-
 /// The section that stands first in a report: heading and table; nothing if all findings are fine.
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings);
 

@@ -48,9 +48,9 @@ struct PlotRange {
 
 /// One pair of axes.
 struct PlotSpec {
-  std::string title;
-  std::string x_label;  ///< with unit, e.g. "time [s]"
-  std::string y_label;  ///< with unit, e.g. "torque [N m]"
+  std::string title = {};
+  std::string x_label = {};  ///< with unit, e.g. "time [s]"
+  std::string y_label = {};  ///< with unit, e.g. "torque [N m]"
   std::vector<Series> series = {};
   bool log_x = false;  ///< values that are not positive count as gaps
   bool log_y = false;
@@ -63,22 +63,18 @@ struct PlotSpec {
   int height = 320;                             ///< [px]
 };
 
-/// Draws one plot.
-/// \param id_prefix  put before every id in the SVG; plots that share one HTML page need different prefixes
-/// \return an <svg> element without XML declaration that scales with the width of the page
-/// \throws Error if the specification contradicts itself, gnuplot is missing, or gnuplot fails
-[[nodiscard]] std::string render_svg(const PlotSpec& spec, std::string_view id_prefix = "plot-");
-
-/// Draws several plots on top of each other with one common x axis, e.g. one a drive.
+/// Draws one plot, or several on top of each other with one common x axis, e.g. one a drive.
 /// The x label, the width, log_x and the tick labels are those of the last panel, the x range encloses all panels.
 /// Panels above the last give the space of their own x axis back, so that the areas keep the heights they have alone, and a
 /// panel with the same curves as the first leaves the legend to it.
+/// \param id_prefix  put before every id in the SVG; plots that share one HTML page need different prefixes
+/// \return an <svg> element without XML declaration that scales with the width of the page
+/// \throws Error if the specification contradicts itself, gnuplot is missing, or gnuplot fails
 [[nodiscard]] std::string render_svg(const std::vector<PlotSpec>& panels, std::string_view id_prefix = "plot-");
 
 /// The same as PNG, two picture points for each pixel of the specification so that it prints sharply.
 /// The file is written whole or not at all.
 /// \throws Error as render_svg, and if the file cannot be written
-void render_png(const PlotSpec& spec, const std::filesystem::path& path);
 void render_png(const std::vector<PlotSpec>& panels, const std::filesystem::path& path);
 
 /// True if gnuplot can be started, so that a tool can say so before a long computation and not after it.

@@ -10,7 +10,7 @@ namespace deltadyn {
 /// Windowed-sinc low pass (Kaiser window) with symmetric taps and unit gain at zero frequency: flat to 0.1 % up to half the cut-off,
 /// below 0.1 % from 1.5 cut-off on, half way (-6 dB) at the cut-off. The wide transition keeps the support short, so that few rows
 /// feel a velocity reversal.
-/// No lag. Output k belongs to input sample first_sample() + k * factor() and needs half_width() samples on either side: a log of
+/// No lag. Output k belongs to input sample centre(k) and needs half_width() samples on either side: a log of
 /// any length can be processed block by block and in parallel, with the same result.
 class FirDecimator {
  public:
@@ -23,8 +23,6 @@ class FirDecimator {
   [[nodiscard]] int half_width() const { return static_cast<int>(taps_.size() / 2); }
   [[nodiscard]] int factor() const { return factor_; }
   [[nodiscard]] const Eigen::VectorXd& taps() const { return taps_; }
-  /// Input sample at the centre of output 0.
-  [[nodiscard]] Eigen::Index first_sample() const { return half_width(); }
   /// Input sample at the centre of an output.
   [[nodiscard]] Eigen::Index centre(Eigen::Index output) const { return half_width() + output * factor_; }
   /// Number of outputs of an input with this many samples (0 if it is shorter than the filter).

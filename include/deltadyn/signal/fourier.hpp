@@ -35,10 +35,6 @@ struct Period {
 /// Shortest period with which all drives repeat, seen twice at least; nothing if the motion is not periodic.
 [[nodiscard]] std::optional<Period> find_period(const Log& log);
 
-/// Harmonics that stand out of the noise: the highest one whose amplitude is above four times the noise of an amplitude.
-/// \param max_harmonics  also limited by half the sample rate
-[[nodiscard]] int choose_harmonics(const Log& log, double period_s, int max_harmonics = 60);
-
 /// One period, averaged.
 struct PeriodMean {
   Log log;            ///< one period; q, qd, qdd of the Fourier series, tau the mean over the periods
@@ -48,8 +44,7 @@ struct PeriodMean {
 
 /// Fits the series to all whole periods and averages the torque over them (interpolated if a period is no whole number of
 /// samples). Samples that were filled in do not enter the torque; a phase without a sample is marked in PeriodMean::log.filled.
-/// \param harmonics  0: choose_harmonics()
 /// Throws Error(bad_input) if the log holds fewer than two periods.
-[[nodiscard]] PeriodMean average_periods(const Log& log, double period_s, int harmonics = 0);
+[[nodiscard]] PeriodMean average_periods(const Log& log, double period_s, int harmonics);
 
 }  // namespace deltadyn

@@ -11,9 +11,7 @@ struct PowerSpectrum {
   Eigen::VectorXd frequency_hz;  ///< segment/2 + 1 values from 0 to half the sampling rate
   Eigen::VectorXd density;       ///< one-sided [unit^2/Hz]; its integral over frequency is the signal's variance
   Eigen::Index segments = 0;     ///< averaged pieces
-  Eigen::Index skipped = 0;      ///< pieces left out because a sample in them is NaN or infinite
   double resolution_hz = 0.0;    ///< distance of the frequencies
-  double relative_std = 0.0;     ///< standard deviation of one density value over the value itself, for a noise-like signal
 };
 
 /// Averages the periodograms of Hann-windowed pieces that overlap by half (Welch 1967); each piece's mean is taken out first.

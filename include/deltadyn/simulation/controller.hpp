@@ -4,7 +4,6 @@
 /// Controllers of the virtual robot, as a drive runs them: sampled, on encoder readings, with a model for the feed-forward.
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "deltadyn/runtime/robot.hpp"

@@ -9,7 +9,6 @@
 /// stays exactly where it is.
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>

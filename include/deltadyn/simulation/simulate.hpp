@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "deltadyn/runtime/robot.hpp"

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "deltadyn/trajectory/motion_limits.hpp"
@@ -27,8 +26,7 @@ struct LimitUse {
 };
 
 struct LimitCheck {
-  bool reachable = true;  ///< false: a pose is out of reach or singular; then `uses` ends there
-  double unreachable_at_s = 0;
+  bool reachable = true;       ///< false: a pose is out of reach or singular; then `uses` ends there
   std::vector<LimitUse> uses;  ///< one a limit
   /// 1 - largest load: how much room is left, as a share of the limit that binds; negative: broken.
   [[nodiscard]] double margin() const;

@@ -4,7 +4,6 @@
 /// From Fourier series to a motion a controller can run: from rest, along the same curve with rising speed into the periodic
 /// motion, and out of it again; several such segments one after the other.
 
-#include <string>
 #include <vector>
 
 #include "deltadyn/trajectory/fourier_series.hpp"

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <vector>
 
 namespace deltadyn {
 
@@ -30,8 +29,6 @@ struct Region {
   /// Corners of the upright box around the body.
   [[nodiscard]] Eigen::Vector3d lower() const;
   [[nodiscard]] Eigen::Vector3d upper() const;
-  /// A point with room on all sides.
-  [[nodiscard]] Eigen::Vector3d middle() const;
   /// "lower half ball of radius 0.35 m about (0, 0, -0.8) m".
   [[nodiscard]] std::string text() const;
   /// Throws deltadyn::Error(usage) if a length that the shape needs is missing or not positive.

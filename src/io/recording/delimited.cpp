@@ -54,8 +54,7 @@ void append(Column& column, std::string_view field, char decimal, long line) {
   bool fine = false;
   switch (column.kind) {
     case ColumnKind::number:
-      fine = parse_number(field, decimal, value);
-      if (!fine) fine = parse_field(field, decimal, value) != Field::text;
+      fine = parse_number(field, decimal, value) || parse_field(field, decimal, value) != Field::text;
       break;
     case ColumnKind::long_number:
       if (const auto integer = long_integer(field)) {
@@ -168,8 +167,8 @@ void name_joints(Recording& recording) {
     for (const std::string_view part : {"position", "velocity", "effort"}) {
       if (digits <= part.size() || channel.name.compare(digits - part.size(), part.size(), part) != 0) continue;
       const std::string name_column = channel.name.substr(0, digits - part.size()) + "name" + channel.name.substr(digits);
-      const auto named = std::find_if(recording.channels.begin(), recording.channels.end(),
-                                      [&](const RecordedChannel& other) { return other.name == name_column; });
+      const auto named =
+          std::ranges::find_if(recording.channels, [&](const RecordedChannel& other) { return other.name == name_column; });
       if (named == recording.channels.end() || named->text.empty()) continue;
       channel.joint = named->text;
       channel.place = std::atoi(channel.name.c_str() + digits) + 1;
@@ -193,7 +192,7 @@ Recording read_delimited(const TextFile& file) {
   std::vector<Column> columns = RowReader(file, layout, recording).read(recording.timelines[0].line);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     Column& column = columns[k];
-    const bool nothing = std::all_of(column.values.begin(), column.values.end(), [](double v) { return std::isnan(v); });
+    const bool nothing = std::ranges::all_of(column.values, [](double v) { return std::isnan(v); });
     // The empty field behind a separator at the line's end.
     if (nothing && k + 1 == columns.size() && layout.names[k] == fmt::format("column{}", k + 1)) continue;
     RecordedChannel channel;

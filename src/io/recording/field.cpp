@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -23,16 +24,7 @@ bool is_missing_word(std::string_view field) {
                                         "nan(ind)", "undefined", "infinity", "-infinity"};
   if (field.size() > 10) return false;
   const std::string word = lower(field);
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
-}
-
-bool convert(const char* begin, const char* end, double& value) {
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (stop != end || error == std::errc::invalid_argument) return false;
-  // from_chars leaves the value alone here: too small reads as zero, too large is no number we can use.
-  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(begin, end).c_str(), nullptr);
-  if (!std::isfinite(value)) value = kNan;
-  return true;
+  return std::ranges::find(kWords, word) != kWords.end();
 }
 
 /// Reads the digits of a date one after the other.
@@ -72,15 +64,6 @@ class DateScanner {
   std::string_view text_;
 };
 
-/// Days since 1970-01-01 in the Gregorian calendar (H. Hinnant, chrono-compatible low-level date algorithms).
-std::int64_t days_from_civil(std::int64_t y, std::int64_t m, std::int64_t d) {
-  y -= m <= 2 ? 1 : 0;
-  const std::int64_t era = (y >= 0 ? y : y - 399) / 400;
-  const std::int64_t yoe = y - era * 400;
-  const std::int64_t doy = (153 * (m + (m > 2 ? -3 : 9)) + 2) / 5 + d - 1;
-  return era * 146097 + yoe * 365 + yoe / 4 - yoe / 100 + doy - 719468;
-}
-
 /// year-month-day, day.month.year or month/day/year (day/month/year if the first cannot be a month).
 bool scan_day(DateScanner& scan, std::int64_t& days) {
   std::int64_t a = 0, b = 0, c = 0;
@@ -98,7 +81,8 @@ bool scan_day(DateScanner& scan, std::int64_t& days) {
   if (first != 4 && last == 2) y += 2000;
   // Nanoseconds of other centuries would not fit, and no log is from there.
   if (y < 1970 || y > 2200 || m < 1 || m > 12 || d < 1 || d > 31) return false;
-  days = days_from_civil(y, m, d);
+  const std::chrono::sys_days first_of_month = std::chrono::year(static_cast<int>(y)) / static_cast<int>(m) / 1;
+  days = first_of_month.time_since_epoch().count() + d - 1;
   return true;
 }
 
@@ -152,19 +136,29 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+bool parse_decimal(std::string_view text, double& value) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (stop != end || error == std::errc::invalid_argument) return false;
+  // from_chars leaves the value alone here: too small reads as zero, too large is no number we can use.
+  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
+  if (!std::isfinite(value)) value = kNan;
+  return true;
+}
+
 bool parse_number(std::string_view field, char decimal, double& value) {
   if (field.empty()) {
     value = kNan;
     return true;
   }
-  if (field.front() == '+' && field.size() > 1 && field[1] != '-' && field[1] != '+') field.remove_prefix(1);
   if (decimal == '.') {
-    if (convert(field.data(), field.data() + field.size(), value)) return true;
+    if (parse_decimal(field, value)) return true;
   } else if (field.find('.') == std::string_view::npos && field.size() < 64) {
     std::array<char, 64> buffer{};
     std::memcpy(buffer.data(), field.data(), field.size());
     if (char* comma = static_cast<char*>(std::memchr(buffer.data(), ',', field.size()))) *comma = '.';
-    if (convert(buffer.data(), buffer.data() + field.size(), value)) return true;
+    if (parse_decimal({buffer.data(), field.size()}, value)) return true;
   }
   if (!is_missing_word(field)) return false;
   value = kNan;

@@ -27,6 +27,9 @@ enum class Field { number, missing, date, text };
 /// Only numbers and missing numbers; false for anything else. The fast way through a column known to hold numbers.
 [[nodiscard]] bool parse_number(std::string_view field, char decimal, double& value);
 
+/// A number with a decimal point, NaN if it is not finite or too large; false for any other text.
+[[nodiscard]] bool parse_decimal(std::string_view text, double& value);
+
 /// An integer of more than 15 digits, which a double cannot hold.
 [[nodiscard]] std::optional<std::int64_t> long_integer(std::string_view field);
 

@@ -1,5 +1,4 @@
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"
@@ -27,7 +26,7 @@ long period_ns(const TextFile& file) {
 }  // namespace
 
 std::optional<Recording> read_halscope(const TextFile& file) {
-  if (std::string_view(file.text).substr(0, kPeriod.size()) != kPeriod) return std::nullopt;
+  if (!file.text.starts_with(kPeriod)) return std::nullopt;
   const double step_s = 1e-9 * static_cast<double>(period_ns(file));
   Recording recording = read_delimited(file);
   recording.form = fmt::format("LinuxCNC halscope, a sample every {:.6g} ms", 1e3 * step_s);

@@ -1,7 +1,5 @@
 #include "recognisers.hpp"
 
-#include "deltadyn/runtime/error.hpp"
-
 namespace deltadyn {
 
 Recording read_recording(const std::string& path, const RecordingOptions& options) {

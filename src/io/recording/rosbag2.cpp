@@ -206,7 +206,7 @@ class Series {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::size_t late = 0;
     for (std::size_t k = 1; k < order.size(); ++k) late += stamp_ns[k] < stamp_ns[k - 1] ? 1 : 0;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stamp_ns[a] < stamp_ns[b]; });
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return stamp_ns[a] < stamp_ns[b]; });
     const auto sort = [&order](auto& series) {
       const auto before = series;
       for (std::size_t k = 0; k < order.size(); ++k) series[k] = before[order[k]];
@@ -232,12 +232,10 @@ class Series {
 /// Whether the headers' stamps are one clock that only the receipts mixed up: the way from one to the other takes a like time.
 bool is_one_clock(const Series& series) {
   constexpr double kLongestDelaySpread = 1e9;  // ns
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (std::size_t k = 0; k < series.line.size(); ++k) {
-    const double delay = static_cast<double>(series.receipt_ns[k]) - static_cast<double>(series.stamp_ns[k]);
-    low = std::min(low, delay);
-    high = std::max(high, delay);
-  }
+  std::vector<double> delays;
+  for (std::size_t k = 0; k < series.line.size(); ++k)
+    delays.push_back(static_cast<double>(series.receipt_ns[k]) - static_cast<double>(series.stamp_ns[k]));
+  const auto [low, high] = std::ranges::minmax(delays);
   return high - low < kLongestDelaySpread;
 }
 
@@ -245,15 +243,14 @@ bool is_one_clock(const Series& series) {
 /// received out of order come into the order of their stamps.
 const std::vector<std::int64_t>& stamps_of(Series& series, Recording& recording) {
   const auto& stamps = series.stamp_ns;
-  const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+  const auto [first, last] = std::ranges::minmax_element(stamps);
   const bool given = *last > *first;
-  if (given && std::is_sorted(stamps.begin(), stamps.end())) return stamps;
+  if (given && std::ranges::is_sorted(stamps)) return stamps;
   if (given && is_one_clock(series)) {
     const std::size_t moved = series.sort_by_stamps();
-    recording.notes.push_back(
-        fmt::format("{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the "
-                    "better clock",
-                    recording.file, moved, moved == 1 ? " was" : "s were"));
+    recording.notes.push_back(fmt::format(
+        "{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the better clock",
+        recording.file, moved, moved == 1 ? " was" : "s were"));
     return stamps;
   }
   recording.notes.push_back(
@@ -268,20 +265,13 @@ void add_channels(const std::string& topic, Series& series, Recording& recording
   for (std::size_t part = 0; part < 3; ++part) {
     for (std::size_t joint = 0; joint < series.joints.size(); ++joint) {
       auto& values = series.values[joint][part];
-      if (std::all_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) continue;
+      if (std::ranges::all_of(values, [](double v) { return std::isnan(v); })) continue;
       const std::string& name = series.joints[joint];
       RecordedChannel channel;
       channel.name = fmt::format("{}/{}/{}", topic, name, kParts[part]);  // as PlotJuggler names it
-      channel.aliases = {fmt::format("{}/{}", name, kParts[part]),
-                         fmt::format("{}/{}", kParts[part], name),
-                         fmt::format("{}.{}", name, kParts[part]),
-                         fmt::format("{}/{}/{}", topic, kParts[part], name),
-                         fmt::format("{}[{}]", kParts[part], joint),
-                         fmt::format("{}/{}[{}]", topic, kParts[part], joint),
-                         fmt::format("{}.{}[{}]", topic, kParts[part], joint),
-                         fmt::format("{}_{}", kParts[part], name),
-                         fmt::format("{}_{}", name, kParts[part]),
-                         fmt::format("{}[{}]", kParts[part], name)};
+      for (const char* alias : {"{1}/{2}", "{2}/{1}", "{1}.{2}", "{0}/{2}/{1}", "{2}[{3}]", "{0}/{2}[{3}]", "{0}.{2}[{3}]",
+                                "{2}_{1}", "{1}_{2}", "{2}[{1}]"})
+        channel.aliases.push_back(fmt::format(fmt::runtime(alias), topic, name, kParts[part], joint));
       channel.quantity = kQuantities[part];
       channel.place = static_cast<int>(joint) + 1;
       channel.joint = name;
@@ -301,7 +291,7 @@ std::optional<std::string> rosbag2_database(const std::string& path) {
     if (entry.path().extension() == ".mcap") refuse_binary_form(entry.path().string(), "\x89MCAP0\r\n");
     if (entry.path().extension() == ".db3") databases.push_back(entry.path().string());
   }
-  std::sort(databases.begin(), databases.end());
+  std::ranges::sort(databases);
   if (databases.empty()) return std::nullopt;
   if (databases.size() > 1) {
     throw Error(fmt::format("this rosbag2 is split into {} files", databases.size()), path,

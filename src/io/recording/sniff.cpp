@@ -1,7 +1,6 @@
 #include "sniff.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <optional>
 
@@ -119,10 +118,6 @@ std::optional<Candidate> best_marks(const std::vector<Line>& lines) {
   return best;
 }
 
-std::vector<std::string> texts(const std::vector<std::string_view>& fields) {
-  return {fields.begin(), fields.end()};
-}
-
 /// "# t q1 q2", "%time,field.position0": the mark is no part of the first name.
 std::string_view without_mark(std::string_view text) {
   text = trimmed(text);
@@ -146,7 +141,7 @@ std::vector<std::string> split_names(std::string_view text, char separator, std:
       if (names.size() == wanted) return names;
     }
   }
-  return texts(fields);
+  return {fields.begin(), fields.end()};
 }
 
 /// A separator at the end of every line, or only of the rows, or only of the names, makes no column.
@@ -222,7 +217,7 @@ Layout sniff_layout(std::string_view text, const std::string& path) {
   if (lines.empty()) throw Error("the file is empty", path, "check that the recording or its export is complete");
   const auto marks = best_marks(lines);
   if (!marks) {
-    const auto named = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return !is_comment(line.text); });
+    const auto named = std::ranges::find_if(lines, [](const Line& line) { return !is_comment(line.text); });
     const bool header_only = lines.size() <= 2 && named != lines.end();
     throw Error(header_only ? "the file holds a header but no data rows" : "no rows of numbers are found in this file", path,
                 header_only

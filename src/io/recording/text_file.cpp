@@ -79,7 +79,7 @@ std::string read_bytes(const std::string& path) {
 
 void refuse_binary_form(const std::string& path, std::string_view head) {
   for (const BinaryForm& form : kBinaryForms) {
-    if (head.substr(0, form.magic.size()) == form.magic) throw Error(fmt::format("this is {}", form.name), path, form.mend);
+    if (head.starts_with(form.magic)) throw Error(fmt::format("this is {}", form.name), path, form.mend);
   }
 }
 

@@ -24,19 +24,15 @@ struct Header {
 
 bool is_twincat(std::string_view text) {
   const std::string_view head = text.substr(0, 4096);
-  const bool begins = head.substr(0, 4) == "Name" || head.substr(0, 5) == "\"Name";
+  const bool begins = head.starts_with("Name") || head.starts_with("\"Name");
   return begins && head.find("Starttime of export") != std::string_view::npos;
-}
-
-/// What follows the word Name in the first line.
-char separator_of(std::string_view text) {
-  const std::size_t at = text.front() == '"' ? 6 : 4;
-  return at < text.size() ? text[at] : '\t';
 }
 
 Header read_header(const TextFile& file) {
   Header header;
-  header.separator = separator_of(file.text);
+  // What follows the word Name in the first line.
+  const std::size_t behind_name = file.text.front() == '"' ? 6 : 4;
+  if (behind_name < file.text.size()) header.separator = file.text[behind_name];
   std::vector<std::string_view> fields;
   bool inside = false;
   for_each_line(file.text, [&](std::string_view line, long number) {
@@ -76,10 +72,11 @@ std::string unit_of(const Header& header, std::size_t column) {
   return std::string(trimmed(unit));
 }
 
-/// A setting of the Scope's display: how a raw value becomes one on the screen.
+/// A number of the header.
 double setting_of(const Header& header, const std::string& row, std::size_t column, double usual) {
   const std::string text = field_of(header, row, column);
   double value = 0;
+  // The header follows the language of the computer, the rows the option of the export.
   const bool fine = !text.empty() && parse_number(text, text.find(',') == std::string::npos ? '.' : ',', value);
   return fine && std::isfinite(value) ? value : usual;
 }
@@ -93,21 +90,13 @@ void take_display_settings(const Header& header, std::size_t column, RecordedCha
   if (scale == 1 && offset == 0 && unit_scale == 1 && unit_offset == 0) return;
   channel.remark = fmt::format(
       "ScaleFactor {:.6g}, Offset {:.6g}, Unit ScaleFactor {:.6g} and Unit Offset {:.6g} of the header are of the Scope's "
-      "display; the "
-      "rows hold the recorded variable without them, so they were not applied (scale and offset in the column map would)",
+      "display; the rows hold the recorded variable without them, so they were not applied (scale and offset in the column map "
+      "would)",
       scale, offset, unit_scale, unit_offset);
   if (unit_scale == 1 && unit_offset == 0) return;
   if (!channel.unit.empty())
     channel.remark += fmt::format("; the unit {} is of the display, too, and was not taken", channel.unit);
   channel.unit.clear();
-}
-
-double sample_time_of(const Header& header, std::size_t column) {
-  const std::string text = field_of(header, "SampleTime[ms]", column);
-  double value = 0;
-  // The header follows the language of the computer, the rows the option of the export.
-  const bool fine = parse_number(text, text.find(',') == std::string::npos ? '.' : ',', value);
-  return fine && value > 0 ? 1e-3 * value : 0.0;
 }
 
 /// The rows' own decimal mark, from the first lines.
@@ -119,8 +108,8 @@ char decimal_of(const TextFile& file, const Header& header) {
   std::size_t points = 0, commas = 0;
   for_each_line(file.text, [&](std::string_view line, long number) {
     if (number < header.first_row) return true;
-    points += static_cast<std::size_t>(std::count(line.begin(), line.end(), '.'));
-    commas += static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+    points += static_cast<std::size_t>(std::ranges::count(line, '.'));
+    commas += static_cast<std::size_t>(std::ranges::count(line, ','));
     return number < header.first_row + 1000;
   });
   return commas > points ? ',' : '.';
@@ -201,7 +190,7 @@ void add_group(const Header& header, Group& group, Recording& recording) {
     channel.unit = unit_of(header, group.time + 1 + k);
     take_display_settings(header, group.time + 1 + k, channel);
     channel.timeline = recording.timelines.size() - 1;
-    channel.sample_time_s = sample_time_of(header, group.time + 1 + k);
+    channel.sample_time_s = 1e-3 * std::max(0.0, setting_of(header, "SampleTime[ms]", group.time + 1 + k, 0));
     auto& values = group.values[k];
     channel.values = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
     recording.channels.push_back(std::move(channel));
@@ -220,7 +209,7 @@ std::optional<Recording> read_twincat(const TextFile& file) {
   std::vector<std::string_view> fields;
   for_each_line(file.text, [&](std::string_view line, long number) {
     if (number < header.first_row || trimmed(line).empty()) return true;
-    if (trimmed(line).substr(0, 3) == "EOF") return false;
+    if (trimmed(line).starts_with("EOF")) return false;
     split_fields(line, header.separator, fields, true);
     for (Group& group : groups) take_row(group, fields, decimal, number, file.path);
     return true;

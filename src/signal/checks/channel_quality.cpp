@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "deltadyn/runtime/statistics.hpp"
@@ -31,8 +30,7 @@ double white_noise(const Eigen::Ref<const Eigen::VectorXd>& x, const std::vector
 /// Share of the changes that are whole multiples of the smallest one.
 double share_on_lattice(const std::vector<double>& changes, double smallest) {
   constexpr double kOff = 0.05;  // decimal rounding of the file moves a change by less
-  double on = 0;
-  double judged = 0;
+  double on = 0, judged = 0;
   for (const double change : changes) {
     const double multiple = change / smallest;
     if (multiple > 200.0) continue;  // the error of the step itself, times the multiple, would decide
@@ -47,15 +45,10 @@ double share_on_lattice(const std::vector<double>& changes, double smallest) {
 ChannelQuality measure_channel(const Eigen::Ref<const Eigen::VectorXd>& values) {
   ChannelQuality out;
   const auto stretches = sample_stretches(values.size(), kStretch);
-  double lowest = 0, highest = 0, rows = 0, repeats = 0;
-  bool any = false;
-  for (Index i = 0; i < values.size(); ++i) {
-    const double v = values(i);
-    if (!std::isfinite(v)) continue;
-    lowest = any ? std::min(lowest, v) : v;
-    highest = any ? std::max(highest, v) : v;
-    any = true;
-  }
+  const auto known = values.array().isFinite();
+  const double lowest = known.any() ? known.select(values.array(), HUGE_VAL).minCoeff() : 0.0;
+  const double highest = known.any() ? known.select(values.array(), -HUGE_VAL).maxCoeff() : 0.0;
+  double rows = 0, repeats = 0;
   out.range = highest - lowest;
   // Smaller changes are rounding of decimal numbers, not counts of an encoder.
   const double rounding = 1e-12 * std::max(std::abs(lowest), std::abs(highest));

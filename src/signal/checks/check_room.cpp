@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 #include "deltadyn/signal/log_columns.hpp"
 
@@ -50,15 +51,13 @@ void CheckRoom::tell(LogFinding finding, bool with_note) const {
 
 void CheckRoom::tell(FindingLevel level, const std::string& key, Index sample, const std::string& column, int drive, double value,
                      const std::string& unit, const std::string& sentence, const std::string& mend) const {
-  LogFinding finding;
-  finding.level = level;
-  finding.key = key;
-  finding.drive = drive;
-  finding.value = value;
-  finding.unit = unit;
-  finding.text = where(sample, column) + ": " + sentence;
-  finding.mend = mend;
-  tell(std::move(finding));
+  tell({.level = level,
+        .key = key,
+        .drive = drive,
+        .value = value,
+        .unit = unit,
+        .text = where(sample, column) + ": " + sentence,
+        .mend = mend});
 }
 
 void CheckRoom::mark_filled(Index sample, char mark) const {
@@ -98,6 +97,12 @@ Log rows_of(const Log& log, const std::vector<Index>& rows) {
   out.notes = log.notes;
   out.findings = log.findings;
   return out;
+}
+
+Log rows_of(const Log& log, Index first, Index last) {
+  std::vector<Index> rows(static_cast<std::size_t>(last - first));
+  std::iota(rows.begin(), rows.end(), first);
+  return rows_of(log, rows);
 }
 
 void CheckRoom::keep(const std::vector<Index>& rows) const {

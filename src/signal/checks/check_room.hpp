@@ -4,7 +4,6 @@
 /// What the checks of a log share: the log, the robot, the options, and how they report.
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -75,13 +74,16 @@ struct CheckRoom {
 
 /// Rows of a log in the given order, with all that belongs to them.
 [[nodiscard]] Log rows_of(const Log& log, const std::vector<Index>& rows);
+/// The rows [first, last).
+[[nodiscard]] Log rows_of(const Log& log, Index first, Index last);
 
 /// Counts what is of one kind, so that it is said once with the number and the first place.
 struct Tally {
   Index count = 0;
   Index first = -1;
-  void add(Index sample) {
-    if (count++ == 0) first = sample;
+  void add(Index sample, Index samples = 1) {
+    if (count == 0) first = sample;
+    count += samples;
   }
 };
 

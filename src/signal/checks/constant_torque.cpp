@@ -10,6 +10,7 @@
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -46,15 +47,12 @@ bool jumps_at_an_end(const Eigen::Ref<const Eigen::VectorXd>& tau, Index begin, 
 std::vector<Run> runs_of(const CheckRoom& room, Index d) {
   const Log& log = room.log;
   const auto tau = log.tau.col(d);
-  const Index n = tau.size();
   const double h = log.sample_time_s();
   const auto shortest = std::max<Index>(kShortestRows, static_cast<Index>(std::lround(kShortest_s / h)));
   std::vector<Run> runs;
   std::vector<double> changes;
   double repeats = 0, rows = 0;
-  for (Index begin = 0; begin < n;) {
-    Index end = begin + 1;
-    while (end < n && tau(end) == tau(begin)) ++end;
+  for_each_run(tau, [&](Index begin, Index end) {
     if (end - begin >= shortest) {
       runs.push_back({d, begin, end, tau(begin), false});
     } else {
@@ -62,8 +60,7 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
       repeats += static_cast<double>(end - begin - 1);
       if (begin > 0 && begin % 7 == 0) changes.push_back(std::abs(tau(begin) - tau(begin - 1)));  // every seventh will do
     }
-    begin = end;
-  }
+  });
   if (runs.empty()) return runs;
   const double usual_change = lower_median(std::move(changes));
   const double usual_run = rows > repeats ? rows / (rows - repeats) : 1.0;
@@ -83,13 +80,13 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
     const bool extreme = run.value == highest || run.value == lowest;
     return !jumps && (coarse || (extreme && length * h < kLongest_s));
   };
-  runs.erase(std::remove_if(runs.begin(), runs.end(), is_chance_or_limit), runs.end());
+  std::erase_if(runs, is_chance_or_limit);
   return runs;
 }
 
 std::string name_of(const std::vector<Run>& together, std::size_t drives) {
-  const bool zero = std::all_of(together.begin(), together.end(), [](const Run& run) { return run.value == 0; });
-  const bool rest = std::all_of(together.begin(), together.end(), [](const Run& run) { return run.resting; });
+  const bool zero = std::ranges::all_of(together, [](const Run& run) { return run.value == 0; });
+  const bool rest = std::ranges::all_of(together, &Run::resting);
   if (together.size() == drives && zero) return rest ? "the servo is off, or brakes hold the robot" : "the servo is off";
   if (rest) return "a brake holds, or the torque was not recorded";
   return zero ? "the servo is off, or the torque was not recorded" : "the recorded torque stands still";
@@ -117,7 +114,7 @@ void check_constant_torque(CheckRoom& room) {
     }
     all.insert(all.end(), runs.begin(), runs.end());
   }
-  std::sort(all.begin(), all.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
+  std::ranges::sort(all, {}, &Run::begin);
   while (!all.empty()) {
     // Drives whose torque stands still at about the same time have one cause.
     const Run first = all.front();

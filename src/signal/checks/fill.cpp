@@ -84,17 +84,13 @@ class Filler {
   }
 
   void fill() {
-    auto values = channel_.block->col(channel_.drive);
+    const auto values = channel_.values();
     const Index n = values.size();
-    Index i = 0;
-    while (i < n) {
-      if (std::isfinite(values(i))) {
-        ++i;
-        continue;
-      }
+    for (Index i = 0; i < n; ++i) {
       Index end = i;
       while (end < n && !std::isfinite(values(end))) ++end;
-      if (i == 0 && end == n) {
+      if (end == i) continue;
+      if (end - i == n) {
         throw Error("the column holds no number", room_.where(0, channel_.name),
                     "record this drive, or give the column that holds its values");
       }
@@ -127,8 +123,7 @@ class Filler {
       for (Index k = begin; k < end; ++k) room_.mark_filled(k, mark);
     }
     if (told) return;
-    filled_.add(begin);
-    filled_.count += end - begin - 1;
+    filled_.add(begin, end - begin);
   }
 
   /// Is a run of this length filled as well as measured?
@@ -172,11 +167,7 @@ class Filler {
   int each_side_ = 1;
   Index longest_ = 3;
   double noise_ = -1, range_ = 0;
-  std::array<char, 128> marks_ = [] {
-    std::array<char, 128> unknown{};
-    unknown.fill(kUnknown);
-    return unknown;
-  }();
+  std::vector<char> marks_ = std::vector<char>(128, kUnknown);
   Tally filled_;
 };
 
@@ -189,9 +180,7 @@ void trim_ends(CheckRoom& room) {
     while (last > first && !std::isfinite(log.q(last - 1, d))) --last;
   }
   if (first >= last || (first == 0 && last == log.samples())) return;
-  std::vector<Index> rows;
-  for (Index i = first; i < last; ++i) rows.push_back(i);
-  room.keep(rows);
+  room.log = rows_of(log, first, last);
   room.grid.start_s += static_cast<double>(first) * room.grid.step_s;
 }
 
@@ -217,26 +206,25 @@ void fill_missing_numbers(CheckRoom& room) {
     const std::string more = !each                  ? fmt::format("; the first of {} in {} columns", all, columns)
                              : tallies[k].count > 1 ? fmt::format("; the first of {}", tallies[k].count)
                                                     : "";
-    LogFinding finding;
-    finding.level = FindingLevel::mended;
-    finding.key = "missing_numbers";
-    finding.drive = static_cast<int>(channels[k].drive);
-    finding.value = static_cast<double>(tallies[k].count);
-    finding.unit = "rows";
-    finding.text = room.where(tallies[k].first, channels[k].name) + ": no number, filled in" + more;
-    room.tell(std::move(finding), each || !said);
+    room.tell({.level = FindingLevel::mended,
+               .key = "missing_numbers",
+               .drive = static_cast<int>(channels[k].drive),
+               .value = static_cast<double>(tallies[k].count),
+               .unit = "rows",
+               .text = room.where(tallies[k].first, channels[k].name) + ": no number, filled in" + more},
+              each || !said);
     said = true;
   }
 }
 
 void refuse_too_many_filled(CheckRoom& room) {
   const Log& log = room.log;
-  const auto filled = std::count_if(log.filled.begin(), log.filled.end(), [](char mark) { return mark != Log::kMeasured; });
+  const auto spoilt = [](char mark) { return mark != Log::kMeasured; };
+  const auto filled = std::ranges::count_if(log.filled, spoilt);
   const double share = static_cast<double>(filled) / static_cast<double>(log.samples());
   // One sample must be allowed in a log of any length.
   if (share > room.options.max_filled_share && filled > room.options.max_filled_gap) {
-    const auto first =
-        std::find_if(log.filled.begin(), log.filled.end(), [](char mark) { return mark != Log::kMeasured; }) - log.filled.begin();
+    const auto first = std::ranges::find_if(log.filled, spoilt) - log.filled.begin();
     throw UnusablePart(fmt::format("{:.2g} % of the samples are missing or spoilt, the first one here", 100.0 * share),
                        room.where(first), "look for lost packets or a loose encoder cable, and record again");
   }

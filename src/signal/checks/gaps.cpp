@@ -20,18 +20,6 @@ constexpr double kShortParts[] = {4.0, 2.0,
                                   1.0};  // s; the shorter a part, the larger the share that the filters lose at its ends
 constexpr double kEnough = 0.8;          // of the recorded time has to stay in the parts that are used
 
-/// Steps in time between the rows of one recording.
-std::vector<double> steps_of(const CheckRoom& room) {
-  std::vector<double> steps;
-  const Eigen::VectorXd& t = room.log.t_s;
-  for (const auto& [begin, end] : sample_stretches(t.size(), 256)) {
-    for (Index i = begin + 1; i < end; ++i) {
-      if (t(i) > t(i - 1)) steps.push_back(t(i) - t(i - 1));
-    }
-  }
-  return steps;
-}
-
 /// A longer step than this is a gap.
 double longest_step(const CheckRoom& room, double usual, const std::vector<double>& steps) {
   const double allowed = (static_cast<double>(room.longest_filled(usual)) + 1.5) * usual;
@@ -48,7 +36,7 @@ std::vector<Index> borders_of(CheckRoom& room, double longest, Tally& gaps) {
   const Eigen::VectorXd& t = room.log.t_s;
   std::vector<Index> borders{0};
   for (Index i = 1; i < t.size(); ++i) {
-    const bool recording = std::binary_search(room.recordings.begin(), room.recordings.end(), i);
+    const bool recording = std::ranges::binary_search(room.recordings, i);
     if (!recording && t(i) - t(i - 1) <= longest) continue;
     if (!recording) gaps.add(i);
     borders.push_back(i);
@@ -56,10 +44,6 @@ std::vector<Index> borders_of(CheckRoom& room, double longest, Tally& gaps) {
   borders.push_back(t.size());
   return borders;
 }
-
-}  // namespace
-
-namespace {
 
 /// One finding for all drives, which mostly are blind together.
 void tell_blind_rows(const CheckRoom& room, const std::vector<Tally>& tallies) {
@@ -89,7 +73,7 @@ void tell_blind_rows(const CheckRoom& room, const std::vector<Tally>& tallies) {
 void drop_blind_rows(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
-  const double usual = lower_median(steps_of(room));
+  const double usual = lower_median(steps_of(log.t_s));
   std::vector<char> blind(static_cast<std::size_t>(n), 0);
   std::vector<Tally> tallies(static_cast<std::size_t>(log.drives()));
   for (Index d = 0; d < log.drives(); ++d) {
@@ -102,8 +86,7 @@ void drop_blind_rows(CheckRoom& room) {
       // At the ends there is nothing to fill from.
       if (end > i && (end - i > longest || i == 0 || end == n)) {
         std::fill(blind.begin() + i, blind.begin() + end, 1);
-        if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(i);
-        if (stale <= 1) tallies[static_cast<std::size_t>(d)].count += end - i - 1;
+        if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(i, end - i);
       }
       i = std::max(end, i + 1);
     }
@@ -112,7 +95,7 @@ void drop_blind_rows(CheckRoom& room) {
   std::vector<Index> recordings;
   bool new_recording = false;
   for (Index i = 0; i < n; ++i) {
-    new_recording = new_recording || std::binary_search(room.recordings.begin(), room.recordings.end(), i);
+    new_recording = new_recording || std::ranges::binary_search(room.recordings, i);
     if (blind[static_cast<std::size_t>(i)] != 0) continue;
     if (new_recording && !rows.empty()) recordings.push_back(static_cast<Index>(rows.size()));
     new_recording = false;
@@ -127,7 +110,7 @@ void drop_blind_rows(CheckRoom& room) {
 
 std::vector<Log> split(CheckRoom& room) {
   const Log& log = room.log;
-  const std::vector<double> steps = steps_of(room);
+  const std::vector<double> steps = steps_of(log.t_s);
   const double usual = lower_median(steps);
   if (usual > kLargestSampleTime) {
     throw Error(fmt::format("the samples are {:.4g} s apart", usual), room.where(0, "t_s"),
@@ -164,9 +147,7 @@ std::vector<Log> split(CheckRoom& room) {
       dropped.add(borders[k]);
       continue;
     }
-    std::vector<Index> rows;
-    for (Index i = borders[k]; i < borders[k + 1]; ++i) rows.push_back(i);
-    parts.push_back(rows_of(log, rows));
+    parts.push_back(rows_of(log, borders[k], borders[k + 1]));
     parts.back().part = static_cast<int>(parts.size());
     parts.back().notes.clear();
     parts.back().findings.clear();

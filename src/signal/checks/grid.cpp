@@ -113,6 +113,12 @@ void judge_stamps(CheckRoom& room) {
   say_uneven(room, "the positions agree with the stamps, so the log was moved to even steps");
 }
 
+Eigen::VectorXd even_stamps(const TimeGrid& grid, Index samples) {
+  Eigen::VectorXd even(samples);
+  for (Index k = 0; k < samples; ++k) even(k) = grid.start_s + static_cast<double>(k) * grid.step_s;
+  return even;
+}
+
 /// Adds the samples that are missing in time, without values yet.
 void insert_lost_rows(CheckRoom& room) {
   Log& log = room.log;
@@ -120,8 +126,7 @@ void insert_lost_rows(CheckRoom& room) {
   const Index had = log.samples();
   const Index wanted = grid.index.back() + 1;
   if (wanted == had) return;
-  Eigen::VectorXd t_s(wanted);
-  for (Index k = 0; k < wanted; ++k) t_s(k) = grid.start_s + static_cast<double>(k) * grid.step_s;
+  Eigen::VectorXd t_s = even_stamps(grid, wanted);
   std::vector<long> lines(log.line.empty() ? 0 : static_cast<std::size_t>(wanted), 0);
   Tally lost;
   for (std::size_t i = 0; i < grid.index.size(); ++i) {
@@ -130,8 +135,7 @@ void insert_lost_rows(CheckRoom& room) {
     if (!lines.empty()) lines[k] = log.line[i];
     const Index before = i > 0 ? grid.index[i] - grid.index[i - 1] - 1 : 0;
     if (before == 0) continue;
-    lost.add(static_cast<Index>(i));
-    lost.count += before - 1;
+    lost.add(static_cast<Index>(i), before);
   }
   const double share = 100.0 * static_cast<double>(lost.count) / static_cast<double>(wanted);
   const std::string text =
@@ -152,12 +156,6 @@ void insert_lost_rows(CheckRoom& room) {
   }
   log.t_s = std::move(t_s);
   log.line = std::move(lines);
-}
-
-Eigen::VectorXd even_stamps(const TimeGrid& grid, Index samples) {
-  Eigen::VectorXd even(samples);
-  for (Index k = 0; k < samples; ++k) even(k) = grid.start_s + static_cast<double>(k) * grid.step_s;
-  return even;
 }
 
 /// Marks and line numbers of the rows nearest in time; rows within a long step are no measurement.

@@ -12,13 +12,7 @@ namespace deltadyn::checks {
 namespace {
 
 void add(const CheckRoom& room, const char* key, Index drive, double value, const std::string& unit, const std::string& text) {
-  LogFinding finding;
-  finding.key = key;
-  finding.drive = static_cast<int>(drive);
-  finding.value = value;
-  finding.unit = unit;
-  finding.text = room.log.file + ": " + text;
-  room.tell(std::move(finding));
+  room.tell({.key = key, .drive = static_cast<int>(drive), .value = value, .unit = unit, .text = room.log.file + ": " + text});
 }
 
 std::string step_in_words(const std::string& column, double step, const std::string& unit) {

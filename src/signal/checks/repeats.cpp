@@ -25,10 +25,6 @@ constexpr Index kFewestJudged = 200;    // rows to judge a channel by
 constexpr double kStepsOfChange = 8.0;  // in units of the smallest change: equality by chance is then below 1 in 25
 constexpr int kMostHeld = 64;           // rows; slower updates are another matter (a stuck encoder, a servo that is off)
 
-bool same(double a, double b) {
-  return a == b;
-}
-
 /// Mean number of rows between two changes, over the runs of equal values that lie between two changes by many steps; 1 if the channel
 /// is fresh in (nearly) every row. A robot that stops and starts again has a small change on either side of its rest.
 double rows_between_changes(const Eigen::Ref<const Eigen::VectorXd>& x, double smallest) {
@@ -39,7 +35,7 @@ double rows_between_changes(const Eigen::Ref<const Eigen::VectorXd>& x, double s
     bool large_before = false;
     Index run = begin;
     for (Index i = begin + 1; i < end; ++i) {
-      if (same(x(i), x(i - 1))) continue;
+      if (x(i) == x(i - 1)) continue;
       const bool large = std::abs(x(i) - x(i - 1)) >= many;  // false where a number is missing
       if (large && large_before && i - run <= kMostHeld) {
         rows += static_cast<double>(i - run);
@@ -58,7 +54,7 @@ std::vector<Index> changes_of(const Eigen::Ref<const Eigen::VectorXd>& x, const 
   const double step = (t_s(t_s.size() - 1) - t_s(0)) / static_cast<double>(t_s.size() - 1);
   std::vector<Index> rows{0};
   for (Index i = 1; i < x.size(); ++i) {
-    if (!same(x(i), x(i - 1)) && !(t_s(i) - t_s(i - 1) > 1.7 * step)) rows.push_back(i);
+    if (x(i) != x(i - 1) && !(t_s(i) - t_s(i - 1) > 1.7 * step)) rows.push_back(i);
   }
   return rows;
 }
@@ -75,15 +71,12 @@ void share_updates(std::vector<StaleChannel>& stale) {
   for (std::size_t a = 0; a < stale.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (stale[a].rows < 1.6 || std::abs(stale[a].rows - stale[b].rows) > 0.2 * stale[a].rows) continue;
+      auto &mine = stale[a].updates, &theirs = stale[b].updates;
       std::vector<Index> both, either;
-      std::set_intersection(stale[a].updates.begin(), stale[a].updates.end(), stale[b].updates.begin(), stale[b].updates.end(),
-                            std::back_inserter(both));
-      if (static_cast<double>(both.size()) <
-          0.9 * static_cast<double>(std::min(stale[a].updates.size(), stale[b].updates.size())))
-        continue;
-      std::set_union(stale[a].updates.begin(), stale[a].updates.end(), stale[b].updates.begin(), stale[b].updates.end(),
-                     std::back_inserter(either));
-      stale[a].updates = stale[b].updates = either;
+      std::ranges::set_intersection(mine, theirs, std::back_inserter(both));
+      if (static_cast<double>(both.size()) < 0.9 * static_cast<double>(std::min(mine.size(), theirs.size()))) continue;
+      std::ranges::set_union(mine, theirs, std::back_inserter(either));
+      mine = theirs = either;
     }
   }
 }
@@ -107,14 +100,9 @@ void insert_quiet_updates(StaleChannel& one, Index samples) {
 
 void keep_updates_only(StaleChannel& one) {
   auto x = one.channel.block->col(one.channel.drive);
-  std::size_t next = 0;
-  for (Index i = 0; i < x.size(); ++i) {
-    if (next < one.updates.size() && one.updates[next] == i) {
-      ++next;
-    } else {
-      x(i) = kUnknown;
-    }
-  }
+  const Eigen::VectorXd recorded = x;
+  x.setConstant(kUnknown);
+  for (const Index i : one.updates) x(i) = recorded(i);
 }
 
 /// One sentence for all, and the figure of each.
@@ -122,16 +110,16 @@ void say_stale(const CheckRoom& room, const std::vector<StaleChannel>& stale) {
   std::vector<std::string> channels;
   for (const StaleChannel& one : stale) channels.push_back(fmt::format("{} (every {:.3g} rows)", one.channel.name, one.rows));
   for (std::size_t k = 0; k < stale.size(); ++k) {
-    LogFinding finding;
-    finding.level = FindingLevel::mended;
-    finding.key = stale[k].channel.position ? "stale" : "stale_torque";
-    finding.drive = static_cast<int>(stale[k].channel.drive);
-    finding.value = stale[k].rows;
-    finding.unit = "rows";
-    finding.text = fmt::format(
-        "{}: recorded faster than measured, values are repeated and change only now and again: {}; the log is taken at this rate",
-        room.log.file, fmt::join(channels, ", "));
-    room.tell(std::move(finding), k == 0);
+    room.tell(
+        {.level = FindingLevel::mended,
+         .key = stale[k].channel.position ? "stale" : "stale_torque",
+         .drive = static_cast<int>(stale[k].channel.drive),
+         .value = stale[k].rows,
+         .unit = "rows",
+         .text = fmt::format("{}: recorded faster than measured, values are repeated and change only now and again: {}; the "
+                             "log is taken at this rate",
+                             room.log.file, fmt::join(channels, ", "))},
+        k == 0);
   }
 }
 
@@ -185,7 +173,7 @@ class HeldRows {
         continue;
       }
       for (Index d = 0; d < log.drives(); ++d) {
-        if (!same(log.q(i, d), log.q(i - 1, d)) || !moves_on(i, d)) continue;
+        if (log.q(i, d) != log.q(i - 1, d) || !moves_on(i, d)) continue;
         single[static_cast<std::size_t>(d)].add(i);
         missing.emplace_back(i, d);
       }
@@ -215,9 +203,9 @@ class HeldRows {
     constexpr Index kBack = 3;
     const auto q = room_.log.q.col(d);
     Index first = i - 1;
-    while (first > 0 && same(q(first - 1), q(first))) --first;
+    while (first > 0 && q(first - 1) == q(first)) --first;
     Index next = i + 1;
-    while (next < q.size() && same(q(next), q(i))) ++next;
+    while (next < q.size() && q(next) == q(i)) ++next;
     if (first < kBack || next + kBack >= q.size() || next - first > kMostHeld) return false;
     const double before = (q(first) - q(first - kBack)) / static_cast<double>(kBack);
     const double behind = (q(next + kBack) - q(next)) / static_cast<double>(kBack);
@@ -258,11 +246,10 @@ class HeldRows {
   void say(const Tally& rows, const std::vector<Tally>& single) const {
     const auto share = [&](Index count) { return 100.0 * static_cast<double>(count) / static_cast<double>(room_.log.samples()); };
     if (rows.count > 0) {
-      room_.tell(
-          FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
-          fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows ({:.2g} %): "
-                      "taken as missing",
-                      rows.count, share(rows.count)));
+      room_.tell(FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
+                 fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows "
+                             "({:.2g} %): taken as missing",
+                             rows.count, share(rows.count)));
     }
     for (std::size_t d = 0; d < single.size(); ++d) {
       if (single[d].count == 0) continue;

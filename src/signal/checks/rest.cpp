@@ -40,12 +40,10 @@ void extend(const Eigen::Ref<const Eigen::VectorXd>& q, double band, Index& begi
 }
 
 void tell_moving(const CheckRoom& room, Index drive, double share) {
-  LogFinding finding;
-  finding.key = "moving";
-  finding.drive = static_cast<int>(drive);
-  finding.value = share;
-  finding.text = fmt::format("{}: drive {} moves in {:.3g} % of the samples", room.log.file, drive + 1, 100.0 * share);
-  room.tell(std::move(finding));
+  room.tell({.key = "moving",
+             .drive = static_cast<int>(drive),
+             .value = share,
+             .text = fmt::format("{}: drive {} moves in {:.3g} % of the samples", room.log.file, drive + 1, 100.0 * share)});
 }
 
 }  // namespace
@@ -82,13 +80,12 @@ void leave_rest_out(CheckRoom& room) {
     all += resting;
     tell_moving(room, d, 1.0 - static_cast<double>(resting) / static_cast<double>(n));
   }
-  LogFinding finding;
-  finding.key = "standstill";
-  finding.value = static_cast<double>(all) / static_cast<double>(n * log.drives());
-  finding.text =
-      fmt::format("{}: the drives are at rest in {:.3g} % of the samples, which take no part in fits (static friction)", log.file,
-                  100.0 * finding.value);
-  room.tell(std::move(finding));
+  const double share = static_cast<double>(all) / static_cast<double>(n * log.drives());
+  room.tell(
+      {.key = "standstill",
+       .value = share,
+       .text = fmt::format("{}: the drives are at rest in {:.3g} % of the samples, which take no part in fits (static friction)",
+                           log.file, 100.0 * share)});
 }
 
 }  // namespace deltadyn::checks

@@ -29,4 +29,25 @@ inline std::vector<Stretch> sample_stretches(Eigen::Index rows, Eigen::Index len
   return stretches;
 }
 
+/// Calls each(begin, end) for the runs of equal values.
+template <class Values, class Each>
+void for_each_run(const Values& values, Each each) {
+  for (Eigen::Index begin = 0, end = 0; begin < values.size(); begin = end) {
+    end = begin + 1;
+    while (end < values.size() && values(end) == values(begin)) ++end;
+    each(begin, end);
+  }
+}
+
+/// Steps in time between rows of one recording.
+inline std::vector<double> steps_of(const Eigen::VectorXd& t_s) {
+  std::vector<double> steps;
+  for (const auto& [begin, end] : sample_stretches(t_s.size(), 256)) {
+    for (Eigen::Index i = begin + 1; i < end; ++i) {
+      if (t_s(i) > t_s(i - 1)) steps.push_back(t_s(i) - t_s(i - 1));
+    }
+  }
+  return steps;
+}
+
 }  // namespace deltadyn::checks

@@ -2,12 +2,12 @@
 /// A torque that is cut off at a level.
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/signal/log_columns.hpp"
 
 #include "checks.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -33,33 +33,25 @@ bool is_rounded_top(const Eigen::Ref<const Eigen::VectorXd>& tau, const Cut& cut
 /// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for spikes.
 Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double step, double sign) {
   Cut best;
-  const Index n = tau.size();
   const auto counts = [&](Index begin, Index end) {
     return end - begin >= kShortestRun && out[static_cast<std::size_t>(begin)] == 0;
   };
   // The extreme among values that occur in runs.
   bool any = false;
-  for (Index begin = 0; begin < n;) {
-    Index end = begin + 1;
-    while (end < n && tau(end) == tau(begin)) ++end;
-    if (counts(begin, end) && (!any || sign * tau(begin) > sign * best.level)) {
-      best.level = tau(begin);
-      any = true;
-    }
-    begin = end;
-  }
+  for_each_run(tau, [&](Index begin, Index end) {
+    if (!counts(begin, end) || (any && sign * tau(begin) <= sign * best.level)) return;
+    best.level = tau(begin);
+    any = true;
+  });
   if (!any) return best;
   Index beyond = 0;
-  for (Index begin = 0; begin < n;) {
-    Index end = begin + 1;
-    while (end < n && tau(end) == tau(begin)) ++end;
+  for_each_run(tau, [&](Index begin, Index end) {
     if (tau(begin) == best.level && counts(begin, end)) {
       for (Index i = begin; i < end; ++i) best.rows.push_back(i);
     } else if (sign * tau(begin) > sign * best.level) {
       beyond += end - begin;
     }
-    begin = end;
-  }
+  });
   if (beyond > kMostBeyond || is_rounded_top(tau, best, sign, step)) best.rows.clear();
   return best;
 }
@@ -80,7 +72,7 @@ void check_saturation(CheckRoom& room) {
     const Cut above = cut_of(tau, out, step, 1.0);
     const Cut below = cut_of(tau, out, step, -1.0);
     std::vector<Index> rows;
-    std::merge(above.rows.begin(), above.rows.end(), below.rows.begin(), below.rows.end(), std::back_inserter(rows));
+    std::ranges::merge(above.rows, below.rows, std::back_inserter(rows));
     const auto clipped = static_cast<Index>(rows.size());
     // Where the other values repeat too, equality means nothing.
     Index repeats = 0;

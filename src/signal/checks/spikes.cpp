@@ -139,8 +139,7 @@ class SpikeSearch {
 
   void replace(Index begin, Index end) {
     if (spikes_.count == 0) first_value_ = values_(begin);
-    spikes_.add(begin);
-    spikes_.count += end - begin - 1;
+    spikes_.add(begin, end - begin);
     auto column = channel_.block->col(channel_.drive);
     if (channel_.position && end - begin == 1) {
       column(begin) -= surprise(values_, begin);
@@ -188,16 +187,15 @@ void repair_spikes(CheckRoom& room) {
     const std::string more = all.size() > 1 ? fmt::format(", the first of {} such samples in {} columns", count, all.size())
                              : count > 1    ? fmt::format(", the first of {} such samples", count)
                                             : " of one sample";
-    LogFinding finding;
-    finding.level = many ? FindingLevel::warning : FindingLevel::mended;
-    finding.key = one.channel->position ? "spikes" : "torque_spikes";
-    finding.drive = static_cast<int>(one.channel->drive);
-    finding.value = static_cast<double>(one.spikes.count);
-    finding.unit = "rows";
-    finding.text = fmt::format("{}: the value {:.9g} is a spike{}, replaced", room.where(one.spikes.first, one.channel->name),
-                               one.value, more);
-    if (many) finding.mend = "look for a loose cable or a recorder that mixes up its channels";
-    room.tell(std::move(finding), &one == &all.front());
+    room.tell({.level = many ? FindingLevel::warning : FindingLevel::mended,
+               .key = one.channel->position ? "spikes" : "torque_spikes",
+               .drive = static_cast<int>(one.channel->drive),
+               .value = static_cast<double>(one.spikes.count),
+               .unit = "rows",
+               .text = fmt::format("{}: the value {:.9g} is a spike{}, replaced", room.where(one.spikes.first, one.channel->name),
+                                   one.value, more),
+               .mend = many ? "look for a loose cable or a recorder that mixes up its channels" : ""},
+              &one == &all.front());
   }
 }
 

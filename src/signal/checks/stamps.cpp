@@ -52,16 +52,6 @@ void drop_rows_twice(CheckRoom& room) {
   room.keep(rows);
 }
 
-double usual_step(const Eigen::VectorXd& t_s) {
-  std::vector<double> steps;
-  for (const auto& [begin, end] : sample_stretches(t_s.size(), 256)) {
-    for (Index i = begin + 1; i < end; ++i) {
-      if (t_s(i) > t_s(i - 1)) steps.push_back(t_s(i) - t_s(i - 1));
-    }
-  }
-  return lower_median(std::move(steps));
-}
-
 /// Size of the change of all positions over the rows that `counts`, for one row.
 template <class Counts>
 double mean_change(const Log& log, Counts counts) {
@@ -117,9 +107,9 @@ bool mend_coarse_clock(CheckRoom& room) {
   log.t_s = Eigen::VectorXd::LinSpaced(n, log.t_s(0), log.t_s(n - 1));
   room.tell(
       FindingLevel::mended, "coarse_stamps", repeated.first, "t_s", -1, coarse, "s",
-      fmt::format("the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps repeat; taken "
-                  "as even",
-                  coarse, step, repeated.count));
+      fmt::format(
+          "the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps repeat; taken as even",
+          coarse, step, repeated.count));
   return true;
 }
 
@@ -140,11 +130,10 @@ void mend_single_stamps(CheckRoom& room, double step) {
   }
   if (wrong.count == 0) return;
   room.tell(FindingLevel::mended, "wrong_stamps", wrong.first, "t_s", -1, static_cast<double>(wrong.count), "rows",
-            wrong.count == 1
-                ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
-                : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are set between "
-                              "their neighbours",
-                              wrong.count - 1));
+            wrong.count == 1 ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
+                             : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are "
+                                           "set between their neighbours",
+                                           wrong.count - 1));
 }
 
 }  // namespace
@@ -153,7 +142,7 @@ void order_stamps(CheckRoom& room) {
   drop_rows_twice(room);
   if (mend_coarse_clock(room)) return;
   Log& log = room.log;
-  const double step = usual_step(log.t_s);
+  const double step = lower_median(steps_of(log.t_s));
   mend_single_stamps(room, step);
   for (Index i = 1; i < log.samples(); ++i) {
     if (log.t_s(i) == log.t_s(i - 1)) {

@@ -85,61 +85,49 @@ void find_frozen_positions(CheckRoom& room) {
     // The first one was measured.
     const Index from = begin == 0 ? 0 : begin + 1;
     log.q.middleRows(from, end - from).setConstant(std::numeric_limits<double>::quiet_NaN());
-    tally.add(from);
-    tally.count += end - from - 1;
+    tally.add(from, end - from);
   }
   if (tally.count == 0) return;
-  room.tell(
-      FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
-      fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was off; "
-                  "taken as missing",
-                  static_cast<double>(tally.count) * step_s));
+  room.tell(FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
+            fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was "
+                        "off; taken as missing",
+                        static_cast<double>(tally.count) * step_s));
 }
 
 void check_excitation(CheckRoom& room) {
-  std::vector<std::string> still;
-  for (Index d = 0; d < room.log.drives(); ++d) {
-    if (!room.moves(d)) still.push_back(drive_columns(room.robot, static_cast<int>(d)).q);
-  }
-  if (static_cast<Index>(still.size()) == room.log.drives()) {
+  bool anything = false;
+  for (Index d = 0; d < room.log.drives(); ++d) anything = anything || room.moves(d);
+  if (!anything) {
     throw UnusablePart("nothing moves, so nothing can be learned from the log", room.log.file,
                        "record a motion that uses the workspace, for example one of delta-excite");
   }
   for (Index d = 0; d < room.log.drives(); ++d) {
     if (room.moves(d)) continue;
-    LogFinding finding;
-    finding.level = FindingLevel::warning;
-    finding.key = "hardly_moves";
-    finding.drive = static_cast<int>(d);
-    finding.value = room.travel(d, 0, room.log.samples());
-    finding.unit = room.turns(d) ? "rad" : "m";
-    finding.text = fmt::format("{}: column {} hardly moves", room.log.file, drive_columns(room.robot, static_cast<int>(d)).q);
-    finding.mend = "record a motion that moves this drive";
-    room.tell(std::move(finding));
+    const auto drive = static_cast<int>(d);
+    room.tell({.level = FindingLevel::warning,
+               .key = "hardly_moves",
+               .drive = drive,
+               .value = room.travel(d, 0, room.log.samples()),
+               .unit = room.turns(d) ? "rad" : "m",
+               .text = fmt::format("{}: column {} hardly moves", room.log.file, drive_columns(room.robot, drive).q),
+               .mend = "record a motion that moves this drive"});
   }
 }
 
 void check_stuck(CheckRoom& room) {
   const Log& log = room.log;
-  const Index n = log.samples();
   const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / log.sample_time_s())));
   for (Index d = 0; d < log.drives(); ++d) {
     const auto q = log.q.col(d);
     const Usual usual = usual_of(q);
-    Index begin = 0;
-    while (begin < n) {
-      Index end = begin + 1;
-      while (end < n && q(end) == q(begin)) ++end;
-      if (end - begin >= shortest) {
-        if (breaks_off(q, usual, begin, end) || others_move(room, d, begin, end)) {
-          throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
-                                  q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
-                      room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),
-                      "check the encoder and its cable, and record again; or cut this part out of the log");
-        }
+    for_each_run(q, [&](Index begin, Index end) {
+      if (end - begin >= shortest && (breaks_off(q, usual, begin, end) || others_move(room, d, begin, end))) {
+        throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
+                                q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
+                    room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),
+                    "check the encoder and its cable, and record again; or cut this part out of the log");
       }
-      begin = end;
-    }
+    });
   }
 }
 

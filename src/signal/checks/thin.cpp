@@ -26,7 +26,7 @@ Index fresh_phase(const CheckRoom& room) {
     }
     break;
   }
-  return std::max_element(fresh.begin(), fresh.end()) - fresh.begin();
+  return std::ranges::max_element(fresh) - fresh.begin();
 }
 
 void thin_to_fresh_rows(CheckRoom& room) {

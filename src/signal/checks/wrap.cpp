@@ -76,7 +76,7 @@ std::optional<Jumps> find_jumps(const Eigen::Ref<const Eigen::VectorXd>& x, cons
   const double size = lower_median(sizes);
   const auto modulus = known_modulus(size, quality.step, usual, turns);
   // Several jumps there and back of one size, wider than all else: the size itself is the modulus, to the change of one sample.
-  const bool switched = std::any_of(jumps.rows.begin(), jumps.rows.end(), [&](Index row) { return is_switched(x, row); });
+  const bool switched = std::ranges::any_of(jumps.rows, [&](Index row) { return is_switched(x, row); });
   if (!modulus && (switched || sizes.size() < 2 || !up || !down)) return std::nullopt;
   jumps.modulus = modulus.value_or(size);
   for (const double one : sizes) {
@@ -105,7 +105,7 @@ std::vector<int> turns_of(const Eigen::Ref<const Eigen::VectorXd>& x, const Jump
 /// A torque that jumps where its drive turns back is friction: a counter runs over where the torque is largest.
 bool jumps_with_reversals(const Eigen::Ref<const Eigen::VectorXd>& position, const Jumps& jumps) {
   constexpr Index kReach = 3;
-  const auto turns_back = std::count_if(jumps.rows.begin(), jumps.rows.end(), [&](Index row) {
+  const auto turns_back = std::ranges::count_if(jumps.rows, [&](Index row) {
     const Index before = std::max<Index>(0, row - kReach), after = std::min<Index>(position.size() - 1, row + kReach);
     return (position(row) - position(before)) * (position(after) - position(row)) <= 0;
   });
@@ -127,7 +127,7 @@ void unwrap(CheckRoom& room) {
     if (!jumps || (!channel.position && jumps_with_reversals(room.log.q.col(channel.drive), *jumps))) continue;
     // A spike there and back also jumps twice; but it is over after a few samples, and few samples are no evidence of a counter.
     const std::vector<int> turns = turns_of(x, *jumps);
-    const auto moved = std::count_if(turns.begin(), turns.end(), [](int turn) { return turn != 0; });
+    const auto moved = std::ranges::count_if(turns, [](int turn) { return turn != 0; });
     if (moved < 12) continue;
     for (Index i = 0; i < x.size(); ++i) x(i) += jumps->modulus * turns[static_cast<std::size_t>(i)];
     room.tell(FindingLevel::mended, channel.position ? "wrap" : "torque_wrap", jumps->rows.front(), channel.name,
