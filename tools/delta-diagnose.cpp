@@ -45,14 +45,16 @@ class Diagnose {
         ->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters of the model (CSV)")->type_name("FILE");
     app.add_option("--effects", effect_file_, "effects that the model holds already (CSV)")->type_name("FILE");
-    app.add_option("--holdout", holdout_file_, "log that takes no part in the search, for the proof (CSV)")->type_name("LOG");
+    app.add_option("--holdout", holdout_file_, "log that takes no part in the search, for the proof (CSV)")
+        ->type_name("LOG");
     app.add_option("-o,--output", output_, "diagnosis (CSV), row 1 holds the verdict")->type_name("FILE");
     app.add_option("--effects-out", effects_out_, "effects of the improved model (CSV)")->type_name("FILE");
     app.add_option("--params-out", params_out_, "parameters of the improved model (CSV)")->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
     app.add_option("--plan-next", plan_file_, "if effects cannot be told apart: trajectory that separates them (CSV)")
         ->type_name("FILE");
-    app.add_option("--false-naming-rate", options_.false_naming_rate, "chance of naming an effect where nothing is missing")
+    app.add_option("--false-naming-rate", options_.false_naming_rate,
+                   "chance of naming an effect where nothing is missing")
         ->capture_default_str();
     app.add_option("--max-effects", options_.max_effects, "most effects named together")->capture_default_str();
     app.add_option("--null-runs", options_.null_runs, "simulated clean logs")->capture_default_str();
@@ -66,7 +68,8 @@ class Diagnose {
 
  private:
   void require(bool given, const char* what) const {
-    if (!given) throw Error(std::string(what) + " is required", "", "delta-diagnose --help shows the flags", ExitCode::usage);
+    if (!given)
+      throw Error(std::string(what) + " is required", "", "delta-diagnose --help shows the flags", ExitCode::usage);
   }
 
   ExitCode execute(ToolRun& run) {
@@ -105,12 +108,13 @@ class Diagnose {
       // The proof rests on one stretch of motion; of a log with gaps, the longest.
       const GateResult proof = check(*robot, {holdout_file_}, run);
       if (proof.stop()) {
-        const ReportContext of_proof{robot_file_, {holdout_file_}, parameter_file_, command_line_, tools::all_findings(proof)};
+        const ReportContext of_proof{
+            robot_file_, {holdout_file_}, parameter_file_, command_line_, tools::all_findings(proof)};
         return tools::LogGate::refuse(*robot, proof, of_proof, report_file_, "delta-diagnose");
       }
       const std::vector<Log>& parts = proof.logs;
-      holdout =
-          *std::max_element(parts.begin(), parts.end(), [](const Log& a, const Log& b) { return a.samples() < b.samples(); });
+      holdout = *std::max_element(parts.begin(), parts.end(),
+                                  [](const Log& a, const Log& b) { return a.samples() < b.samples(); });
     }
 
     options_.processing = processing_.options();
@@ -136,8 +140,8 @@ class Diagnose {
 
   /// The model under test is no prior of the check.
   GateResult check(const Robot& robot, const std::vector<std::string>& files, ToolRun& run) const {
-    return gate_.run(robot, processing_.read_logs(files, robot.description()), {}, {}, false, !processing_.options().filter,
-                     run.summary);
+    return gate_.run(robot, processing_.read_logs(files, robot.description()), {}, {}, false,
+                     !processing_.options().filter, run.summary);
   }
 
   /// Trust in the parameters, as delta-identify has it in its prior.
@@ -165,7 +169,8 @@ class Diagnose {
   void write_diagnosis(const Robot& robot, const Diagnosis& result) const {
     OutputFile file(output_);
     file.write(
-        "rank,verdict,effect,class,joint,p_value,explained_share,amplitude,amplitude_std,unit,shape_parameters,confusable_with,"
+        "rank,verdict,effect,class,joint,p_value,explained_share,amplitude,amplitude_std,unit,shape_parameters,"
+        "confusable_with,"
         "region,rms_before,rms_after,rms_floor\n");
     if (result.named.empty()) {
       file.print("1,{},,,,{},{},,,,,,{},,,\n", verdict_name(result.verdict), result.p_value, result.explained_share,
@@ -176,9 +181,9 @@ class Diagnose {
     for (const NamedEffect& one : result.named) {
       ++rank;
       const EffectKind& kind = effect_kind(one.effect.id);
-      const char* verdict =
-          unknown ? verdict_name(result.verdict)
-                  : (one.confusable.empty() ? verdict_name(DiagnosisVerdict::named) : verdict_name(DiagnosisVerdict::confusable));
+      const char* verdict = unknown ? verdict_name(result.verdict)
+                                    : (one.confusable.empty() ? verdict_name(DiagnosisVerdict::named)
+                                                              : verdict_name(DiagnosisVerdict::confusable));
       if (unknown) {
         // The name that does not suffice is no name: it stands in the report only.
         // Nothing is added to the model, so that its error stays what it was.
@@ -192,8 +197,9 @@ class Diagnose {
                              one.effect.amplitude(static_cast<Eigen::Index>(k)),
                              effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
       }
-      file.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", rank, rank == 1 ? verdict_name(result.verdict) : verdict,
-                 one.name, one.effect_class, one.joint, one.p_value, one.explained_share, one.effect.amplitude(0),
+      file.print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", rank,
+                 rank == 1 ? verdict_name(result.verdict) : verdict, one.name, one.effect_class, one.joint, one.p_value,
+                 one.explained_share, one.effect.amplitude(0),
                  one.effect.amplitude_std.size() > 0 ? one.effect.amplitude_std(0) : 0.0,
                  effect_unit(kind.amplitudes[0].unit, one.effect.joint, robot.description()), clean(shape),
                  joined(one.confusable), clean(one.region), one.rms_before, one.rms_after, one.rms_floor);
@@ -207,7 +213,8 @@ class Diagnose {
     if (!result.effects.empty()) {
       table.effects = !effects_out_.empty() ? effects_out_ : (result.improved ? kEffectsNotWritten : effect_file_);
       if (table.effects == kEffectsNotWritten) {
-        fmt::print(stderr, "warning: {} holds only together with the effects that were found: give --effects-out FILE, too\n",
+        fmt::print(stderr,
+                   "warning: {} holds only together with the effects that were found: give --effects-out FILE, too\n",
                    params_out_);
       }
     }
@@ -248,8 +255,8 @@ class Diagnose {
       const char* unit = tools::torque_unit(robot, static_cast<int>(j));
       const std::string flag =
           result.holdout_cutoff_hz > 0 ? fmt::format(" --cutoff-hz {:.4g}", result.holdout_cutoff_hz) : std::string();
-      fmt::print("  delta-validate{} on the hold-out log, drive {}: {:.4g} {} as given, {:.4g} as written ({} rows)\n", flag,
-                 j + 1, one.rms_given, unit, one.rms_written, one.rows_written);
+      fmt::print("  delta-validate{} on the hold-out log, drive {}: {:.4g} {} as given, {:.4g} as written ({} rows)\n",
+                 flag, j + 1, one.rms_given, unit, one.rms_written, one.rows_written);
       out.add(fmt::format("holdout_rms_given_drive{}", j + 1), one.rms_given, unit);
       out.add(fmt::format("holdout_rms_written_drive{}", j + 1), one.rms_written, unit);
     }
@@ -278,21 +285,23 @@ class Diagnose {
     tell_proof(robot, result, run.summary);
     if (std::isfinite(result.gap_shrink)) {
       fmt::print(
-          "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to {:.1f} "
+          "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to "
+          "{:.1f} "
           "%).\n",
           100 * result.gap_shrink, 100 * result.gap_low, 100 * result.gap_high);
     }
     for (const std::string& line : result.next) fmt::print("next: {}\n", line);
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
-    if (!params_out_.empty() && !result.improved) fmt::print("note: {} holds the parameters as they were given\n", params_out_);
+    if (!params_out_.empty() && !result.improved)
+      fmt::print("note: {} holds the parameters as they were given\n", params_out_);
     tell_rows(result);
     if (!result.drives.empty())
       fmt::print("training logs, rms [N m | N]\ndrive   as given   fitted   with effects   noise floor   structure\n");
     Summary& out = run.summary;
     for (std::size_t j = 0; j < result.drives.size(); ++j) {
       const DriveFit& drive = result.drives[j];
-      fmt::print("{:>5}   {:>8.4g}   {:>6.4g}   {:>12.4g}   {:>11.4g}   {:>7.1f} %\n", j + 1, drive.rms_given, drive.rms,
-                 drive.rms_after, drive.floor, 100 * drive.structure);
+      fmt::print("{:>5}   {:>8.4g}   {:>6.4g}   {:>12.4g}   {:>11.4g}   {:>7.1f} %\n", j + 1, drive.rms_given,
+                 drive.rms, drive.rms_after, drive.floor, 100 * drive.structure);
     }
     out.add("verdict", verdict_name(result.verdict));
     const bool name = gives_a_name(result.verdict);
@@ -304,7 +313,8 @@ class Diagnose {
     out.add("explained_share", result.explained_share);
     if (name) {
       const Effect& first = result.named.front().effect;
-      out.add("amplitude", first.amplitude(0), effect_unit(effect_kind(first.id).amplitudes[0].unit, first.joint, robot));
+      out.add("amplitude", first.amplitude(0),
+              effect_unit(effect_kind(first.id).amplitudes[0].unit, first.joint, robot));
       std::vector<EffectCandidate> sets;
       for (const NamedEffect& one : result.named) sets.insert(sets.end(), one.confusable.begin(), one.confusable.end());
       out.add("confusable_with", joined(sets));
@@ -325,8 +335,8 @@ class Diagnose {
     out.add("total_time_s", result.total_time_s, "s");
   }
 
-  std::string command_line_, robot_file_, parameter_file_, effect_file_, holdout_file_, output_, effects_out_, params_out_,
-      report_file_, plan_file_;
+  std::string command_line_, robot_file_, parameter_file_, effect_file_, holdout_file_, output_, effects_out_,
+      params_out_, report_file_, plan_file_;
   std::vector<std::string> log_files_;
   DiagnosisOptions options_;
   bool list_ = false;
@@ -341,7 +351,8 @@ int main(int argc, char** argv) {
   return tools::run_tool(
       argc, argv,
       {"delta-diagnose",
-       "Find which physical effect a model misses: where it fails, the effect's name and size, the model with it, and the "
+       "Find which physical effect a model misses: where it fails, the effect's name and size, the model with it, and "
+       "the "
        "proof on a log that took no part.",
        "delta-diagnose robot.urdf --params params.csv fast.csv slow.csv --holdout check.csv -o diagnosis.csv "
        "--effects-out effects.csv --params-out improved.csv --report diagnosis.html"},

@@ -49,7 +49,8 @@ class Excite {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    app.add_option("-o,--output", output_, "trajectory t_s,x_m,..,xd_m_s,..,q1_rad,..,qd1_rad_s,..,qdd1_rad_s2,.. (CSV)")
+    app.add_option("-o,--output", output_,
+                   "trajectory t_s,x_m,..,xd_m_s,..,q1_rad,..,qd1_rad_s,..,qdd1_rad_s2,.. (CSV)")
         ->required()
         ->type_name("FILE");
     app.add_option("--coefficients", coefficients_, "coefficients of the Fourier series (CSV)")->type_name("FILE");
@@ -87,7 +88,8 @@ class Excite {
     const VectorXd scale = torque_.scale(*robot, nominal.value);
     if (torque_.has_model()) tools::TorqueFlags::tell_scale_below_friction(*robot, model.value, scale);
     const VectorXd noise = torque_.noise(*robot, scale);
-    const DesignSpace space = make_design_space(*robot, limits, base.independent, scale, search_.bound_states(), run.seed);
+    const DesignSpace space =
+        make_design_space(*robot, limits, base.independent, scale, search_.bound_states(), run.seed);
     const DesignBound bound = design_bound(space);
     const Problem problem{*robot, limits, space, bound};
 
@@ -101,7 +103,8 @@ class Excite {
     write_motion(*robot, main, options.rate_hz);
     const std::optional<PlannedMotion> second = second_motion(problem, options, budget);
 
-    ExcitationReportInput input{*robot, base, main.excitation, main.segments, main.plan, main.check, main.samples, bound};
+    ExcitationReportInput input{*robot,    base,       main.excitation, main.segments,
+                                main.plan, main.check, main.samples,    bound};
     expect(input, model.value, nominal.std, noise);
     if (second) input.validation = &second->samples;
     if (options.reversal_reach_s > 0) {
@@ -124,8 +127,8 @@ class Excite {
   }
 
   [[nodiscard]] PlannedMotion search(const Problem& problem, const ExcitationOptions& options) const {
-    return tools::plan_excitation(problem.space, problem.limits, problem.bound, options, problem.robot, search_.duration_s(),
-                                  search_.periodic());
+    return tools::plan_excitation(problem.space, problem.limits, problem.bound, options, problem.robot,
+                                  search_.duration_s(), search_.periodic());
   }
 
   void write_motion(const Robot& robot, const PlannedMotion& motion, double rate_hz) const {
@@ -173,8 +176,8 @@ class Excite {
     write_file(report_file_, excitation_report(input, context));
   }
 
-  void tell(const ExcitationReportInput& input, const ExcitationOptions& options, const PlannedMotion* validation, double total_s,
-            Summary& out) const {
+  void tell(const ExcitationReportInput& input, const ExcitationOptions& options, const PlannedMotion* validation,
+            double total_s, Summary& out) const {
     tools::tell_motion(input, options, out);
     tools::tell_reversals(input.away_from_reversals, "", search_.cutoff_hz(), out);
     if (validation != nullptr && options.reversal_reach_s > 0)
@@ -186,7 +189,8 @@ class Excite {
     out.add("verdict", tools::verdict_word(assessment.verdict));
     std::string written = output_;
     for (const std::string& file : search_.segment_file_names(output_)) written += ", " + file;
-    for (const std::string& file : {coefficients_, validation_, report_file_}) written += file.empty() ? "" : ", " + file;
+    for (const std::string& file : {coefficients_, validation_, report_file_})
+      written += file.empty() ? "" : ", " + file;
     fmt::print("wrote {}\n", written);
     tools::print_assessment(assessment);
   }
@@ -205,10 +209,12 @@ int main(int argc, char** argv) {
   return tools::run_tool(
       argc, argv,
       {"delta-excite",
-       "Find the motion that shows every dynamic parameter of a Delta-like robot as well as possible inside the limits of the "
+       "Find the motion that shows every dynamic parameter of a Delta-like robot as well as possible inside the limits "
+       "of the "
        "machine. Ctrl-C ends the search with the best motion so far.",
        "delta-excite robot.urdf -o trajectory.csv --workspace half-ball --workspace-center-m 0,0,-0.80 \\\n"
-       "      --workspace-radius-m 0.35 --platform-velocity-m-s 4 --platform-acceleration-m-s2 50 --torque-scale 60,60,60,4 \\\n"
+       "      --workspace-radius-m 0.35 --platform-velocity-m-s 4 --platform-acceleration-m-s2 50 --torque-scale "
+       "60,60,60,4 \\\n"
        "      --coefficients coefficients.csv --validation validation.csv --report excitation.html"},
       [&](CLI::App& app, ToolRun& run) { excite.add_to(app, run); });
 }

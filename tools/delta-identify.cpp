@@ -44,7 +44,8 @@ class Identify {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    app.add_option("logs", log_files_, "logs of this robot (CSV t_s, q1_rad.., tau1_Nm.., or what delta-log import reads)")
+    app.add_option("logs", log_files_,
+                   "logs of this robot (CSV t_s, q1_rad.., tau1_Nm.., or what delta-log import reads)")
         ->required()
         ->type_name("LOG");
     app.add_option("-o,--output", output_, "parameters name,value,unit,std,prior,data_share (CSV)")
@@ -53,9 +54,11 @@ class Identify {
     app.add_option("--base", base_file_, "base parameters index,expression,value,unit,std,relative_std_percent (CSV)")
         ->type_name("FILE");
     app.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
-    app.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
+    app.add_option("--prior", prior_file_,
+                   "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
         ->type_name("FILE");
-    app.add_option("--effects", effect_file_, "effects that the model holds (CSV); their amplitudes are estimated along")
+    app.add_option("--effects", effect_file_,
+                   "effects that the model holds (CSV); their amplitudes are estimated along")
         ->type_name("FILE");
     app.add_option("--effects-out", effects_out_, "the effects with their new amplitudes (CSV)")->type_name("FILE");
     app.add_option("--parameters", set_, "reduced: section VI of the paper; full: ten a body")
@@ -67,12 +70,14 @@ class Identify {
     app.add_option("--regularization", regularization_, "weight of the prior beside chi^2, or auto: from the data")
         ->capture_default_str();
     layout_.add_to(app, "1 for an axis that turns");
-    app.add_option("--reversals", reversals_,
-                   "rows near velocity reversals; auto: used where the build-up of friction is found or Coulomb's law holds, "
-                   "else left out (mask)")
+    app.add_option(
+           "--reversals", reversals_,
+           "rows near velocity reversals; auto: used where the build-up of friction is found or Coulomb's law holds, "
+           "else left out (mask)")
         ->check(CLI::IsMember({"auto", "mask", "keep"}))
         ->capture_default_str();
-    app.add_option("--ripples", ripples_, "auto: waves of the torque over the position are found and belong to the model; none")
+    app.add_option("--ripples", ripples_,
+                   "auto: waves of the torque over the position are found and belong to the model; none")
         ->check(CLI::IsMember({"auto", "none"}))
         ->capture_default_str();
     app.add_flag("--robust", robust_, "Huber weights against single bad samples");
@@ -131,9 +136,11 @@ class Identify {
     if (!effects.empty()) table.effects = effects_out_.empty() ? effect_file_ : effects_out_;
     write_parameters(output_, table);
     if (!base_file_.empty()) write_base(result);
-    if (!report_file_.empty()) write_file(report_file_, identification_report(*robot, result, training, survey, context));
+    if (!report_file_.empty())
+      write_file(report_file_, identification_report(*robot, result, training, survey, context));
     const ExitCode code = tell(*robot, result, survey, assessment, run);
-    tools::point_to_diagnosis(assessment, findings, {robot_file_, output_, log_files_, "", processing_.reading_flags()});
+    tools::point_to_diagnosis(assessment, findings,
+                              {robot_file_, output_, log_files_, "", processing_.reading_flags()});
     return code;
   }
 
@@ -146,11 +153,12 @@ class Identify {
       return identify_with_effects(robot, logs, prior, prior_std, options, effects);
     } catch (const Error& e) {
       if (e.code() == ExitCode::no_convergence) {
-        throw Error(e.problem(), e.where(),
-                    "the logs hardly belong to this robot: check the lengths in the robot file (delta-model info shows them), "
-                    "then sign, unit "
-                    "and order of the drives (delta-log check)",
-                    e.code());
+        throw Error(
+            e.problem(), e.where(),
+            "the logs hardly belong to this robot: check the lengths in the robot file (delta-model info shows them), "
+            "then sign, unit "
+            "and order of the drives (delta-log check)",
+            e.code());
       }
       if (prior_file_.empty() || e.where().rfind(mark, 0) != 0) throw;
       throw Error(e.problem(), prior_file_ + ", " + e.where().substr(mark.size()), e.mend(), e.code());
@@ -181,13 +189,14 @@ class Identify {
     IdentificationOptions options;
     options.processing = processing_.options();
     options.choose_cutoff = processing_.automatic_cutoff();
-    options.reversals = reversals_ == "mask" ? Reversals::mask : (reversals_ == "keep" ? Reversals::keep : Reversals::automatic);
+    options.reversals =
+        reversals_ == "mask" ? Reversals::mask : (reversals_ == "keep" ? Reversals::keep : Reversals::automatic);
     options.find_ripples = ripples_ == "auto";
     options.robust = robust_;
     options.base.seed = run.seed;
     options.fit.set = set_ == "full" ? ParameterSet::full : ParameterSet::reduced;
-    options.fit.metric =
-        metric_ == "bregman" ? FitMetric::bregman : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
+    options.fit.metric = metric_ == "bregman" ? FitMetric::bregman
+                                              : (metric_ == "riemannian" ? FitMetric::riemannian : FitMetric::relative);
     if (regularization_ != "auto") {
       options.fit.regularization = tools::number_of(regularization_, "--regularization", "auto");
       if (!(*options.fit.regularization > 0)) {
@@ -210,14 +219,15 @@ class Identify {
     file.commit();
   }
 
-  ExitCode tell(const Robot& robot, const Identification& result, const MassMatrixSurvey& survey, const Assessment& assessment,
-                ToolRun& run) const {
+  ExitCode tell(const Robot& robot, const Identification& result, const MassMatrixSurvey& survey,
+                const Assessment& assessment, ToolRun& run) const {
     const int columns = robot.parameters();
     Summary& out = run.summary;
     for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
     for (const std::string& note : result.fit.notes) fmt::print("note: {}\n", note);
-    fmt::print("{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n",
-               result.samples, result.base.count(), columns, result.base_estimate.condition_number);
+    fmt::print(
+        "{} samples, {} of {} parameters are identifiable combinations (base parameters), condition number {:.4g}\n",
+        result.samples, result.base.count(), columns, result.base_estimate.condition_number);
     if (result.processing.filter) {
       fmt::print("motion and torque used up to {:.4g} Hz{}\n", result.processing.cutoff_hz,
                  result.cutoff ? ", chosen from the logs" : "");
@@ -238,8 +248,8 @@ class Identify {
       const DriveReport& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot.description(), j);
       const double relative = drive.rms / std::max(drive.rms_torque, 1e-300);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}        {:>9}   {:>6.1f} %\n", j + 1, drive.rms, unit,
-                 100 * relative, drive.rms_base, unit, drive.rows,
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %    {:>8.4g} {:<3}        {:>9}   {:>6.1f} %\n", j + 1, drive.rms,
+                 unit, 100 * relative, drive.rms_base, unit, drive.rows,
                  100.0 * static_cast<double>(drive.masked_rows) /
                      static_cast<double>(std::max<Eigen::Index>(1, drive.rows + drive.masked_rows)));
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms, unit);
@@ -268,7 +278,8 @@ class Identify {
     }
     out.add("verdict", tools::verdict_word(assessment.verdict));
     tools::print_assessment(assessment);
-    if (assessment.verdict == Verdict::bad) fmt::print(stderr, "  {} is there to be looked at, not to be used\n", output_);
+    if (assessment.verdict == Verdict::bad)
+      fmt::print(stderr, "  {} is there to be looked at, not to be used\n", output_);
     out.add("structure_left", assessment.structure ? "yes" : "no");
     return assessment.verdict == Verdict::bad ? ExitCode::not_trusted : ExitCode::done;
   }
@@ -286,11 +297,12 @@ class Identify {
 
 int main(int argc, char** argv) {
   Identify identify(argc, argv);
-  return tools::run_tool(
-      argc, argv,
-      {"delta-identify",
-       "Identify the dynamic parameters of a Delta-like robot from drive logs: base parameters by weighted least squares "
-       "and a complete, physically consistent set.",
-       "delta-identify robot.urdf fast.csv slow.csv --prior prior.csv -o params.csv --base base.csv --report report.html"},
-      [&](CLI::App& app, ToolRun& run) { identify.add_to(app, run); });
+  return tools::run_tool(argc, argv,
+                         {"delta-identify",
+                          "Identify the dynamic parameters of a Delta-like robot from drive logs: base parameters by "
+                          "weighted least squares "
+                          "and a complete, physically consistent set.",
+                          "delta-identify robot.urdf fast.csv slow.csv --prior prior.csv -o params.csv --base base.csv "
+                          "--report report.html"},
+                         [&](CLI::App& app, ToolRun& run) { identify.add_to(app, run); });
 }

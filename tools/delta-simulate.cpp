@@ -56,48 +56,60 @@ class Simulate {
     app.add_option("--controller", law_, "control law")
         ->check(CLI::IsMember({"pd-feedforward", "computed-torque", "augmented-pd"}))
         ->capture_default_str();
-    app.add_option("--controller-params", controller_parameter_file_, "what the controller knows of the robot (CSV) [--params]")
+    app.add_option("--controller-params", controller_parameter_file_,
+                   "what the controller knows of the robot (CSV) [--params]")
         ->type_name("FILE");
     app.add_flag("--no-feed-forward", no_feed_forward_, "pd-feedforward without its feed-forward");
     app.add_option("--bandwidth-hz", options_.controller.bandwidth_hz, "bandwidth of the position loops [Hz]")
         ->capture_default_str();
-    app.add_option("--damping-ratio", options_.controller.damping_ratio, "damping of the position loops")->capture_default_str();
+    app.add_option("--damping-ratio", options_.controller.damping_ratio, "damping of the position loops")
+        ->capture_default_str();
     app.add_option("--kp", options_.controller.kp,
                    "position gain of each drive [N m/rad | N/m] (computed-torque: [1/s^2]) [from --bandwidth-hz]")
         ->delimiter(',');
     app.add_option("--kd", options_.controller.kd,
                    "rate gain of each drive [N m s/rad | N s/m] (computed-torque: [1/s]) [from --bandwidth-hz]")
         ->delimiter(',');
-    app.add_option("--rate-filter-hz", options_.controller.rate_filter_hz, "low pass of the differenced position error [Hz]")
+    app.add_option("--rate-filter-hz", options_.controller.rate_filter_hz,
+                   "low pass of the differenced position error [Hz]")
         ->capture_default_str();
     app.add_option("--rate-hz", options_.log_rate_hz, "sampling rate of the log [Hz]")->capture_default_str();
-    app.add_option("--control-rate-hz", control_rate_hz_, "rate of the controller [Hz], a multiple of --rate-hz [--rate-hz]");
+    app.add_option("--control-rate-hz", control_rate_hz_,
+                   "rate of the controller [Hz], a multiple of --rate-hz [--rate-hz]");
     app.add_option("--current-lag-s", options_.plant.current_lag_s, "time constant of the drives' current loops [s]")
         ->capture_default_str();
-    app.add_option("--encoder-bits", encoder_bits_, "resolution of the encoders of revolute drives [bit per turn], 0: exact")
+    app.add_option("--encoder-bits", encoder_bits_,
+                   "resolution of the encoders of revolute drives [bit per turn], 0: exact")
         ->check(CLI::Range(0, 32))
         ->capture_default_str();
     app.add_option("--encoder-step-m", encoder_step_m_, "resolution of the encoders of prismatic drives [m], 0: exact")
         ->capture_default_str();
-    app.add_option("--encoder-noise-rad", encoder_noise_, "standard deviation of the encoders [rad | m], one or one a drive")
+    app.add_option("--encoder-noise-rad", encoder_noise_,
+                   "standard deviation of the encoders [rad | m], one or one a drive")
         ->delimiter(',');
-    app.add_option("--torque-noise-n-m", torque_noise_, "standard deviation of the recorded torque [N m | N], one or one a drive")
+    app.add_option("--torque-noise-n-m", torque_noise_,
+                   "standard deviation of the recorded torque [N m | N], one or one a drive")
         ->delimiter(',');
     app.add_option("--torque-noise-correlation", options_.sensors.torque_noise_correlation,
                    "correlation of the torque noise of neighbouring samples, 0: white, below 1")
         ->capture_default_str();
-    app.add_option("--repeat", repeats_, "runs of a periodic trajectory")->check(CLI::Range(1, 1000000))->capture_default_str();
-    app.add_option("--discard-s", options_.discard_s, "time at the start that does not enter the log [s]")->capture_default_str();
+    app.add_option("--repeat", repeats_, "runs of a periodic trajectory")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    app.add_option("--discard-s", options_.discard_s, "time at the start that does not enter the log [s]")
+        ->capture_default_str();
     app.add_option("--tolerance", options_.plant.tolerance, "error of one integration step [rad, m, rad/s, m/s]")
         ->capture_default_str();
-    app.add_flag("--inverse", options_.inverse, "no controller: exact motion and the torque that it takes, with qd and qdd");
+    app.add_flag("--inverse", options_.inverse,
+                 "no controller: exact motion and the torque that it takes, with qd and qdd");
     app.add_flag("--with-derivatives", with_derivatives_, "write the exact qd and qdd, too");
     run.on(app, [this, &run] { execute(run); });
   }
 
  private:
   void execute(ToolRun& run) {
-    run.check_files({output_}, {robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, effects_file_});
+    run.check_files({output_},
+                    {robot_file_, parameter_file_, trajectory_file_, controller_parameter_file_, effects_file_});
     const RobotDescription description = read_robot_file(robot_file_);
     const ParameterTable table = read_parameters(parameter_file_, description);
     const auto robot = make_robot(description, parameter_options_of(table, description));
@@ -138,7 +150,8 @@ class Simulate {
     bool turns = false, slides = false;
     for (int j = 0; j < robot.drives(); ++j) (robot.kind_of_drive(j) == DriveKind::revolute ? turns : slides) = true;
     if (encoder_bits_ > 0 && !turns)
-      throw Error("--encoder-bits is for revolute drives, and this robot has none", "", "give --encoder-step-m", ExitCode::usage);
+      throw Error("--encoder-bits is for revolute drives, and this robot has none", "", "give --encoder-step-m",
+                  ExitCode::usage);
     if (encoder_step_m_ > 0 && !slides)
       throw Error("--encoder-step-m is for prismatic drives, and this robot has none", "", "give --encoder-bits",
                   ExitCode::usage);
@@ -160,10 +173,11 @@ class Simulate {
     if (!options_.controller.kd.empty()) options_.controller.kd = tools::spread(options_.controller.kd, n, "--kd");
     for (int j = 0; j < robot.drives(); ++j) {
       const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
-      options_.sensors.encoder_step.push_back(turns ? (encoder_bits_ > 0 ? 2 * std::numbers::pi / std::exp2(encoder_bits_) : 0.0)
-                                                    : encoder_step_m_);
+      options_.sensors.encoder_step.push_back(
+          turns ? (encoder_bits_ > 0 ? 2 * std::numbers::pi / std::exp2(encoder_bits_) : 0.0) : encoder_step_m_);
     }
-    if (!encoder_noise_.empty()) options_.sensors.encoder_noise = tools::spread(encoder_noise_, n, "--encoder-noise-rad");
+    if (!encoder_noise_.empty())
+      options_.sensors.encoder_noise = tools::spread(encoder_noise_, n, "--encoder-noise-rad");
     if (!torque_noise_.empty()) options_.sensors.torque_noise = tools::spread(torque_noise_, n, "--torque-noise-n-m");
     options_.validate(robot.drives());
   }
@@ -178,8 +192,8 @@ class Simulate {
       const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
       const char *length = turns ? "rad" : "m", *force = turns ? "N*m" : "N";
       if (!options_.inverse) {
-        fmt::print("{:>5}   {:>9.3g}   {:>9.3g} {:<3}   {:>10.4g} {}\n", j + 1, result.rms_error(j), result.largest_error(j),
-                   length, result.largest_torque(j), force);
+        fmt::print("{:>5}   {:>9.3g}   {:>9.3g} {:<3}   {:>10.4g} {}\n", j + 1, result.rms_error(j),
+                   result.largest_error(j), length, result.largest_torque(j), force);
         out.add(fmt::format("rms_error_drive{}", j + 1), result.rms_error(j), length);
         out.add(fmt::format("largest_error_drive{}", j + 1), result.largest_error(j), length);
       }
@@ -214,13 +228,14 @@ class Simulate {
 
 int main(int argc, char** argv) {
   Simulate simulate;
-  return tools::run_tool(
-      argc, argv,
-      {"delta-simulate",
-       "The log of a virtual robot that follows a trajectory in closed loop: friction that sticks, sampled control, encoders, "
-       "noise, and any effect of the catalogue.",
-       "delta-simulate robot.urdf --params params.csv --trajectory trajectory.csv --encoder-bits 19 --torque-noise-n-m 0.1 \\\n  "
-       "  --effect " +
-           tools::example_effect() + " -o log.csv"},
-      [&](CLI::App& app, ToolRun& run) { simulate.add_to(app, run); });
+  return tools::run_tool(argc, argv,
+                         {"delta-simulate",
+                          "The log of a virtual robot that follows a trajectory in closed loop: friction that sticks, "
+                          "sampled control, encoders, "
+                          "noise, and any effect of the catalogue.",
+                          "delta-simulate robot.urdf --params params.csv --trajectory trajectory.csv --encoder-bits 19 "
+                          "--torque-noise-n-m 0.1 \\\n  "
+                          "  --effect " +
+                              tools::example_effect() + " -o log.csv"},
+                         [&](CLI::App& app, ToolRun& run) { simulate.add_to(app, run); });
 }

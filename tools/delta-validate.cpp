@@ -36,7 +36,8 @@ class Validate {
 
   void add_to(CLI::App& app, ToolRun& run) {
     app.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    app.add_option("logs", log_files_, "logs of this robot that were not used for the fit (CSV, or what delta-log import reads)")
+    app.add_option("logs", log_files_,
+                   "logs of this robot that were not used for the fit (CSV, or what delta-log import reads)")
         ->required()
         ->type_name("LOG");
     app.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
@@ -77,8 +78,8 @@ class Validate {
     ReportContext context{robot_file_, log_files_, parameter_file_, command_line_, tools::all_findings(gate)};
     std::vector<LogFinding>& findings = context.findings;
     if (gate.stop()) return tools::LogGate::refuse(*robot, gate, context, report_file_, "delta-validate");
-    WrittenValidation written =
-        validate_written(*robot, gate.logs, model, processing_.options(), processing_.automatic_cutoff(), gate_.keeps_delay());
+    WrittenValidation written = validate_written(*robot, gate.logs, model, processing_.options(),
+                                                 processing_.automatic_cutoff(), gate_.keeps_delay());
     if (written.fine_delay) findings.push_back(tools::tell_fine_delay(*written.fine_delay, run.summary));
     const std::vector<Log>& logs = written.logs;
     Validation& result = written.validation;
@@ -88,7 +89,8 @@ class Validate {
     weigh_findings(findings, assessment);
     tell(description, result, run);
     run.summary.add("verdict", tools::verdict_word(assessment.verdict));
-    run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), "s");
+    run.summary.add("total_time_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                    "s");
     tools::print_assessment(assessment);
     tools::point_to_diagnosis(assessment, findings,
                               {robot_file_, parameter_file_, {}, log_files_.front(), processing_.reading_flags()});
@@ -104,8 +106,8 @@ class Validate {
     for (int j = 0; j < n; ++j) {
       const DriveColumns names = drive_columns(robot, j);
       const std::string unit = names.tau.substr(names.tau.find('_'));
-      header += fmt::format(",{0},model{1}{2},residual{1}{2},{3},{4},{5},reversal{1}", names.tau, j + 1, unit, names.q, names.qd,
-                            names.qdd);
+      header += fmt::format(",{0},model{1}{2},residual{1}{2},{3},{4},{5},reversal{1}", names.tau, j + 1, unit, names.q,
+                            names.qd, names.qdd);
     }
     file.write(header + "\n");
     int number = 0;
@@ -117,8 +119,8 @@ class Validate {
         if (numbered) file.print("{},", number);
         file.print("{}", p.t_s(row));
         for (int j = 0; j < n; ++j) {
-          file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j), p.q(row, j),
-                     p.qd(row, j), p.qdd(row, j), p.use(row, j) == RowUse::regular ? 0 : 1);
+          file.print(",{},{},{},{},{},{},{}", p.tau(row, j), p.model(row, j), p.tau(row, j) - p.model(row, j),
+                     p.q(row, j), p.qd(row, j), p.qdd(row, j), p.use(row, j) == RowUse::regular ? 0 : 1);
         }
         file.write("\n");
       }
@@ -144,9 +146,9 @@ class Validate {
     for (int j = 0; j < robot.drives(); ++j) {
       const ValidatedDrive& drive = result.drives[static_cast<std::size_t>(j)];
       const char* unit = tools::torque_unit(robot, j);
-      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {:<3}     {:>9} ({})\n", j + 1, drive.rms_residual,
-                 unit, 100 * drive.relative_residual, drive.max_residual, drive.rms_with_reversals, unit, drive.rows,
-                 drive.reversal_rows);
+      fmt::print("{:>5}   {:>8.4g} {:<3}   {:>6.2f} %   {:>8.4g}   {:>8.4g} {:<3}     {:>9} ({})\n", j + 1,
+                 drive.rms_residual, unit, 100 * drive.relative_residual, drive.max_residual, drive.rms_with_reversals,
+                 unit, drive.rows, drive.reversal_rows);
       out.add(fmt::format("rms_residual_drive{}", j + 1), drive.rms_residual, unit);
       out.add(fmt::format("relative_residual_drive{}", j + 1), drive.relative_residual);
       out.add(fmt::format("max_residual_drive{}", j + 1), drive.max_residual, unit);
@@ -169,7 +171,8 @@ int main(int argc, char** argv) {
   Validate validate(argc, argv);
   return tools::run_tool(
       argc, argv,
-      {"delta-validate", "Predict the torque of logs that took no part in the fit, and show where model and measurement differ.",
+      {"delta-validate",
+       "Predict the torque of logs that took no part in the fit, and show where model and measurement differ.",
        "delta-validate robot.urdf --params params.csv verification.csv -o residuals.csv --report validation.html"},
       [&](CLI::App& app, ToolRun& run) { validate.add_to(app, run); });
 }

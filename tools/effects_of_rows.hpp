@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The presliding and the ripple that a parameter file holds, as effects: for the tools that know them only in that form.
+/// The presliding and the ripple that a parameter file holds, as effects: for the tools that know them only in that
+/// form.
 
 #include <fmt/format.h>
 #include <vector>
@@ -12,8 +13,8 @@
 
 namespace deltadyn::tools {
 
-/// One effect for each drive whose friction builds up over a displacement (rows driveK.presliding), of the size of its Coulomb
-/// friction. The telescope's is told to be left out. Throws as presliding_of does.
+/// One effect for each drive whose friction builds up over a displacement (rows driveK.presliding), of the size of its
+/// Coulomb friction. The telescope's is told to be left out. Throws as presliding_of does.
 inline std::vector<Effect> presliding_effects(const ParameterTable& table, const RobotDescription& robot) {
   const Eigen::VectorXd displacement = presliding_of(table, robot);
   const Eigen::VectorXd damping = presliding_damping_of(table, robot);

@@ -16,7 +16,8 @@
 
 namespace deltadyn::tools {
 
-/// The delay by itself and in the sum with what the check of the logs had removed, so that who reads only that key has it, too.
+/// The delay by itself and in the sum with what the check of the logs had removed, so that who reads only that key has
+/// it, too.
 inline void summarise_fine_delay(const FineDelay& found, Summary& summary) {
   double removed = 0;
   std::string verdict;
@@ -50,7 +51,8 @@ inline LogFinding tell_fine_delay(const FineDelay& found, Summary& summary) {
 /// Takes the delay out of `logs` if it is certain, and tells it.
 /// \returns the finding, for reports; nothing if the logs stay as they are
 inline std::optional<LogFinding> mend_fine_delay(const Robot& robot, const BaseParameters& base,
-                                                 const ProcessingOptions& processing, std::vector<Log>& logs, Summary& summary) {
+                                                 const ProcessingOptions& processing, std::vector<Log>& logs,
+                                                 Summary& summary) {
   const FineDelay found = find_fine_delay(robot, base, logs, processing);
   if (!found.certain) return std::nullopt;
   logs = without_delay(std::move(logs), found.delay_s);

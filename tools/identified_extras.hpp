@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What an identification found beside the parameters of the regressor: how friction builds up after a reversal, ripple of the torque.
+/// What an identification found beside the parameters of the regressor: how friction builds up after a reversal, ripple
+/// of the torque.
 
 #include <cmath>
 #include <fmt/format.h>
@@ -49,18 +50,22 @@ inline void tell_extra_rows(const RobotDescription& robot, const Identification&
     const std::string damping = found.damping_s > 0 ? fmt::format(", bristles damped by {:.2g} +- {:.1g} ms",
                                                                   1e3 * found.damping_s, 1e3 * found.damping_std_s)
                                                     : std::string();
-    fmt::print("friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal{}; its rows near reversals are used\n",
-               at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope", found.displacement, found.std,
-               joint_turns(robot, at) ? "rad" : "m", damping);
+    fmt::print(
+        "friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal{}; its rows near reversals are used\n",
+        at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope", found.displacement, found.std,
+        joint_turns(robot, at) ? "rad" : "m", damping);
   }
   std::vector<int> count(static_cast<std::size_t>(robot.drives()), 0);
   for (const Ripple& ripple : result.processing.ripples) {
     const bool turns = joint_turns(robot, ripple.drive);
-    const double size = std::hypot(ripple.cosine, ripple.sine), waves = turns ? ripple.n : ripple.n / (2 * std::numbers::pi);
+    const double size = std::hypot(ripple.cosine, ripple.sine),
+                 waves = turns ? ripple.n : ripple.n / (2 * std::numbers::pi);
     const double waves_std = turns ? ripple.n_std : ripple.n_std / (2 * std::numbers::pi);
-    fmt::print("torque of drive {} ripples by {:.3g} +- {:.1g} {} with {:.4g} +- {:.1g} waves a {}; the model holds that\n",
-               ripple.drive + 1, size, ripple.amplitude_std, turns ? "N m" : "N", waves, waves_std, turns ? "turn" : "metre");
-    const std::string key = fmt::format("ripple{}_drive{}", ++count[static_cast<std::size_t>(ripple.drive)], ripple.drive + 1);
+    fmt::print(
+        "torque of drive {} ripples by {:.3g} +- {:.1g} {} with {:.4g} +- {:.1g} waves a {}; the model holds that\n",
+        ripple.drive + 1, size, ripple.amplitude_std, turns ? "N m" : "N", waves, waves_std, turns ? "turn" : "metre");
+    const std::string key =
+        fmt::format("ripple{}_drive{}", ++count[static_cast<std::size_t>(ripple.drive)], ripple.drive + 1);
     summary.add(key, size, turns ? "N*m" : "N");
     summary.add(key + "_std", ripple.amplitude_std, turns ? "N*m" : "N");
     summary.add(key + "_waves", waves, turns ? "1/turn" : "1/m");

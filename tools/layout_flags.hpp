@@ -20,7 +20,8 @@ class LayoutFlags {
                    "drives with a rotor inertia of their own, e.g. 4 or 1,2,3 [" + usual_rotors + "]")
         ->delimiter(',')
         ->allow_extra_args(false);  // else it takes the file behind it for a drive
-    offset_flag_ = app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
+    offset_flag_ =
+        app.add_flag("--offset,!--no-offset", offset_, "a torque offset for every drive [on for an axis, else off]");
   }
 
   /// Only the flags of the bodies.

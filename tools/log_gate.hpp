@@ -37,8 +37,9 @@ inline const char* level_word(FindingLevel level) {
   return "";
 }
 
-/// Those that the terminal tells: of the reader's the ones that have words of their own in its notes (another drive's finding may
-/// share them), each sentence once, and all of the gate's. What is in order stands in the table of the channels.
+/// Those that the terminal tells: of the reader's the ones that have words of their own in its notes (another drive's
+/// finding may share them), each sentence once, and all of the gate's. What is in order stands in the table of the
+/// channels.
 inline std::vector<LogFinding> findings_to_tell(const GateResult& gate) {
   std::vector<LogFinding> out;
   for (const Log& log : gate.logs) {
@@ -60,7 +61,8 @@ inline std::string where_of(const LogFinding& f) {
 /// Findings as lines, the worst first; what is in order only if asked.
 inline void print_findings(const std::vector<LogFinding>& findings, bool with_fine) {
   bool uncertain = false;
-  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
+  for (const FindingLevel level :
+       {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
     if (level == FindingLevel::fine && !with_fine) continue;
     for (const LogFinding& f : findings) {
       if (f.level != level) continue;
@@ -75,8 +77,8 @@ inline void print_findings(const std::vector<LogFinding>& findings, bool with_fi
   if (uncertain) fmt::print("  (a +- is one standard deviation)\n");
 }
 
-/// Keys check_KEY, check_KEY_driveK with their standard deviations, and check_verdict. Of several findings with one key the worst
-/// counts, and among equals the first.
+/// Keys check_KEY, check_KEY_driveK with their standard deviations, and check_verdict. Of several findings with one key
+/// the worst counts, and among equals the first.
 inline void summarise_findings(const std::vector<LogFinding>& findings, Summary& out) {
   FindingLevel worst = FindingLevel::fine;
   std::vector<std::pair<std::string, FindingLevel>> written;
@@ -101,7 +103,8 @@ inline void summarise_findings(const std::vector<LogFinding>& findings, Summary&
 class LogGate {
  public:
   void add_to(CLI::App& app) {
-    flag_ = app.add_flag("--keep-delay", keep_delay_, "leave a delay between torque and position in the logs where one is found");
+    flag_ = app.add_flag("--keep-delay", keep_delay_,
+                         "leave a delay between torque and position in the logs where one is found");
   }
 
   /// Leaves delays in place whatever the flag says: the tool weighs them itself. After add_to().
@@ -118,8 +121,9 @@ class LogGate {
 
   /// Checks and mends. Prints what was found, and adds it to the summary.
   /// \param with_fine  print what is in order, too
-  GateResult run(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
-                 bool prior_given, bool given_derivatives, Summary& summary, bool with_fine = false) const {
+  GateResult run(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior,
+                 const Eigen::VectorXd& prior_std, bool prior_given, bool given_derivatives, Summary& summary,
+                 bool with_fine = false) const {
     GateOptions options;
     options.keep_delay = keep_delay_;
     options.given_derivatives = given_derivatives;
@@ -133,10 +137,10 @@ class LogGate {
 
   [[nodiscard]] bool keeps_delay() const { return keep_delay_; }
 
-  /// Logs with such a fault hold nothing that could be made sense of: says so. The report, if one was asked for, is that of the
-  /// check.
-  static ExitCode refuse(const Robot& robot, const GateResult& gate, const ReportContext& context, const std::string& report_file,
-                         const char* tool) {
+  /// Logs with such a fault hold nothing that could be made sense of: says so. The report, if one was asked for, is
+  /// that of the check.
+  static ExitCode refuse(const Robot& robot, const GateResult& gate, const ReportContext& context,
+                         const std::string& report_file, const char* tool) {
     if (!report_file.empty()) write_file(report_file, log_report(robot, gate.logs, context));
     for (const LogFinding& f : gate.findings) {
       if (f.level != FindingLevel::fault) continue;

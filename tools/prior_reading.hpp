@@ -24,7 +24,9 @@ inline Prior read_prior(const Robot& robot, const std::string& file) {
   const NominalParameters nominal = nominal_parameters(robot, PartShapes(robot.description()));
   Prior out{nominal.value, nominal.std, {}};
   if (file.empty()) {
-    fmt::print("note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes them)\n");
+    fmt::print(
+        "note: no --prior; nominal parameters from simple shapes are used (delta-model prior shows and changes "
+        "them)\n");
     return out;
   }
   out.table = read_parameters(file, robot.description());
@@ -34,8 +36,9 @@ inline Prior read_prior(const Robot& robot, const std::string& file) {
     const double std = match.std(k);
     const double share = nominal.value(k) != 0 ? nominal.std(k) / std::abs(nominal.value(k)) : 0.0;
     // The file's own trust in its values; without it the nominal one, carried over as a share of the value.
-    out.std(k) =
-        std::isfinite(std) && std > 0 ? std : (share > 0 && out.value(k) != 0 ? share * std::abs(out.value(k)) : nominal.std(k));
+    out.std(k) = std::isfinite(std) && std > 0
+                     ? std
+                     : (share > 0 && out.value(k) != 0 ? share * std::abs(out.value(k)) : nominal.std(k));
   }
   for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
   if (!match.missing.empty()) {

@@ -25,7 +25,8 @@ inline double number_of(const std::string& text, const std::string& flag, const 
     if (used == text.size() && std::isfinite(value)) return value;
   } catch (const std::exception&) {  // falls through to the message below
   }
-  throw Error(fmt::format("{} {} is neither a number nor {}", flag, text, words), "", "give one of these", ExitCode::usage);
+  throw Error(fmt::format("{} {} is neither a number nor {}", flag, text, words), "", "give one of these",
+              ExitCode::usage);
 }
 
 /// A word of a command line, in quotes where it holds blanks.
@@ -37,8 +38,10 @@ inline std::string quoted_word(const std::string& word) {
 class ProcessingFlags {
  public:
   void add_to(CLI::App& app) {
-    app.add_flag("--no-filter", no_filter_, "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
-    app.add_option("--cutoff-hz", cutoff_, "pass band of motion and torque [Hz], or auto: from the logs")->capture_default_str();
+    app.add_flag("--no-filter", no_filter_,
+                 "take torque, q, qd and qdd of the log as they are (columns qd.., qdd.. required)");
+    app.add_option("--cutoff-hz", cutoff_, "pass band of motion and torque [Hz], or auto: from the logs")
+        ->capture_default_str();
     app.add_option("--period-s", period_, "period of a periodic log [s], auto, or none; equal periods are averaged")
         ->capture_default_str();
     app.add_option("--map", map_, "column map (TOML) for logs of other tools, as of delta-log import --map-out")
@@ -63,8 +66,8 @@ class ProcessingFlags {
   /// What another tool needs to read the same logs: " --map map.toml", or nothing.
   [[nodiscard]] std::string reading_flags() const { return map_.empty() ? "" : " --map " + quoted_word(map_); }
 
-  /// Reads the logs and prints what the reader had to say besides its findings, which LogGate tells. A log with gaps comes in parts
-  /// (Log::part).
+  /// Reads the logs and prints what the reader had to say besides its findings, which LogGate tells. A log with gaps
+  /// comes in parts (Log::part).
   [[nodiscard]] std::vector<Log> read_logs(const std::vector<std::string>& paths, const RobotDescription& robot) const {
     LogReadOptions options;
     options.need_derivatives = no_filter_;
@@ -76,8 +79,8 @@ class ProcessingFlags {
       for (Log& part : read_log_parts(path, robot, options)) {
         if (!no_filter_ && !automatic_cutoff()) refuse_cutoff_beyond(0.4 / part.sample_time_s(), path);
         for (const std::string& note : part.notes) {
-          const bool finding =
-              std::any_of(part.findings.begin(), part.findings.end(), [&](const LogFinding& f) { return f.text == note; });
+          const bool finding = std::any_of(part.findings.begin(), part.findings.end(),
+                                           [&](const LogFinding& f) { return f.text == note; });
           if (!finding) fmt::print("note: {}\n", note);
         }
         logs.push_back(std::move(part));
@@ -110,14 +113,15 @@ inline const char* verdict_word(Verdict verdict) {
   return verdict == Verdict::good ? "trusted" : (verdict == Verdict::caution ? "with-care" : "not-trusted");
 }
 
-/// The verdict in plain words, on the terminal as on top of the report, with what the check behind it means; warnings on standard
-/// error.
+/// The verdict in plain words, on the terminal as on top of the report, with what the check behind it means; warnings
+/// on standard error.
 inline void print_assessment(const Assessment& assessment) {
   const bool good = assessment.verdict == Verdict::good;
   std::FILE* to = good ? stdout : stderr;
   fmt::print(to, "{}{}\n", good ? "" : "warning: ", assessment.headline);
   for (const Check& check : assessment.checks) {
-    if (good || check.verdict != assessment.verdict || assessment.headline.find(check.figure) == std::string::npos) continue;
+    if (good || check.verdict != assessment.verdict || assessment.headline.find(check.figure) == std::string::npos)
+      continue;
     if (!check.meaning.empty()) fmt::print(to, "  {}\n", check.meaning);
     break;
   }
@@ -125,8 +129,9 @@ inline void print_assessment(const Assessment& assessment) {
 
 /// The command of delta-diagnose for these files. What a tool cannot know stays a word in capitals.
 struct DiagnosisCommand {
-  static constexpr const char* kTraining = "TRAINING_LOGS.csv";  ///< for validate: logs of the fit are not in the parameter file
-  static constexpr const char* kHoldout = "ANOTHER_LOG.csv";     ///< for identify: all its logs took part in the fit
+  static constexpr const char* kTraining =
+      "TRAINING_LOGS.csv";  ///< for validate: logs of the fit are not in the parameter file
+  static constexpr const char* kHoldout = "ANOTHER_LOG.csv";  ///< for identify: all its logs took part in the fit
   std::string robot, parameters;
   std::vector<std::string> logs;  ///< of the fit; empty: not known
   std::string holdout;            ///< a log that took no part in it; empty: not known
@@ -146,9 +151,10 @@ struct DiagnosisCommand {
   }
 };
 
-/// Structure that the model leaves has a name in most cases: says where it is and how to find the name. A timing error that was mended
-/// counts, too: the diagnosis tells a lag of the drive from a delay of the recorder.
-inline void point_to_diagnosis(const Assessment& assessment, const std::vector<LogFinding>& findings, DiagnosisCommand command) {
+/// Structure that the model leaves has a name in most cases: says where it is and how to find the name. A timing error
+/// that was mended counts, too: the diagnosis tells a lag of the drive from a delay of the recorder.
+inline void point_to_diagnosis(const Assessment& assessment, const std::vector<LogFinding>& findings,
+                               DiagnosisCommand command) {
   const bool mended_timing = std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
     return f.level == FindingLevel::mended && (f.key.rfind("delay", 0) == 0 || f.key.rfind("lag", 0) == 0);
   });

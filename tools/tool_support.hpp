@@ -32,8 +32,8 @@ struct ToolText {
   std::string example;      ///< one or more command lines
 };
 
-/// What every tool knows besides its own flags. The tool adds its figures to `summary`, which is written when it has succeeded
-/// or when it ends with not_trusted.
+/// What every tool knows besides its own flags. The tool adds its figures to `summary`, which is written when it has
+/// succeeded or when it ends with not_trusted.
 class ToolRun {
  public:
   Summary summary;
@@ -55,8 +55,8 @@ class ToolRun {
     });
   }
 
-  /// Refuses, before any work is done, outputs (the summary is one more) that would overwrite an input or one another, or whose
-  /// folder cannot be written to. Empty names do not count. Throws Error(usage) or Error(bad_input).
+  /// Refuses, before any work is done, outputs (the summary is one more) that would overwrite an input or one another,
+  /// or whose folder cannot be written to. Empty names do not count. Throws Error(usage) or Error(bad_input).
   void check_files(std::vector<std::string> outputs, const std::vector<std::string>& inputs) const {
     outputs.push_back(summary_file_);
     std::vector<std::string> taken;
@@ -78,7 +78,8 @@ class ToolRun {
   static bool is_device(const std::string& path) {
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
-    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+           !std::filesystem::is_directory(status);
   }
 
   friend int run_tool(int, char**, const ToolText&, const std::function<void(CLI::App&, ToolRun&)>&);
@@ -92,9 +93,10 @@ inline void set_example(CLI::App& command, const std::string& example) {
   command.footer("\nExample:\n  " + example);
 }
 
-/// Parses, runs, and maps every way to fail to its exit code: 0 done, 2 usage, 3 bad input, 4 no convergence, 5 not trusted.
-/// \param setup adds the tool's own flags to the app and calls ToolRun::on.
-inline int run_tool(int argc, char** argv, const ToolText& text, const std::function<void(CLI::App&, ToolRun&)>& setup) {
+/// Parses, runs, and maps every way to fail to its exit code: 0 done, 2 usage, 3 bad input, 4 no convergence, 5 not
+/// trusted. \param setup adds the tool's own flags to the app and calls ToolRun::on.
+inline int run_tool(int argc, char** argv, const ToolText& text,
+                    const std::function<void(CLI::App&, ToolRun&)>& setup) {
   CLI::App app(text.description, text.name);
   ToolRun run;
   const auto fail = [&](const char* kind, const std::string& words, ExitCode code) {
@@ -104,9 +106,12 @@ inline int run_tool(int argc, char** argv, const ToolText& text, const std::func
   };
   try {
     app.set_version_flag("--version", text.name + " (deltadyn) " DELTADYN_VERSION);
-    app.set_config("--config", "", "TOML file with values for the flags; flags on the command line win")->type_name("FILE");
-    app.add_option("--summary", run.summary_file_, "CSV key,value,unit with the figures the tool prints")->type_name("FILE");
-    app.add_option("--seed", run.seed, "seed of everything random; the same seed gives the same output")->capture_default_str();
+    app.set_config("--config", "", "TOML file with values for the flags; flags on the command line win")
+        ->type_name("FILE");
+    app.add_option("--summary", run.summary_file_, "CSV key,value,unit with the figures the tool prints")
+        ->type_name("FILE");
+    app.add_option("--seed", run.seed, "seed of everything random; the same seed gives the same output")
+        ->capture_default_str();
     app.add_option("--threads", run.threads_, "number of threads, 0: as many as the machine has")
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
@@ -148,7 +153,8 @@ inline std::vector<double> spread(const std::vector<double>& values, std::size_t
 }
 
 /// Ranges "lo,hi" for all, or "lo,hi;lo,hi;..." for each of `count`. Throws Error(usage) that names the flag.
-inline std::vector<std::pair<double, double>> spread_ranges(const std::string& text, std::size_t count, const std::string& flag) {
+inline std::vector<std::pair<double, double>> spread_ranges(const std::string& text, std::size_t count,
+                                                            const std::string& flag) {
   std::vector<std::pair<double, double>> ranges;
   std::istringstream entries(text);
   for (std::string entry; std::getline(entries, entry, ';');) {

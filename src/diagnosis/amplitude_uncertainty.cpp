@@ -28,7 +28,8 @@ std::vector<Index> free_shapes(const Effect& effect) {
 }
 
 /// The effect's torque with another shape, white and beside the base model.
-VectorXd white_torque(const SearchContext& context, const WhiteProblem& problem, const Fit& fit, const VectorXd& shape) {
+VectorXd white_torque(const SearchContext& context, const WhiteProblem& problem, const Fit& fit,
+                      const VectorXd& shape) {
   Hypothesis one = context.search.hypotheses()[fit.hypothesis];
   one.shapes = {shape};
   PerLogAndDrive<MatrixXd> rows;
@@ -76,7 +77,8 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   J = J * scale.asDiagonal();
   const MatrixXd inverse = MatrixXd(J.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
   VectorXd variance = inverse.diagonal();
-  // White noise of unit size is the model's own opinion; blocks of rows tell what the residual says (White 1980, by clusters).
+  // White noise of unit size is the model's own opinion; blocks of rows tell what the residual says (White 1980, by
+  // clusters).
   MatrixXd scatter = MatrixXd::Zero(J.cols(), J.cols());
   double blocks = 0;
   for (const WhiteSegment& segment : problem.segments) {
@@ -86,14 +88,16 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
       ++blocks;
     }
   }
-  if (blocks >= kLeastBlocks) variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));
+  if (blocks >= kLeastBlocks)
+    variance = variance.cwiseMax((inverse * scatter * inverse).diagonal() * (blocks / (blocks - 1)));
   const VectorXd std = scale.cwiseProduct(variance.cwiseMax(0.0).cwiseSqrt());
   const double form = effect_kind(fit.effect.id).form.amplitude;
   fit.effect.amplitude_std = (std.head(k).cwiseAbs2() + (form * fit.effect.amplitude).cwiseAbs2()).cwiseSqrt();
   if (effect_kind(fit.effect.id).tied) fit.effect.shape_std(0) = fit.effect.amplitude_std(0);
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     // The columns are derivatives by the logarithm of the shape.
-    fit.effect.shape_std(shapes[s]) = std::hypot(std(k + static_cast<Index>(s)), form) * std::abs(fit.effect.shape(shapes[s]));
+    fit.effect.shape_std(shapes[s]) =
+        std::hypot(std(k + static_cast<Index>(s)), form) * std::abs(fit.effect.shape(shapes[s]));
   }
 }
 

@@ -17,19 +17,22 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kSetLikelihood = 3.0;  // standard deviations of the likelihood ratio beyond which an alternative is out
-constexpr double kSetBootstrap = 2.0;   // the same for the block bootstrap
-constexpr double kSetForm = 0.02;       // share of the gain that the forms of the catalogue cannot be trusted to tell
-constexpr double kSimplerShare = 0.9;   // of the gain, from which an effect does as well that has ...
-constexpr int kFewer = 2;               // ... so many parameters less
-constexpr double kAlike = 0.5;          // correlation of two torques from which it is what makes them hard to tell apart
-constexpr double kClearShare = 0.2;  // of a gain, on drives that no other effect reaches, from which these alone tell names apart
+// Standard deviations of the likelihood ratio beyond which an alternative is out
+constexpr double kSetLikelihood = 3.0;
+constexpr double kSetBootstrap = 2.0;  // the same for the block bootstrap
+constexpr double kSetForm = 0.02;      // share of the gain that the forms of the catalogue cannot be trusted to tell
+constexpr double kSimplerShare = 0.9;  // of the gain, from which an effect does as well that has ...
+constexpr int kFewer = 2;              // ... so many parameters less
+constexpr double kAlike = 0.5;         // correlation of two torques from which it is what makes them hard to tell apart
+// Of a gain, on drives that no other effect reaches, from which these alone tell names apart
+constexpr double kClearShare = 0.2;
 
 /// Sum of squared differences a block of a quarter of a second: how robust is a gain?
 double block_std(const SearchContext& context, const WhiteProblem& problem, const VectorXd& difference) {
   std::vector<double> blocks;
   for (const WhiteSegment& segment : problem.segments) {
-    for (const auto& [first, count] : row_blocks(context, segment)) blocks.push_back(difference.segment(first, count).sum());
+    for (const auto& [first, count] : row_blocks(context, segment))
+      blocks.push_back(difference.segment(first, count).sum());
   }
   const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / static_cast<double>(blocks.size());
   double square = 0;
@@ -37,7 +40,8 @@ double block_std(const SearchContext& context, const WhiteProblem& problem, cons
   return std::sqrt(square);
 }
 
-/// Drives that bear a tenth or more of one of the other effects: there, what its form leaves may decide between two names.
+/// Drives that bear a tenth or more of one of the other effects: there, what its form leaves may decide between two
+/// names.
 std::vector<bool> reached_by_others(const SearchContext& context, const SearchResult& found, std::size_t but) {
   std::vector<bool> out(static_cast<std::size_t>(context.robot.drives()), false);
   for (std::size_t k = 0; k < found.fits.size(); ++k) {
@@ -50,10 +54,9 @@ std::vector<bool> reached_by_others(const SearchContext& context, const SearchRe
   return out;
 }
 
-/// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if all drives are alike in
-/// that, or these gain too little.
-/// \param other_worse,none_worse  squares by which the other name, and no name, is worse in each row
-/// \param least_gain              of these drives
+/// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if all
+/// drives are alike in that, or these gain too little. \param other_worse,none_worse  squares by which the other name,
+/// and no name, is worse in each row \param least_gain              of these drives
 double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached, const VectorXd& other_worse,
                   const VectorXd& none_worse, double least_gain) {
   const double nothing = std::numeric_limits<double>::infinity();
@@ -104,7 +107,8 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     const Index m = other.effect.amplitude.size();
     if (other.white.cols < m || hygienic(context, other)) continue;
     const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;
-    // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom leaves.
+    // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom
+    // leaves.
     const VectorXd coefficients =
         (C_best.transpose() * C_best).completeOrthogonalDecomposition().solve(C_best.transpose() * s_other);
     const double distance = (s_other - C_best * coefficients).norm();
@@ -120,7 +124,8 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     const Hypothesis& alternative = context.search.hypotheses()[h];
     const double clear = clear_lead(problem, reached, r_other.cwiseAbs2() - r_best.cwiseAbs2(),
                                     problem.r.cwiseAbs2() - r_best.cwiseAbs2(), kClearShare * best.gain);
-    const bool by_form = clear < 0 || (std::min(lead / best.gain, clear) < kSetForm && alternative.freedom() <= one.freedom());
+    const bool by_form =
+        clear < 0 || (std::min(lead / best.gain, clear) < kSetForm && alternative.freedom() <= one.freedom());
     const bool by_parsimony = alternative.freedom() + kFewer <= one.freedom() && other.gain > kSimplerShare * best.gain;
     if (!alike && !by_blocks && !by_form && !by_parsimony) continue;
     // Beside its own special case an effect is no alternative: the case would have to be met by chance.
@@ -129,8 +134,9 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     set_uncertainty(context, state, sized);
     EffectCandidate candidate = candidate_of(context, found, sized);
     const double cosine = std::abs(s_best.dot(s_other)) / std::max(s_best.norm() * s_other.norm(), 1e-300);
-    candidate.why = fmt::format("it explains {:.1f} % of what {} explains; ", 100 * other.gain / std::max(best.gain, 1e-300),
-                                candidate_of(context, found, best).name);
+    candidate.why =
+        fmt::format("it explains {:.1f} % of what {} explains; ", 100 * other.gain / std::max(best.gain, 1e-300),
+                    candidate_of(context, found, best).name);
     candidate.why += cosine > kAlike ? fmt::format("in these motions their torques are alike to {:.1f} %", 100 * cosine)
                                      : "their torques differ, and each fits nearly as well";
     set.push_back(std::move(candidate));

@@ -16,6 +16,7 @@ namespace deltadyn::detail {
 /// \param state  beside the others
 /// \param place  of `best` in `found`
 [[nodiscard]] std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
-                                                          const EffectSearch::State& state, const Fit& best, std::size_t place);
+                                                          const EffectSearch::State& state, const Fit& best,
+                                                          std::size_t place);
 
 }  // namespace deltadyn::detail

@@ -12,7 +12,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kHidden = 0.002;  // of a signature's square: less is left beside the base model than any noise allows to see
+// Of a signature's square: less is left beside the base model than any noise allows to see
+constexpr double kHidden = 0.002;
 constexpr double kAlikeSignatures = 0.97;  // |cosine| of two signatures from which on their names should not be trusted
 constexpr std::size_t kMostAlike = 4;
 
@@ -24,7 +25,8 @@ std::size_t middle_shape(const Hypothesis& hypothesis, const Signature& signatur
 }
 
 /// Detectable and distinguishable: from the motion alone, before the torque has a say (step 11).
-void what_the_logs_show(const SearchContext& context, const SearchResult& found, std::vector<ConsideredEffect>& considered) {
+void what_the_logs_show(const SearchContext& context, const SearchResult& found,
+                        std::vector<ConsideredEffect>& considered) {
   PerLogAndDrive<NoiseModel> unit = found.noise;
   for (auto& log : unit) {
     for (NoiseModel& noise : log) {
@@ -67,7 +69,8 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
   }
 }
 
-std::string ruling_of(const SearchContext& context, const SearchResult& found, std::size_t h, const ConsideredEffect& one) {
+std::string ruling_of(const SearchContext& context, const SearchResult& found, std::size_t h,
+                      const ConsideredEffect& one) {
   for (std::size_t k = 0; k < found.accepted.size(); ++k) {
     if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : kFound;
     for (const EffectCandidate& other : found.sets[k]) {
@@ -79,10 +82,10 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
   const double alpha = context.options.false_naming_rate;
   if (one.p_left <= alpha) return "a trace too small to matter, or what the named effect's form leaves";
   if (one.p_alone <= alpha && !found.fits.empty()) {
-    const Fit& first =
-        *std::max_element(found.fits.begin(), found.fits.end(), [](const Fit& a, const Fit& b) { return a.gain < b.gain; });
-    return fmt::format("ruled out: alone {:.3g} % of what {} explains, beside it nothing", 100 * one.gain_alone / first.gain,
-                       effect_kind(first.effect.id).name);
+    const Fit& first = *std::max_element(found.fits.begin(), found.fits.end(),
+                                         [](const Fit& a, const Fit& b) { return a.gain < b.gain; });
+    return fmt::format("ruled out: alone {:.3g} % of what {} explains, beside it nothing",
+                       100 * one.gain_alone / first.gain, effect_kind(first.effect.id).name);
   }
   if (one.p_alone <= alpha) return "a trace, too small to matter";
   if (found.before.scores[h].gain <= 0 && effect_kind(context.search.hypotheses()[h].id).amplitudes.front().positive())
@@ -125,13 +128,14 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out) {
   out.verdict = DiagnosisVerdict::not_testable;
   out.needed_s = needed_s;
   out.headline = fmt::format("Not testable: {:.3g} s of log are too short to look for missing effects.", length_s);
-  out.lines.push_back("Too few samples are left beside velocity reversals to fit the model and still see what it misses.");
+  out.lines.push_back(
+      "Too few samples are left beside velocity reversals to fit the model and still see what it misses.");
   out.next.push_back(
       fmt::format("Record about {:.0f} s or more in all, fast and slow, over the workspace.", std::ceil(needed_s)));
 }
 
-void describe_drives(const SearchContext& context, const SearchResult& found, const VectorXd& p, const std::vector<Effect>& model,
-                     Diagnosis& out) {
+void describe_drives(const SearchContext& context, const SearchResult& found, const VectorXd& p,
+                     const std::vector<Effect>& model, Diagnosis& out) {
   const auto& logs = context.logs;
   const Index n = context.robot.drives();
   const Index b = context.base.count();
@@ -139,8 +143,8 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
   const PerLogAndDrive<MatrixXd> known = context.search.extra({}), all = context.search.extra(found.accepted);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
   const VectorXd beta_given = context.base.B * p, amplitudes_given = amplitudes_of(model);
-  std::vector<double> before(static_cast<std::size_t>(n), 0), given = before, after = before, floor = before, count = before,
-                                                              white_rows = before;
+  std::vector<double> before(static_cast<std::size_t>(n), 0), given = before, after = before, floor = before,
+                                                              count = before, white_rows = before;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     DiagnosisTrace trace;
     trace.file = logs[l].log.file;
@@ -190,7 +194,8 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
       sum = std::max(sum, gain);
     }
     for (auto& entry : drive.follows) entry.second /= std::max(sum, 1e-300);
-    std::sort(drive.follows.begin(), drive.follows.end(), [](const auto& x, const auto& y) { return x.second > y.second; });
+    std::sort(drive.follows.begin(), drive.follows.end(),
+              [](const auto& x, const auto& y) { return x.second > y.second; });
     out.drives.push_back(std::move(drive));
   }
 
@@ -201,20 +206,23 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     one.name = hypotheses[h].name();
     one.effect_class = effect_class_name(hypotheses[h].kind().effect_class);
     one.joint = hypotheses[h].joint_name();
-    one.unit = effect_unit(hypotheses[h].kind().amplitudes.front().unit, hypotheses[h].joint, context.robot.description());
+    one.unit =
+        effect_unit(hypotheses[h].kind().amplitudes.front().unit, hypotheses[h].joint, context.robot.description());
     one.gain_alone = found.before.scores[h].gain;
     one.p_alone = found.null.family_p(h, one.gain_alone);
     one.gain_left = found.after.scores[h].gain;
     one.p_left = found.null.family_p(h, one.gain_left);
     const double threshold = std::max(
-        material, found.null.hypothesis[h].quantile(context.options.false_naming_rate / static_cast<double>(hypotheses.size())));
+        material,
+        found.null.hypothesis[h].quantile(context.options.false_naming_rate / static_cast<double>(hypotheses.size())));
     double strongest = 0;
     for (const MatrixXd& gram : found.before.signatures[h].gram) strongest = std::max(strongest, gram(0, 0));
     one.detectable = strongest > 0 ? std::sqrt(threshold / strongest) : std::numeric_limits<double>::infinity();
     out.considered.push_back(std::move(one));
   }
   what_the_logs_show(context, found, out.considered);
-  for (std::size_t h = 0; h < hypotheses.size(); ++h) out.considered[h].ruling = ruling_of(context, found, h, out.considered[h]);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    out.considered[h].ruling = ruling_of(context, found, h, out.considered[h]);
 }
 
 }  // namespace deltadyn::detail

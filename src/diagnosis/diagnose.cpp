@@ -37,10 +37,12 @@ const char* verdict_name(DiagnosisVerdict verdict) {
 
 void DiagnosisOptions::validate() const {
   const auto refuse = [](const char* field, const char* range) {
-    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
+    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
+                ExitCode::usage);
   };
   processing.validate();
-  if (!(false_naming_rate > 0 && false_naming_rate < 0.5)) refuse("--false-naming-rate", "it must be above 0 and below 0.5");
+  if (!(false_naming_rate > 0 && false_naming_rate < 0.5))
+    refuse("--false-naming-rate", "it must be above 0 and below 0.5");
   if (max_effects < 1 || max_effects > 6) refuse("--max-effects", "it must be 1 to 6");
   if (null_runs < 20 || null_runs > 100000) refuse("--null-runs", "it must be 20 to 100000");
   if (!processing.filter) {
@@ -73,7 +75,8 @@ std::set<std::vector<double>> samples_of(const Log& log) {
 bool holds_most_of(const Log& log, const Log& part) {
   if (log.q.cols() != part.q.cols()) return false;
   const std::set<std::vector<double>> samples = samples_of(log), of_part = samples_of(part);
-  const auto shared = std::count_if(of_part.begin(), of_part.end(), [&](const auto& one) { return samples.count(one) > 0; });
+  const auto shared =
+      std::count_if(of_part.begin(), of_part.end(), [&](const auto& one) { return samples.count(one) > 0; });
   return 2 * shared > static_cast<std::ptrdiff_t>(of_part.size());
 }
 
@@ -112,8 +115,9 @@ void refuse_training_log(const std::vector<Log>& logs, const Log& holdout) {
 /// The search in its rows, which bristles and ripples that turn out otherwise change.
 class DiagnosisRun {
  public:
-  DiagnosisRun(const Robot& robot, const std::vector<Log>& all_logs, const Log* holdout, const VectorXd& p, const VectorXd& p_std,
-               const std::vector<Effect>& all_known, const DiagnosisOptions& options, Diagnosis& out)
+  DiagnosisRun(const Robot& robot, const std::vector<Log>& all_logs, const Log* holdout, const VectorXd& p,
+               const VectorXd& p_std, const std::vector<Effect>& all_known, const DiagnosisOptions& options,
+               Diagnosis& out)
       : robot_(robot),
         all_logs_(all_logs),
         holdout_(holdout),
@@ -133,7 +137,8 @@ class DiagnosisRun {
     double length = 0;
     for (const Log& log : all_logs_) length += static_cast<double>(log.samples()) * log.sample_time_s();
     double widest_hz = 0;
-    if (wanted_.periods == Periods::given) out_.notes.push_back("periods are not averaged here: every log is used as it is");
+    if (wanted_.periods == Periods::given)
+      out_.notes.push_back("periods are not averaged here: every log is used as it is");
     try {
       detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz, wanted_.cutoff_hz};
       if (cutoff_hz > 0) {
@@ -172,8 +177,8 @@ class DiagnosisRun {
     set_up();
     report(0.15);
     found_ = detail::search_effects(context(), out_);
-    // Loads, torques and tilts were those of a model that had to make up for what is missing: again with the better one. So were
-    // bristles and ripples: where they turn out otherwise, the rows are new, too.
+    // Loads, torques and tilts were those of a model that had to make up for what is missing: again with the better
+    // one. So were bristles and ripples: where they turn out otherwise, the rows are new, too.
     for (int pass = 0; pass < kMostPasses && !found_.accepted.empty(); ++pass) {
       p_fit_ = closest_parameters(base_, found_.after.problem->beta.head(base_.count()), p_);
       const bool new_rows = pass == 0 && find_extras_anew();
@@ -190,8 +195,8 @@ class DiagnosisRun {
     const detail::SearchContext now = context();
     detail::describe_drives(now, found_, p_, known_, out_);
     for (const int joint : rows_.masked) {
-      out_.notes.push_back(
-          fmt::format("rows near reversals of drive {} do not follow the known build-up of its friction: left out", joint + 1));
+      out_.notes.push_back(fmt::format(
+          "rows near reversals of drive {} do not follow the known build-up of its friction: left out", joint + 1));
     }
     const double largest_share = detail::judge(now, found_, known_, out_);
     detail::improve_and_prove(input(), largest_share, out_);
@@ -231,13 +236,14 @@ class DiagnosisRun {
   }
 
   void make_rows() {
-    rows_ = detail::prepare_rows(robot_, base_, logs_, held_log_ ? &*held_log_ : nullptr, wanted_, out_.cutoff_hz, masked_);
+    rows_ =
+        detail::prepare_rows(robot_, base_, logs_, held_log_ ? &*held_log_ : nullptr, wanted_, out_.cutoff_hz, masked_);
   }
 
   /// \param effects  that were found by now
   void judge_bristles(const std::vector<Effect>& effects) {
-    masked_ = detail::drives_without_hold(model_, base_, without_effects(robot_, logs_, p_fit_, effects, motion_hz()), wanted_,
-                                          out_.cutoff_hz, p_fit_);
+    masked_ = detail::drives_without_hold(model_, base_, without_effects(robot_, logs_, p_fit_, effects, motion_hz()),
+                                          wanted_, out_.cutoff_hz, p_fit_);
   }
 
   double motion_hz() const { return wanted_.motion_over_pass * out_.cutoff_hz; }
@@ -251,7 +257,8 @@ class DiagnosisRun {
   }
 
   detail::SearchContext context() const {
-    detail::SearchContext context{robot_, model_, base_, rows_.logs, basis_, *search_, options_, rows_.processing, p_fit_};
+    detail::SearchContext context{robot_,   model_,           base_, rows_.logs, basis_, *search_,
+                                  options_, rows_.processing, p_fit_};
     context.holdout = rows_.held.empty() ? nullptr : &rows_.held.front();
     context.position_noise = position_noises_;
     return context;
@@ -299,8 +306,8 @@ class DiagnosisRun {
 
 }  // namespace
 
-Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* holdout, const VectorXd& p, const VectorXd& p_std,
-                   const std::vector<Effect>& known, const DiagnosisOptions& options) {
+Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* holdout, const VectorXd& p,
+                   const VectorXd& p_std, const std::vector<Effect>& known, const DiagnosisOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   options.validate();
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);

@@ -45,8 +45,10 @@ struct SearchResult {
 void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Steps 3 to 8 of the procedure.
-/// \param earlier  a search in the same logs with nearly the same parameters, whose noise, encoder pilots and null are taken as they are
-[[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out, const SearchResult* earlier = nullptr);
+/// \param earlier  a search in the same logs with nearly the same parameters, whose noise, encoder pilots and null are
+/// taken as they are
+[[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out,
+                                          const SearchResult* earlier = nullptr);
 
 /// Fits and structure of every drive, and the list of all effects considered.
 /// \param p,known  the model that the user gave
@@ -66,19 +68,20 @@ void settle_rulings(Diagnosis& out);
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
 
-/// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise model and what the residual's
-/// own blocks say, and beside it a share of the amplitude for the form of the column.
+/// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise
+/// model and what the residual's own blocks say, and beside it a share of the amplitude for the form of the column.
 void set_uncertainty(const SearchContext& context, const EffectSearch::State& state, Fit& fit);
 
-/// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first row and number.
+/// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first
+/// row and number.
 [[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> row_blocks(const SearchContext& context,
                                                                             const WhiteSegment& segment);
 
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
 
-/// What a re-fit of the problem's model leaves of a torque, in the rows of the logs [N m | N]: C a - [Y E] b for the b that takes most,
-/// E the columns of the effects that the model holds.
+/// What a re-fit of the problem's model leaves of a torque, in the rows of the logs [N m | N]: C a - [Y E] b for the b
+/// that takes most, E the columns of the effects that the model holds.
 struct Remainder {
   Eigen::VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
   PerLogAndDrive<Eigen::VectorXd> torque;  ///< [log][drive]; empty where there is none
@@ -91,8 +94,10 @@ struct Remainder {
                                            const PerLogAndDrive<double>& floor);
 
 /// Squares of an effect's white torque, one value a drive.
-[[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
-/// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one beside other effects.
+[[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
+                                               const Fit& fit);
+/// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one
+/// beside other effects.
 [[nodiscard]] Eigen::VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
 /// Its squares, one value a drive: it also stands on drives that the effect itself does not reach.
 [[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
@@ -103,12 +108,13 @@ inline constexpr const char* kFound = "found";
 /// ... and of one of its set, before the name.
 inline constexpr const char* kLikeAnother = "cannot be told from ";
 
-/// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody, and plants
-/// that are clean for every purpose have traces of that size.
+/// Smallest share of a drive's noise variance that counts as an effect: below, a name would be of no use to anybody,
+/// and plants that are clean for every purpose have traces of that size.
 inline constexpr double kMaterial = 0.02;
 /// The same for every effect beside the first.
 inline constexpr double kMaterialFurther = 0.15;
-/// The same for structure without a name: larger, as the basis is free enough to follow slow noise of one log for a part.
+/// The same for structure without a name: larger, as the basis is free enough to follow slow noise of one log for a
+/// part.
 inline constexpr double kMaterialStructure = 0.3;
 
 /// Chance of the structure that counts as such.

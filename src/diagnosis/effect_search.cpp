@@ -94,7 +94,8 @@ EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>&
     for (std::size_t j = 0; j < log.usable.size(); ++j) known_rows_.back().push_back(MatrixXd(log.rows(), 0));
   }
   for (const Effect& effect : known) {
-    Hypothesis hypothesis{effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
+    Hypothesis hypothesis{
+        effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
     PerLogAndDrive<MatrixXd> rows;
     for (const LogRows& log : logs_) rows.push_back(hypothesis_rows(model_, log, log.signals, hypothesis));
     append(known_rows_, rows, hypothesis.amplitudes);
@@ -128,7 +129,8 @@ NoiseEstimate EffectSearch::noise_beside(const std::vector<AcceptedEffect>& acce
   return estimate_noise(corrected(accepted), basis_, extra(accepted), start);
 }
 
-EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
+EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
+                                        const std::vector<AcceptedEffect>& accepted,
                                         const EncoderPilots* pilots) const {
   State out;
   out.problem = std::make_unique<WhiteProblem>(corrected(accepted), noise, extra(accepted));
@@ -194,11 +196,12 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
     for (const LogRows& log : logs_) into.rows.push_back(hypothesis_rows(model_, log, log.signals, one));
     Signature signature = make_signature(*state.problem, one, into.rows);
     std::fill(signature.clean.begin(), signature.clean.end(), clean);
-    VectorXd inner = signature.white.cols > 0
-                         ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0, signature.white.cols)
-                         : VectorXd(0);
+    VectorXd inner = signature.white.cols > 0 ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0,
+                                                                      signature.white.cols)
+                                              : VectorXd(0);
     // What encoder noise fakes changes little from one shape to the next.
-    if (state.bias[h].size() > 0) inner = freed_of_bias(inner, state.bias[h].segment(static_cast<Index>(start.shape) * k, k));
+    if (state.bias[h].size() > 0)
+      inner = freed_of_bias(inner, state.bias[h].segment(static_cast<Index>(start.shape) * k, k));
     const Score score = best_score(one, signature, inner);
     into.hypothesis = h;
     into.effect = best.effect;
@@ -260,7 +263,8 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       one.inner = one.white.inner(state.problem->r, Q_r, state.problem->segments, 0, k);
       if (state.bias[h].size() > 0) one.inner = freed_of_bias(one.inner, state.bias[h].segment(first, k));
     }
-    for (const AmplitudeTraits& amplitude : hypotheses_[h].kind().amplitudes) one.positive.push_back(amplitude.positive());
+    for (const AmplitudeTraits& amplitude : hypotheses_[h].kind().amplitudes)
+      one.positive.push_back(amplitude.positive());
     ones.push_back(std::move(one));
   }
   Pair out;

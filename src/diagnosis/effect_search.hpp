@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs, backward.
+/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs,
+/// backward.
 
 #include <Eigen/Core>
 #include <map>
@@ -41,7 +42,8 @@ class EffectSearch {
 
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   [[nodiscard]] const std::vector<LogRows>& logs() const { return logs_; }
-  /// The logs with the torque of those accepted effects taken off whose shape is their amplitude (a delay): a fit must not scale them.
+  /// The logs with the torque of those accepted effects taken off whose shape is their amplitude (a delay): a fit must
+  /// not scale them.
   [[nodiscard]] std::vector<LogRows> corrected(const std::vector<AcceptedEffect>& accepted) const;
   /// [log][drive] columns of the known effects and the other accepted ones.
   [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<AcceptedEffect>& accepted) const;
@@ -60,14 +62,15 @@ class EffectSearch {
   [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
                             const EncoderPilots* pilots) const;
 
-  /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the amplitude is solved for).
-  /// A state is not for several threads.
+  /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the
+  /// amplitude is solved for). A state is not for several threads.
   [[nodiscard]] const Fit& refine(const State& state, std::size_t hypothesis) const;
   /// Refines several at once, on all cores, for the calls of refine() that follow.
   void refine_all(const State& state, const std::vector<std::size_t>& hypotheses) const;
   [[nodiscard]] AcceptedEffect accept(const Fit& fit) const { return {fit.hypothesis, fit.effect, fit.rows}; }
 
-  /// What a hypothesis is worth when hypotheses compete: the gain less what its free parameters gain by chance (Schwarz 1978).
+  /// What a hypothesis is worth when hypotheses compete: the gain less what its free parameters gain by chance (Schwarz
+  /// 1978).
   [[nodiscard]] double worth(std::size_t hypothesis, double gain, const State& state) const;
 
   /// The pair of hypotheses with the largest joint gain among the `best` ones, at the shapes of their own scores.

@@ -7,7 +7,8 @@
 
 namespace deltadyn::detail {
 
-/// Does `one` name what `other` does not, or leave less of the hold-out log (without one: of the structure) beside its names?
+/// Does `one` name what `other` does not, or leave less of the hold-out log (without one: of the structure) beside its
+/// names?
 [[nodiscard]] bool explains_more(const Diagnosis& one, const Diagnosis& other);
 
 }  // namespace deltadyn::detail

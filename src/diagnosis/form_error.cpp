@@ -12,7 +12,8 @@ namespace {
 constexpr double kElsewhere = 0.03;  // of an effect's gain, the most that its form leaves at another place ...
 constexpr double kOther = 0.01;      // ... for effects that depend on something else ...
 constexpr double kAnywhere = 1e-4;   // ... and for any effect, as the parameters carry such errors to all drives
-constexpr double kFarMore = 3.0;   // an effect that gains so many times what the best of any other class does is no error of form
+// An effect that gains so many times what the best of any other class does is no error of form
+constexpr double kFarMore = 3.0;
 constexpr double kAsGood = 0.9;    // share of a gain from which an effect at the earlier one's place would do as well
 constexpr double kReached = 0.05;  // of an effect's squares: a drive with less is not reached
 
@@ -20,15 +21,17 @@ EffectClass class_of(EffectId id) {
   return effect_kind(id).effect_class;
 }
 
-/// Does `other` depend on what `one` depends on? Memory of a reversal is a function of the way since then. Losses in a gear that are
-/// stated for its one side are, for the other side, such losses and a share of the torque itself, as gravity and inertia make it. And
-/// friction that differs by direction may do so by rate, place or time.
+/// Does `other` depend on what `one` depends on? Memory of a reversal is a function of the way since then. Losses in a
+/// gear that are stated for its one side are, for the other side, such losses and a share of the torque itself, as
+/// gravity and inertia make it. And friction that differs by direction may do so by rate, place or time.
 bool alike(EffectId one, EffectId other) {
   using Class = EffectClass;
   const Class a = class_of(one), b = class_of(other);
   const auto by_position = [](Class c) { return c == Class::position_periodic || c == Class::reversal_memory; };
-  const bool b_of_torque = b == Class::load || b == Class::quasi_constant || b == Class::pose_force || b == Class::inertia_like;
-  const bool b_of_friction = by_position(b) || b == Class::velocity_shape || b == Class::quasi_constant || b == Class::drift;
+  const bool b_of_torque =
+      b == Class::load || b == Class::quasi_constant || b == Class::pose_force || b == Class::inertia_like;
+  const bool b_of_friction =
+      by_position(b) || b == Class::velocity_shape || b == Class::quasi_constant || b == Class::drift;
   return a == b || (by_position(a) && by_position(b)) || (a == Class::load && b_of_torque) ||
          (effect_kind(one).by_direction && b_of_friction);
 }

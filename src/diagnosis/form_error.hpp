@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The laws of the catalogue are not the machine's: what a named effect's form leaves must not be taken for a further effect.
+/// The laws of the catalogue are not the machine's: what a named effect's form leaves must not be taken for a further
+/// effect.
 
 #include <optional>
 
@@ -17,8 +18,8 @@ class FormErrors {
   FormErrors(const SearchContext& context, const SearchResult& found, const EffectSearch::State& state,
              std::optional<std::size_t> but = std::nullopt);
 
-  /// Can the form of another effect have left what `fit` gains? Most is left at the same place and in what that effect depends on itself;
-  /// what it does on other drives than `fit` does not count.
+  /// Can the form of another effect have left what `fit` gains? Most is left at the same place and in what that effect
+  /// depends on itself; what it does on other drives than `fit` does not count.
   [[nodiscard]] bool explain(const Fit& fit) const;
 
  private:
@@ -27,7 +28,8 @@ class FormErrors {
   [[nodiscard]] double gain_of(std::size_t k) const;
   /// Largest gain of an effect at a joint.
   [[nodiscard]] double best_at(int joint) const;
-  /// An error of form looks like several effects and like none of them well: this one gains far more than any other class.
+  /// An error of form looks like several effects and like none of them well: this one gains far more than any other
+  /// class.
   [[nodiscard]] bool stands_out(const Fit& fit) const;
 
   const SearchContext& context_;

@@ -136,9 +136,11 @@ GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vec
             if (log.usable[drive](row)) values.push_back(coordinate.value(log, row, sample_of_row(log.log, row), j, o));
           }
         }
-        const std::vector<double> knot = knots(values, std::max(2, static_cast<int>(std::lround(share * coordinate.count))));
+        const std::vector<double> knot =
+            knots(values, std::max(2, static_cast<int>(std::lround(share * coordinate.count))));
         if (knot.size() < 2) continue;
-        out.blocks[drive].emplace_back(static_cast<Index>(out.coordinate[drive].size()), static_cast<Index>(knot.size()));
+        out.blocks[drive].emplace_back(static_cast<Index>(out.coordinate[drive].size()),
+                                       static_cast<Index>(knot.size()));
         for (std::size_t k = 0; k < knot.size(); ++k) out.coordinate[drive].push_back(coordinate.name);
         for (std::size_t l = 0; l < logs.size() + more.size(); ++l) {
           const LogRows& log = l < logs.size() ? logs[l] : more[l - logs.size()];
@@ -148,7 +150,8 @@ GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vec
           for (Index row = 0; row < log.rows(); ++row) {
             const Index sample = sample_of_row(log.log, row);
             to.row(row).tail(static_cast<Index>(knot.size())) =
-                coordinate.factor(log, row, sample, j) * hats(coordinate.value(log, row, sample, j, o), knot).transpose();
+                coordinate.factor(log, row, sample, j) *
+                hats(coordinate.value(log, row, sample, j, o), knot).transpose();
           }
         }
       }

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// A basis for structure of any kind in a drive's residual: piecewise linear in position, speed (logarithmic), acceleration, load and
-/// time, by direction, and in the other joints' motion. It knows nothing of the catalogue: it sees what the catalogue may not explain.
+/// A basis for structure of any kind in a drive's residual: piecewise linear in position, speed (logarithmic),
+/// acceleration, load and time, by direction, and in the other joints' motion. It knows nothing of the catalogue: it
+/// sees what the catalogue may not explain.
 
 #include <Eigen/Core>
 #include <string>

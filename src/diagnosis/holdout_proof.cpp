@@ -43,7 +43,8 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
   for (Index j = 0; j < n; ++j) extra[0].push_back(MatrixXd::Zero(held.rows(), amplitude_count(effects)));
   Index at = 0;
   for (const Effect& effect : effects) {
-    Hypothesis one{effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
+    Hypothesis one{
+        effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
     const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, one);
     for (std::size_t j = 0; j < rows.size(); ++j) {
       if (rows[j].size() > 0) extra[0][j].middleCols(at, one.amplitudes) = rows[j];
@@ -59,8 +60,10 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
   out.floor.resize(n);
   out.unsure.resize(n);
   const WhiteProblem& training = *found.before.problem;
-  const MatrixXd covariance =
-      MatrixXd(training.X.transpose() * training.X).completeOrthogonalDecomposition().pseudoInverse().topLeftCorner(b, b);
+  const MatrixXd covariance = MatrixXd(training.X.transpose() * training.X)
+                                  .completeOrthogonalDecomposition()
+                                  .pseudoInverse()
+                                  .topLeftCorner(b, b);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
   std::vector<LogRows> alone = {held};
   alone.front().tau = corrected;
@@ -69,10 +72,11 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
     const auto drive = static_cast<std::size_t>(j);
     out.before.col(j) = held.tau.col(j) - held.Y[drive] * beta0.head(b) -
                         extra[0][drive].leftCols(beta0.size() - b) * beta0.tail(beta0.size() - b);
-    out.after.col(j) = corrected.col(j) - held.Y[drive] * beta1.head(b) - extra[0][drive] * beta1.tail(beta1.size() - b);
+    out.after.col(j) =
+        corrected.col(j) - held.Y[drive] * beta1.head(b) - extra[0][drive] * beta1.tail(beta1.size() - b);
     const MatrixXd Y_cov = held.Y[drive] * covariance;
-    out.unsure(j) =
-        root_mean_square(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(), held.usable[drive]);
+    out.unsure(j) = root_mean_square(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(),
+                                     held.usable[drive]);
     out.rms_before(j) = root_mean_square(out.before.col(j), held.usable[drive]);
     out.rms_after(j) = root_mean_square(out.after.col(j), held.usable[drive]);
     // The same log fitted by everything: a model from other logs cannot be expected to do better.

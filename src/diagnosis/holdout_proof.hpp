@@ -28,8 +28,9 @@ struct HoldoutProof {
 void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector<int>& drives, std::uint64_t seed,
                Diagnosis& out);
 
-/// Would the hold-out log ask for this effect, too, beside all the others? Its amplitude there, over the one that was found, is about 1
-/// for a property of the robot and about 0 for chance. True where the hold-out log hardly shows the effect.
+/// Would the hold-out log ask for this effect, too, beside all the others? Its amplitude there, over the one that was
+/// found, is about 1 for a property of the robot and about 0 for chance. True where the hold-out log hardly shows the
+/// effect.
 [[nodiscard]] bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof,
                                 const Fit& fit);
 

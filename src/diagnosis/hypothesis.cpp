@@ -36,7 +36,8 @@ MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
     }
   }
   std::sort(rates.begin(), rates.end());
-  scale.largest_rate = rates.empty() ? 0 : rates[static_cast<std::size_t>(0.995 * static_cast<double>(rates.size() - 1))];
+  scale.largest_rate =
+      rates.empty() ? 0 : rates[static_cast<std::size_t>(0.995 * static_cast<double>(rates.size() - 1))];
   scale.usual_rate = rates.empty() ? 0 : rates[rates.size() / 2];
   scale.range = std::max(high - low, 0.0);
   scale.middle = joint >= 0 ? 0.5 * (low + high) : 0.0;
@@ -88,7 +89,8 @@ void keep_one_unit(const EffectKind& kind, std::vector<VectorXd>& shapes) {
   if (kind.is_unit == nullptr || shapes.empty()) return;
   for (std::size_t k = 0; k < kind.shapes.size(); ++k) {
     const double last = shapes.back()(static_cast<Index>(k));
-    std::erase_if(shapes, [&](const VectorXd& s) { return kind.is_unit(k, s.data()) && s(static_cast<Index>(k)) != last; });
+    std::erase_if(shapes,
+                  [&](const VectorXd& s) { return kind.is_unit(k, s.data()) && s(static_cast<Index>(k)) != last; });
   }
 }
 
@@ -99,7 +101,8 @@ bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
     case BaseTerm::offset: return options.offset;
     case BaseTerm::rotor_inertia:
       // An axis has one inertia only; the telescope's drive turns the tool, whose inertia stands in the model.
-      return robot.description().parts.empty() || hypothesis.joint >= static_cast<int>(robot.description().limbs.size()) ||
+      return robot.description().parts.empty() ||
+             hypothesis.joint >= static_cast<int>(robot.description().limbs.size()) ||
              std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), hypothesis.joint + 1) > 0;
     case BaseTerm::limb: return options.individual_limbs;
     // One drive alone: its torque constant scales all its parameters and cannot be seen.
@@ -116,7 +119,8 @@ bool shape_is_free(EffectId id, std::size_t parameter, const VectorXd& shape) {
   return kind.is_unit == nullptr || !kind.is_unit(parameter, shape.data());
 }
 
-std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs, const std::vector<Effect>& known) {
+std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs,
+                                       const std::vector<Effect>& known) {
   std::vector<MotionScale> scales;
   for (int j = -1; j < robot.drives(); ++j) scales.push_back(scale_of(logs, j));
   std::vector<Hypothesis> all;
@@ -158,8 +162,8 @@ std::vector<MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& l
   const auto shapes = static_cast<Index>(hypothesis.shapes.size());
   std::vector<MatrixXd> raw(static_cast<std::size_t>(n)), out(static_cast<std::size_t>(n));
   for (Index s = 0; s < shapes; ++s) {
-    const auto columns =
-        model.columns(signals, hypothesis.id, hypothesis.joint, hypothesis.shapes[static_cast<std::size_t>(s)], log.number);
+    const auto columns = model.columns(signals, hypothesis.id, hypothesis.joint,
+                                       hypothesis.shapes[static_cast<std::size_t>(s)], log.number);
     for (Index c = 0; c < k; ++c) {
       const EffectColumn& column = columns[static_cast<std::size_t>(c)];
       for (Index j = 0; j < n; ++j) {

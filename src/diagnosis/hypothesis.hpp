@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What could be missing: every effect of the catalogue at every place of the robot, with the start values of its shape.
+/// What could be missing: every effect of the catalogue at every place of the robot, with the start values of its
+/// shape.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -34,15 +35,17 @@ struct Hypothesis {
   }
 };
 
-/// Does the search move this shape parameter between its start values? Choices (a log's number, a kind, most exponents) stay.
+/// Does the search move this shape parameter between its start values? Choices (a log's number, a kind, most exponents)
+/// stay.
 [[nodiscard]] bool shape_is_free(EffectId id, std::size_t parameter, const Eigen::VectorXd& shape);
 
-/// All hypotheses for a robot, with shapes that suit the motion of the logs. Effects that the base model holds already (an offset that
-/// is a parameter, a rotor inertia of its own) and those in `known` are left out.
+/// All hypotheses for a robot, with shapes that suit the motion of the logs. Effects that the base model holds already
+/// (an offset that is a parameter, a rotor inertia of its own) and those in `known` are left out.
 [[nodiscard]] std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<LogRows>& logs,
                                                      const std::vector<Effect>& known);
 
-/// Rows of all shapes of a hypothesis in one log: for each drive rows x (shapes x amplitudes), empty for drives it does not reach.
+/// Rows of all shapes of a hypothesis in one log: for each drive rows x (shapes x amplitudes), empty for drives it does
+/// not reach.
 [[nodiscard]] std::vector<Eigen::MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& log,
                                                            const EffectSignals& signals, const Hypothesis& hypothesis);
 

@@ -31,10 +31,11 @@ struct Trial {
   WrittenProof proof;
 };
 
-/// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the column makes
-/// them come out small, or rows near reversals belong to it that follow no law, those of the search stay.
+/// Amplitudes from the same least squares as the parameters, so that both belong together; where encoder noise in the
+/// column makes them come out small, or rows near reversals belong to it that follow no law, those of the search stay.
 void settle_amplitudes(const ImproveInput& input, const std::vector<Log>& logs, Trial& trial) {
-  const std::vector<Effect> settled = estimate_amplitudes(input.robot, logs, input.p_fit, trial.effects, trial.improved);
+  const std::vector<Effect> settled =
+      estimate_amplitudes(input.robot, logs, input.p_fit, trial.effects, trial.improved);
   for (std::size_t k = 0; k < settled.size(); ++k) {
     Effect& effect = trial.effects[k];
     const VectorXd change = settled[k].amplitude - effect.amplitude;
@@ -91,8 +92,8 @@ Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named
     Trial trial;
     trial.named = named;
     fit_improved(input, cutoff_hz, keep_extras, trial);
-    trial.proof = prove_written(input.robot, *input.holdout, given_model(input), improved_model(trial), reached_drives(named),
-                                cutoff_hz, input.options);
+    trial.proof = prove_written(input.robot, *input.holdout, given_model(input), improved_model(trial),
+                                reached_drives(named), cutoff_hz, input.options);
     if (!keep_extras || trial.proof.passed()) best = std::move(trial);
   }
   return best;
@@ -115,8 +116,8 @@ int freedom(const Effect& effect) {
   return static_cast<int>(kind.amplitudes.size()) + static_cast<int>(shapes) - (kind.tied ? 1 : 0);
 }
 
-/// What the hold-out log says to one name and those that the training logs cannot tell from it: the one that it bears out, and of those
-/// the simplest. Alternatives of one name only, as those of several grow with their product.
+/// What the hold-out log says to one name and those that the training logs cannot tell from it: the one that it bears
+/// out, and of those the simplest. Alternatives of one name only, as those of several grow with their product.
 Trial try_set(const ImproveInput& input, const NamedEffect& named, double cutoff_hz) {
   Trial best = try_names(input, {named}, cutoff_hz);
   const bool alone = best.proof.passed();
@@ -163,7 +164,8 @@ std::string refusal(const ImproveInput& input, const Trial& trial) {
   const char* unit = input.robot.description().kind_of_drive(j) == DriveKind::revolute ? "N m" : "N";
   const bool one = trial.named.size() == 1;
   return fmt::format(
-      "{} fit{} the training logs, but the model with {} leaves {:.3g} {} of the hold-out log at drive {} where the model as "
+      "{} fit{} the training logs, but the model with {} leaves {:.3g} {} of the hold-out log at drive {} where the "
+      "model as "
       "given "
       "leaves {:.3g}: not named, not written.",
       names_of(trial.named), one ? "s" : "", one ? "it" : "them", figure.rms_written, unit, j + 1, figure.rms_given);
@@ -249,8 +251,8 @@ Effect effect_of(const Ripple& ripple) {
 
 }  // namespace
 
-Identification identify_beside(const ImproveInput& input, const std::vector<Log>& logs, const std::vector<Effect>& effects,
-                               double cutoff_hz, bool keep_extras) {
+Identification identify_beside(const ImproveInput& input, const std::vector<Log>& logs,
+                               const std::vector<Effect>& effects, double cutoff_hz, bool keep_extras) {
   IdentificationOptions identification;
   identification.processing = input.options.processing;
   identification.processing.cutoff_hz = cutoff_hz;
@@ -286,7 +288,8 @@ Identification identify_beside(const ImproveInput& input, const std::vector<Log>
       joint.displacement = displacement;
       out.presliding.push_back(joint);
     }
-    for (Index j = 0; j < std::min<Index>(out.processing.presliding_damping_s.size(), out.processing.presliding.size()); ++j)
+    for (Index j = 0; j < std::min<Index>(out.processing.presliding_damping_s.size(), out.processing.presliding.size());
+         ++j)
       out.presliding[static_cast<std::size_t>(j)].damping_s = out.processing.presliding_damping_s(j);
   }
   return out;
@@ -305,7 +308,8 @@ void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosi
       return;
     }
     for (std::vector<NamedEffect> named = out.named; !named.empty(); named.pop_back()) {
-      Trial trial = named.size() == 1 ? try_set(input, named.front(), out.cutoff_hz) : try_names(input, named, out.cutoff_hz);
+      Trial trial =
+          named.size() == 1 ? try_set(input, named.front(), out.cutoff_hz) : try_names(input, named, out.cutoff_hz);
       if (trial.proof.passed()) {
         take(std::move(trial), input.options.identify, out);
         out.verdict = verdict_of(out.named);
@@ -320,7 +324,8 @@ void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosi
     }
     withdraw(input, largest_share, out);
   } catch (const Error& error) {
-    out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") + error.problem());
+    out.notes.push_back(std::string("the consistent parameters of the improved model could not be fitted: ") +
+                        error.problem());
     withdraw(input, largest_share, out);
   }
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The model with the named effects: its parameters, bristles and ripples fitted anew, and the proof of it. Names that it does not bear
-/// out are withdrawn.
+/// The model with the named effects: its parameters, bristles and ripples fitted anew, and the proof of it. Names that
+/// it does not bear out are withdrawn.
 
 #include <optional>
 #include <vector>
@@ -28,8 +28,9 @@ struct ImproveInput {
 [[nodiscard]] Identification identify_beside(const ImproveInput& input, const std::vector<Log>& logs,
                                              const std::vector<Effect>& effects, double cutoff_hz, bool keep_extras);
 
-/// Fits the model with `out.named`, and takes back what the hold-out log does not bear out through the path of delta-validate.
-/// \param largest_share  of the noise variance, by a named effect: from it follows what is said if no name is left
+/// Fits the model with `out.named`, and takes back what the hold-out log does not bear out through the path of
+/// delta-validate. \param largest_share  of the noise variance, by a named effect: from it follows what is said if no
+/// name is left
 void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosis& out);
 
 }  // namespace deltadyn::detail

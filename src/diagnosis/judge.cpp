@@ -26,22 +26,29 @@ constexpr double kInterval = 1.96;  // standard deviations on either side hold 9
 constexpr double kExplained = 0.8;  // of the structure that names must explain
 constexpr double kHardlyExplained =
     0.4;  // ... from which less says that the name is wrong, even if the hold-out log does not show it
-constexpr double kExplainedByMany = 0.985;  // ... and that several must: together they can follow much that is none of them
-constexpr double kOvertStructure = 1.0;     // of the noise variance: too much to be slow noise that the basis follows
-constexpr double kSlowOverNoise = 10;       // of a drive's residual; slow noise of all drives comes to 20, hence ...
-constexpr double kSlowOverOthers = 5;       // ... times so much more than the others, and ...
-constexpr double kSlowOverBoth = 175;       // ... the product of the two
-constexpr double kUnsureCourse = 0.15;      // of an amplitude, its standard deviation from which a law's course counts as open
-constexpr double kSlowLogs = 0.25;          // of a drive's velocity limit: training logs below it are slow
-constexpr double kCourse = 3.5;        // times the rate over which friction bends: training logs that show where the bend ends
-constexpr double kTwoSpeeds = 1.5;     // ratio of the largest rates of training logs from which they hold each other's course
-constexpr double kFaster = 1.5;        // times the training logs' largest rate: a hold-out log that tries the course beyond ...
+// ... and that several must: together they can follow much that is none of them
+constexpr double kExplainedByMany = 0.985;
+constexpr double kOvertStructure = 1.0;  // of the noise variance: too much to be slow noise that the basis follows
+constexpr double kSlowOverNoise = 10;    // of a drive's residual; slow noise of all drives comes to 20, hence ...
+constexpr double kSlowOverOthers = 5;    // ... times so much more than the others, and ...
+constexpr double kSlowOverBoth = 175;    // ... the product of the two
+// Of an amplitude, its standard deviation from which a law's course counts as open
+constexpr double kUnsureCourse = 0.15;
+constexpr double kSlowLogs = 0.25;  // of a drive's velocity limit: training logs below it are slow
+// Times the rate over which friction bends: training logs that show where the bend ends
+constexpr double kCourse = 3.5;
+// Ratio of the largest rates of training logs from which they hold each other's course
+constexpr double kTwoSpeeds = 1.5;
+// Times the training logs' largest rate: a hold-out log that tries the course beyond ...
+constexpr double kFaster = 1.5;
 constexpr double kMetBeyond = 0.9;     // ... and the share of its gap that the name must close there
 constexpr double kRepeated = 0.05;     // of the hold-out residual's square that structure must explain to count
 constexpr double kCarriesOver = 0.5;   // of the hold-out gap that an effect must close ...
 constexpr double kLeastClosed = 0.25;  // ... and of one that is hardly larger than the floor
-constexpr double kOtherMachine = 2.0;  // rms of the hold-out log over that of training from which the machine itself may differ
-constexpr double kHoldoutGap = 1.4;    // rms over floor from which a hold-out log contradicts a model that fits the training logs
+// Rms of the hold-out log over that of training from which the machine itself may differ
+constexpr double kOtherMachine = 2.0;
+// Rms over floor from which a hold-out log contradicts a model that fits the training logs
+constexpr double kHoldoutGap = 1.4;
 
 bool turns(const SearchContext& context, int drive) {
   return context.robot.description().kind_of_drive(drive) == DriveKind::revolute;
@@ -58,7 +65,8 @@ std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& pro
 }
 
 /// Where the effect does its work: the rates that hold four fifths of it.
-std::string region_of(const SearchContext& context, const Fit& fit, const WhiteProblem& problem, const std::vector<int>& drives) {
+std::string region_of(const SearchContext& context, const Fit& fit, const WhiteProblem& problem,
+                      const std::vector<int>& drives) {
   if (drives.empty()) return "";
   const auto drive = static_cast<std::size_t>(drives.front());
   const VectorXd s = remaining_torque(problem, fit);
@@ -94,15 +102,15 @@ std::string place_of(const Diagnosis& out, std::size_t drive) {
   return text;
 }
 
-/// Why the course of friction that bends is open beyond the speeds of the logs; and the rate of the drive that a log should reach.
+/// Why the course of friction that bends is open beyond the speeds of the logs; and the rate of the drive that a log
+/// should reach.
 struct OpenCourse {
   std::string reason;
   double needed_rate = 0;
 };
 
-/// Friction that bends keeps its course beyond the logs' speeds only if they show where the bend ends. Nothing for other effects, and for
-/// logs that are fast for the drive.
-/// \param gap_shrink  on the hold-out log; NaN without one
+/// Friction that bends keeps its course beyond the logs' speeds only if they show where the bend ends. Nothing for
+/// other effects, and for logs that are fast for the drive. \param gap_shrink  on the hold-out log; NaN without one
 std::optional<OpenCourse> open_course(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
   const EffectKind& kind = effect_kind(one.effect.id);
   const Course course = kind.course != nullptr ? kind.course(one.effect.shape.data()) : Course::not_by_rate;
@@ -128,8 +136,8 @@ std::optional<OpenCourse> open_course(const SearchContext& context, const NamedE
   } else if (one_speed && course == Course::endless) {
     reason = "but as a power of the rate, which never ends";
   } else if (one_speed && course == Course::ends_at_rate && training < kCourse * one.effect.shape(0)) {
-    reason =
-        fmt::format("but the logs end at {:.2g} times the rate of the bend, before it is over", training / one.effect.shape(0));
+    reason = fmt::format("but the logs end at {:.2g} times the rate of the bend, before it is over",
+                         training / one.effect.shape(0));
   } else {
     return std::nullopt;
   }
@@ -149,8 +157,8 @@ std::string no_effect(const Effect& effect, double cutoff_hz) {
   if (kind.resonance_hz == nullptr) return "";
   const double resonance_hz = kind.resonance_hz(effect.amplitude.data());
   if (resonance_hz > kResonance * cutoff_hz) return "";
-  return fmt::format("its resonance of {:.2g} Hz would show as such in logs that are used up to {:.3g} Hz", resonance_hz,
-                     cutoff_hz);
+  return fmt::format("its resonance of {:.2g} Hz would show as such in logs that are used up to {:.3g} Hz",
+                     resonance_hz, cutoff_hz);
 }
 
 /// An accepted effect and its set, without those that no machine can have, which are noted.
@@ -160,13 +168,15 @@ std::vector<EffectCandidate> possible_ones(const SearchContext& context, const S
   all.insert(all.end(), found.sets[k].begin(), found.sets[k].end());
   std::erase_if(all, [&](const EffectCandidate& one) {
     const std::string reason = no_effect(one.effect, out.cutoff_hz);
-    if (!reason.empty()) out.notes.push_back(fmt::format("{} at {} fits, but {}: not named", one.name, one.joint, reason));
+    if (!reason.empty())
+      out.notes.push_back(fmt::format("{} at {} fits, but {}: not named", one.name, one.joint, reason));
     return !reason.empty();
   });
   return all;
 }
 
-/// Takes out what would be a guess beyond the logs' speeds, and says what a log should show. If no name is left, nothing can be said.
+/// Takes out what would be a guess beyond the logs' speeds, and says what a log should show. If no name is left,
+/// nothing can be said.
 void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
   std::vector<NamedEffect> kept;
   std::string headline, region;
@@ -177,13 +187,14 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
       continue;
     }
     const bool alone = out.named.size() == 1;
-    out.lines.push_back(fmt::format("{} fits {}, {}: as a term of the model it would be a guess{}.", one.name, one.joint,
-                                    open->reason,
-                                    alone ? "" : ", and is left out of it (the figures before and after still hold it)"));
-    out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.", one.joint,
-                                   open->needed_rate, turns(context, one.effect.joint) ? "rad/s" : "m/s"));
+    out.lines.push_back(
+        fmt::format("{} fits {}, {}: as a term of the model it would be a guess{}.", one.name, one.joint, open->reason,
+                    alone ? "" : ", and is left out of it (the figures before and after still hold it)"));
+    out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.",
+                                   one.joint, open->needed_rate, turns(context, one.effect.joint) ? "rad/s" : "m/s"));
     headline = fmt::format(
-        "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its course at "
+        "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
+        "course at "
         "higher "
         "speeds.",
         one.joint);
@@ -201,8 +212,9 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
   out.p_no_gain = 1;
 }
 
-/// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that of the other
-/// drives: the noise model can follow anything slow, but such a residual is not noise. Returns the drive or nothing.
+/// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that
+/// of the other drives: the noise model can follow anything slow, but such a residual is not noise. Returns the drive
+/// or nothing.
 std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context, const Diagnosis& out) {
   const double pass_hz = context.processing.torque_cutoff_ratio * context.processing.cutoff_hz;
   std::vector<double> over_noise, over_torque;
@@ -218,24 +230,27 @@ std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context
     over_torque.push_back(out.drives[j].rms_after / std::max(torque, 1e-300));
   }
   if (over_torque.size() < 2) return std::nullopt;
-  const auto worst = static_cast<std::size_t>(std::max_element(over_torque.begin(), over_torque.end()) - over_torque.begin());
+  const auto worst =
+      static_cast<std::size_t>(std::max_element(over_torque.begin(), over_torque.end()) - over_torque.begin());
   std::vector<double> others = over_torque;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(worst));
   std::sort(others.begin(), others.end());
   const double over_others = over_torque[worst] / std::max(others[others.size() / 2], 1e-300);
-  const bool slow =
-      over_noise[worst] > kSlowOverNoise && over_others > kSlowOverOthers && over_noise[worst] * over_others > kSlowOverBoth;
+  const bool slow = over_noise[worst] > kSlowOverNoise && over_others > kSlowOverOthers &&
+                    over_noise[worst] * over_others > kSlowOverBoth;
   return slow ? std::optional<std::size_t>(worst) : std::nullopt;
 }
 
 }  // namespace
 
 DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
-  const bool set = std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  const bool set =
+      std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
   return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
 }
 
-double judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known, Diagnosis& out) {
+double judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known,
+             Diagnosis& out) {
   const Index n = context.robot.drives();
   const LogRows* holdout = context.holdout;
   std::optional<HoldoutProof> proof;
@@ -286,10 +301,10 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
             "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
             hypothesis.joint_name(), fit.effect.shape(0)));
       } else {
-        out.notes.push_back(
-            fmt::format("torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the search, "
-                        "not counted as an effect",
-                        hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+        out.notes.push_back(fmt::format(
+            "torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the search, "
+            "not counted as an effect",
+            hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
       }
       continue;
     }
@@ -312,7 +327,8 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     one.region = region_of(context, fit, *found.before.problem, one.drives);
     out.named.push_back(std::move(one));
   }
-  std::sort(out.named.begin(), out.named.end(), [](const NamedEffect& a, const NamedEffect& b) { return a.gain > b.gain; });
+  std::sort(out.named.begin(), out.named.end(),
+            [](const NamedEffect& a, const NamedEffect& b) { return a.gain > b.gain; });
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
   if (!out.named.empty()) out.verdict = verdict_of(out.named);
   const double must_explain = out.named.size() > 1 ? kExplainedByMany : kHardlyExplained;
@@ -322,9 +338,11 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     out.verdict = DiagnosisVerdict::unknown_structure;
     out.region = place_of(out, worst_drive);
     if (!out.named.empty()) {
-      out.lines.push_back(fmt::format(
-          "The best of the catalogue, {} at {}{}, explains {:.0f} % of the structure only; a name for the rest would be a guess.",
-          out.named.front().name, out.named.front().joint, out.named.size() > 1 ? " and others" : "", 100 * out.explained_share));
+      out.lines.push_back(
+          fmt::format("The best of the catalogue, {} at {}{}, explains {:.0f} % of the structure only; a name for the "
+                      "rest would be a guess.",
+                      out.named.front().name, out.named.front().joint, out.named.size() > 1 ? " and others" : "",
+                      100 * out.explained_share));
     }
   }
 
@@ -367,10 +385,11 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
       const bool worse = out.gap_shrink < 0;  // then even a small gap speaks against the name
       if (out.verdict != DiagnosisVerdict::unknown_structure &&
           (worse || out.gap_shrink < (gap > 1.05 ? kCarriesOver : kLeastClosed))) {
-        const std::string line = fmt::format(
-            "{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.", out.named.front().name,
-            out.named.front().joint,
-            worse ? std::string("makes the model worse") : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
+        const std::string line =
+            fmt::format("{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.",
+                        out.named.front().name, out.named.front().joint,
+                        worse ? std::string("makes the model worse")
+                              : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
         double above = 0;
         for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
         if (largest_share > kMaterialStructure && above > kOvertFloor) {
@@ -380,12 +399,12 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
           for (NamedEffect& one : out.named) one.why = "the hold-out log does not confirm it";
           const auto drive = static_cast<std::size_t>(touched.front());
           if (proof->rms_before(touched.front()) > kOtherMachine * out.drives[drive].rms) {
-            out.next.push_back(
-                fmt::format("The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was anything "
-                            "changed in between "
-                            "(load, hose, robot)?",
-                            proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N", drive + 1,
-                            out.drives[drive].rms));
+            out.next.push_back(fmt::format(
+                "The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was anything "
+                "changed in between "
+                "(load, hose, robot)?",
+                proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N", drive + 1,
+                out.drives[drive].rms));
           }
         } else {
           // Chance, or a trace of no use to anybody.
@@ -401,18 +420,21 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
       for (Index j = 0; j < n; ++j) {
         const DriveFit& training = out.drives[static_cast<std::size_t>(j)];
         const double here = proof->rms_before(j) / std::max(proof->floor(j), 1e-300);
-        // What noise has left open in the parameters shows in every other log. And slow noise makes the floor of one log look low:
-        // the residual itself must be larger than in training, too.
+        // What noise has left open in the parameters shows in every other log. And slow noise makes the floor of one
+        // log look low: the residual itself must be larger than in training, too.
         const double expected = std::hypot(std::max(training.rms, proof->floor(j)), proof->unsure(j));
         const bool larger = proof->rms_before(j) > kHoldoutGap * expected;
-        const double there = std::hypot(training.rms / std::max(training.floor, 1e-300), proof->unsure(j) / proof->floor(j));
+        const double there =
+            std::hypot(training.rms / std::max(training.floor, 1e-300), proof->unsure(j) / proof->floor(j));
         if (larger && here > kHoldoutGap * std::max(1.0, there)) {
           out.verdict = DiagnosisVerdict::not_testable;
           out.region = fmt::format("drive {}", j + 1);
           out.headline = fmt::format(
-              "Not testable: drive {} misses the hold-out log ({:.3g} times its floor), but the training logs cannot show why.",
+              "Not testable: drive {} misses the hold-out log ({:.3g} times its floor), but the training logs cannot "
+              "show why.",
               j + 1, here);
-          out.lines.push_back("The hold-out log moves where the training logs did not: from these alone a name would be luck.");
+          out.lines.push_back(
+              "The hold-out log moves where the training logs did not: from these alone a name would be luck.");
         }
       }
     }
@@ -423,7 +445,8 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
       one.rms_after = out.drives[j].rms_after;
       one.rms_floor = out.drives[j].floor;
     }
-    out.notes.push_back("no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
+    out.notes.push_back(
+        "no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
   }
   if (gives_a_name(out.verdict)) {
     leave_out_open_courses(context, out);
@@ -438,7 +461,8 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
   if (found.before.problem->Q.cols() < context.base.count() + amplitude_count(known) &&
       out.verdict == DiagnosisVerdict::nothing_missing) {
     out.verdict = DiagnosisVerdict::not_testable;
-    out.headline = "Not testable: the motion does not even show all base parameters, so that an effect could hide behind them.";
+    out.headline =
+        "Not testable: the motion does not even show all base parameters, so that an effect could hide behind them.";
   }
   if (gives_a_name(out.verdict)) {
     for (const NamedEffect& one : out.named) out.effects.push_back(one.effect);

@@ -21,8 +21,10 @@ std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, 
   MatrixXd Y(n, robot.parameters());
   const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
   for (Index k = 0; k < N; ++k) {
-    const Status status = robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y);
-    if (status != Status::ok) throw Error(message(status), log.file, "check that the robot file belongs to this machine");
+    const Status status =
+        robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y);
+    if (status != Status::ok)
+      throw Error(message(status), log.file, "check that the robot file belongs to this machine");
     for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
       Y.col(coulomb[joint]) *= log.coulomb_share(k, static_cast<Index>(joint));
     for (Index j = 0; j < n; ++j) raw.row(k).segment(j * b, b) = Y.row(j)(base.independent);
@@ -49,7 +51,8 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
   for (MatrixXd* m : {&out.q, &out.qd, &out.qdd}) m->resize(from.rows, n);
   out.usable.assign(static_cast<std::size_t>(n), RowMask::Constant(from.rows, true));
   out.present = out.usable;
-  for (Index j = 0; j < n; ++j) out.unknown.push_back(unknown_torque(from, j, out.present[static_cast<std::size_t>(j)]));
+  for (Index j = 0; j < n; ++j)
+    out.unknown.push_back(unknown_torque(from, j, out.present[static_cast<std::size_t>(j)]));
   const Index reach = from.low_pass ? from.low_pass->half_width() : 0;
   for (Index row = 0; row < from.rows; ++row) {
     const Index centre = sample_of_row(from, row);
@@ -61,7 +64,8 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
     for (Index j = 0; j < n; ++j) {
       const bool filled = left_out(from, static_cast<int>(j), first, count);
       if (filled) out.present[static_cast<std::size_t>(j)](row) = false;
-      if (filled || from.reversal.col(j).segment(first, count).any()) out.usable[static_cast<std::size_t>(j)](row) = false;
+      if (filled || from.reversal.col(j).segment(first, count).any())
+        out.usable[static_cast<std::size_t>(j)](row) = false;
     }
   }
   return out;

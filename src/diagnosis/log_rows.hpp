@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A log as the diagnosis sees it: rows of the base regressor and of the torque, the state at each row, and the signals that the
-/// catalogue's effects are computed from.
+/// A log as the diagnosis sees it: rows of the base regressor and of the torque, the state at each row, and the signals
+/// that the catalogue's effects are computed from.
 
 #include <Eigen/Core>
 #include <vector>
@@ -22,7 +22,8 @@ struct LogRows {
   Eigen::MatrixXd tau;             ///< rows x drives, without the torque of the known ripples
   Eigen::MatrixXd ripple;          ///< rows x drives: that torque; empty: none
   std::vector<RowMask> usable;     ///< for each drive: rows with no reversal and no repaired sample in reach
-  std::vector<RowMask> present;    ///< for each drive: rows of which something is known, in all directions but the unknown ones
+  /// For each drive: rows of which something is known, in all directions but the unknown ones
+  std::vector<RowMask> present;
   std::vector<std::vector<UnknownTorque>> unknown;  ///< for each drive: what reversals add to the rows that are present
   Eigen::VectorXd t_s;                              ///< of the rows' samples
   Eigen::MatrixXd q, qd, qdd;                       ///< rows x drives
@@ -31,8 +32,10 @@ struct LogRows {
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
 
-/// Rows of the base columns alone, low-passed, with the bristles' share of Coulomb's friction: for each drive rows x base parameters.
-[[nodiscard]] std::vector<Eigen::MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log);
+/// Rows of the base columns alone, low-passed, with the bristles' share of Coulomb's friction: for each drive rows x
+/// base parameters.
+[[nodiscard]] std::vector<Eigen::MatrixXd> base_rows(const Robot& robot, const BaseParameters& base,
+                                                     const PreparedLog& log);
 
 /// \param number  of the log among the training logs, from 1
 /// The signals are left empty: they need parameters (EffectModel::signals).

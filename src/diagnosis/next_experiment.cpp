@@ -64,7 +64,8 @@ class Separation {
         p_(p),
         best_(diagnosis.named.front()) {}
 
-  /// Smallest distance of an alternative to the best effect, rms in units of the noise; negative: the motion cannot be run.
+  /// Smallest distance of an alternative to the best effect, rms in units of the noise; negative: the motion cannot be
+  /// run.
   [[nodiscard]] double of(const FourierSeries& series, const Envelope& envelope) const {
     const Index n = robot_.drives();
     PreparedLog log;
@@ -108,7 +109,8 @@ class Separation {
       VectorXd s(n * kStates);
       for (Index j = 0; j < n; ++j) {
         const auto drive = static_cast<std::size_t>(j);
-        s.segment(j * kStates, kStates) = D[drive] * other.effect.amplitude / std::max(diagnosis_.drives[drive].floor, 1e-12);
+        s.segment(j * kStates, kStates) =
+            D[drive] * other.effect.amplitude / std::max(diagnosis_.drives[drive].floor, 1e-12);
       }
       least = std::min(least, (s - Q * (Q.transpose() * s)).norm() / std::sqrt(static_cast<double>(kStates)));
     }
@@ -116,7 +118,8 @@ class Separation {
   }
 
  private:
-  [[nodiscard]] std::vector<MatrixXd> rows_of(const LogRows& rows, const EffectSignals& signals, const Effect& effect) const {
+  [[nodiscard]] std::vector<MatrixXd> rows_of(const LogRows& rows, const EffectSignals& signals,
+                                              const Effect& effect) const {
     const Hypothesis one{effect.id, effect.joint, {effect.shape}, effect.amplitude.size()};
     std::vector<MatrixXd> out = hypothesis_rows(model_, rows, signals, one);
     for (MatrixXd& drive : out) {
@@ -134,7 +137,8 @@ class Separation {
 };
 
 /// A series around the middle of the envelope, as large as it fits.
-std::optional<FourierSeries> fitted(FourierSeries series, const Separation& separation, const Envelope& envelope, double& value) {
+std::optional<FourierSeries> fitted(FourierSeries series, const Separation& separation, const Envelope& envelope,
+                                    double& value) {
   const VectorXd centre = series.coefficients.row(0).transpose();
   double factor = 1;
   for (int step = 0; step < 25; ++step) {
@@ -153,7 +157,8 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   if (diagnosis.named.empty() || diagnosis.named.front().confusable.empty()) return std::nullopt;
   Envelope envelope = envelope_of(robot, diagnosis);
   const Separation separation(robot, diagnosis, p);
-  const VectorXd centre = 0.5 * (envelope.z_low + envelope.z_high), half = 0.5 * kRoom * (envelope.z_high - envelope.z_low);
+  const VectorXd centre = 0.5 * (envelope.z_low + envelope.z_high),
+                 half = 0.5 * kRoom * (envelope.z_high - envelope.z_low);
   envelope.qd *= kRoom;
   envelope.qdd *= kRoom;
   std::mt19937_64 random(seed);
@@ -189,7 +194,8 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   for (int k = 0; k < kImprovements; ++k) {
     FourierSeries trial = *best;
     for (Index c = 1; c < trial.coefficients.rows(); ++c) {
-      for (Index j = 0; j < trial.coefficients.cols(); ++j) trial.coefficients(c, j) += step * 0.3 * half(j) * normal(random);
+      for (Index j = 0; j < trial.coefficients.cols(); ++j)
+        trial.coefficients(c, j) += step * 0.3 * half(j) * normal(random);
     }
     const double value = separation.of(trial, envelope);
     if (value > best_value) {
@@ -209,9 +215,11 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   const PlanSegment segment{on_sample_grid(*best, kRate_hz), limits, 2};
   out.samples = sample_plan(robot, make_plan(robot, {segment}, kRate_hz, false), kRate_hz);
   std::string others;
-  for (const EffectCandidate& other : diagnosis.named.front().confusable) others += (others.empty() ? "" : ", ") + other.name;
+  for (const EffectCandidate& other : diagnosis.named.front().confusable)
+    others += (others.empty() ? "" : ", ") + other.name;
   out.note = fmt::format(
-      "motion of {:.1f} s that tells {} from {}: their torques differ by {:.2g} noise standard deviations (random motions "
+      "motion of {:.1f} s that tells {} from {}: their torques differ by {:.2g} noise standard deviations (random "
+      "motions "
       "{:.2g})",
       out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, others, out.separation, out.typical);
   return out;

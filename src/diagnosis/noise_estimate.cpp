@@ -23,8 +23,8 @@ constexpr double kLeastWhite = 0.05;       // of the variance, white in every no
 constexpr double kFewUsable = 0.35;        // share of rows far from reversals, below which the others serve, too
 constexpr int kMostBlocks = 6;             // of the basis that the noise of one drive is freed of
 
-/// The rows of a drive that show its noise: those far from reversals, or, where they are few, all of them without the directions
-/// that reversals take.
+/// The rows of a drive that show its noise: those far from reversals, or, where they are few, all of them without the
+/// directions that reversals take.
 class NoiseRows {
  public:
   NoiseRows(const LogRows& log, std::size_t drive, double std) : rows_(log.usable[drive]) {
@@ -55,7 +55,8 @@ class NoiseRows {
   [[nodiscard]] VectorXd without_unknown(const VectorXd& residual) const {
     const VectorXd white = all_->apply(residual);
     VectorXd out = VectorXd::Zero(residual.size());
-    for (std::size_t k = 0; k < all_->source().size(); ++k) out(all_->source()[k]) = std_ * white(static_cast<Index>(k));
+    for (std::size_t k = 0; k < all_->source().size(); ++k)
+      out(all_->source()[k]) = std_ * white(static_cast<Index>(k));
     return out;
   }
 
@@ -164,8 +165,8 @@ class DriveResidual {
 
 }  // namespace
 
-NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis, const PerLogAndDrive<MatrixXd>& extra,
-                             const PerLogAndDrive<NoiseModel>* start) {
+NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
+                             const PerLogAndDrive<MatrixXd>& extra, const PerLogAndDrive<NoiseModel>* start) {
   const std::size_t n = logs.front().usable.size();
   NoiseEstimate out;
   if (start != nullptr) {
@@ -189,7 +190,8 @@ NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasi
     for (std::size_t j = 0; j < n; ++j) {
       const DriveResidual drive(logs, problem, basis, extra, j);
       const DriveResidual::Fit fit = drive.choose();
-      const double spent = static_cast<double>(fit.columns) + static_cast<double>(problem.Q.cols()) / static_cast<double>(n);
+      const double spent =
+          static_cast<double>(fit.columns) + static_cast<double>(problem.Q.cols()) / static_cast<double>(n);
       const double correction = std::sqrt(drive.rows() / std::max(drive.rows() - spent, 0.2 * drive.rows()));
       out.log_likelihood += fit.log_likelihood;
       for (std::size_t l = 0; l < logs.size(); ++l) {

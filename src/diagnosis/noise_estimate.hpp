@@ -2,7 +2,8 @@
 
 /// \file
 /// Noise of every drive and log: the residual of the base model, the effects accepted so far, and as much of
-/// the generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than it is.
+/// the generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than
+/// it is.
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,8 +16,8 @@ namespace deltadyn {
 struct NoiseEstimate {
   PerLogAndDrive<NoiseModel> noise;
   PerLogAndDrive<double> floor_rms;  ///< rms of that residual in the rows themselves: no model can do better [N m | N]
-  /// Logarithm of the likelihood of noise and chosen basis, less half the Bayesian penalty of both (Schwarz 1978): compares models
-  /// with different effects, each with its own noise.
+  /// Logarithm of the likelihood of noise and chosen basis, less half the Bayesian penalty of both (Schwarz 1978):
+  /// compares models with different effects, each with its own noise.
   double log_likelihood = 0;
 };
 

@@ -21,15 +21,16 @@ struct NoiseModel {
   [[nodiscard]] double total_std() const;
 };
 
-/// Burg's method over the runs of usable rows, order by the Bayesian information criterion (Schwarz 1978). Always stable.
-/// \param largest_order  fewer if the rows do not allow it
-/// \param damping        factor on the radius of every pole, at most 1: below, the noise cannot remember for longer than a row over
-///                       1 - damping, and what is slower (an offset, a trend) stays a residual instead of becoming noise
+/// Burg's method over the runs of usable rows, order by the Bayesian information criterion (Schwarz 1978). Always
+/// stable. \param largest_order  fewer if the rows do not allow it \param damping        factor on the radius of every
+/// pole, at most 1: below, the noise cannot remember for longer than a row over
+///                       1 - damping, and what is slower (an offset, a trend) stays a residual instead of becoming
+///                       noise
 [[nodiscard]] NoiseModel fit_noise_model(const Eigen::Ref<const Eigen::VectorXd>& residual, const RowMask& usable,
                                          Eigen::Index largest_order = 20, double damping = 1);
 
-/// The same noise with white noise beside it, `share` of its variance: no band then counts as free of noise, where the smallest error
-/// of the model would look certain.
+/// The same noise with white noise beside it, `share` of its variance: no band then counts as free of noise, where the
+/// smallest error of the model would look certain.
 [[nodiscard]] NoiseModel with_white_share(const NoiseModel& noise, double share);
 
 }  // namespace deltadyn

@@ -29,13 +29,14 @@ constexpr int kPilotRuns = 12;         // to average what it fakes
 constexpr double kSensitive = 0.01;    // change of a column, as a share of its size, that counts
 constexpr double kLeastTorque = 0.05;  // share of the spectrum that is the torque's own at least
 constexpr Index kSpectrumLags = 24;
-constexpr double kBiasDoubt = 0.3;   // share of a faked score that the noise's variance may be wrong by
-constexpr double kLeastClean = 0.6;  // of a Gram matrix that is left at least when the noise's own squares are taken off
+constexpr double kBiasDoubt = 0.3;  // share of a faked score that the noise's variance may be wrong by
+// Of a Gram matrix that is left at least when the noise's own squares are taken off
+constexpr double kLeastClean = 0.6;
 constexpr double kMostNoise = 0.75;  // share of a column's squares
 constexpr std::size_t kGramRuns = 4;
 
-/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples to spare
-/// before its first row and after its last one, as the coarser low pass may be longer by one step.
+/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples
+/// to spare before its first row and after its last one, as the coarser low pass may be longer by one step.
 LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& start) {
   LogRows out;
   out.number = from.number;
@@ -45,7 +46,8 @@ LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& sta
   // The rows' stride must be a whole number of steps.
   step = 1;
   for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
-    if (log.low_pass && log.stride % candidate == 0 && log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
+    if (log.low_pass && log.stride % candidate == 0 &&
+        log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
       step = candidate;
       break;
     }
@@ -68,7 +70,8 @@ LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& sta
   return out;
 }
 
-/// A bristle does not turn with the sign of a noisy rate: the share of Coulomb's friction is given the sign that was taken out of it.
+/// A bristle does not turn with the sign of a noisy rate: the share of Coulomb's friction is given the sign that was
+/// taken out of it.
 void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& log) {
   if (log.coulomb_share.size() == 0) return;
   const Eigen::Array<bool, 1, Eigen::Dynamic> bristle = (log.coulomb_share.array() != 1.0).colwise().any();
@@ -116,7 +119,8 @@ double NullStudy::family_p(std::size_t index, double score) const {
 
 double NullStudy::omnibus_p(const VectorXd& gains) const {
   double least = 1;
-  for (std::size_t j = 0; j < omnibus.size(); ++j) least = std::min(least, omnibus[j].p_value(gains(static_cast<Index>(j))));
+  for (std::size_t j = 0; j < omnibus.size(); ++j)
+    least = std::min(least, omnibus[j].p_value(gains(static_cast<Index>(j))));
   return std::min(1.0, omnibus_family.p_value(-std::log(std::max(least, 1e-300))));
 }
 
@@ -138,7 +142,8 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
     }
     MatrixXd root(values.size(), static_cast<Index>(kept.size()));
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      root.col(static_cast<Index>(k)) = scale.asDiagonal() * eigen.eigenvectors().col(kept[k]) / std::sqrt(values(kept[k]));
+      root.col(static_cast<Index>(k)) =
+          scale.asDiagonal() * eigen.eigenvectors().col(kept[k]) / std::sqrt(values(kept[k]));
     }
     root_.push_back(root);
     ranks_.push_back(root.cols());
@@ -190,11 +195,13 @@ std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
     PreparedLog log = logs_[l].log;
     MatrixXd noise(samples_[l], log.q.cols());
     for (Index j = 0; j < noise.cols(); ++j) {
-      for (Index k = 0; k < noise.rows(); ++k) noise(k, j) = position_noise_[l][static_cast<std::size_t>(j)] * normal(random);
+      for (Index k = 0; k < noise.rows(); ++k)
+        noise(k, j) = position_noise_[l][static_cast<std::size_t>(j)] * normal(random);
     }
     // Through the same zero-phase filter and differentiation as the log's own motion.
     noise = zero_phase_filter(noise, rate_hz_[l], cutoff_hz_, 4);
-    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz_[l], 1, 3), second = differentiate(noise, 1.0 / rate_hz_[l], 2, 3);
+    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz_[l], 1, 3),
+                   second = differentiate(noise, 1.0 / rate_hz_[l], 2, 3);
     for (Index k = 0; k < log.q.rows(); ++k) {
       const Index sample = start_[l] + k * step_[l];
       log.q.row(k) += noise.row(sample);
@@ -207,7 +214,8 @@ std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
   return out;
 }
 
-EncoderPilots::Run EncoderPilots::rows_of(const std::vector<PreparedLog>& motion, const std::vector<std::size_t>& which) const {
+EncoderPilots::Run EncoderPilots::rows_of(const std::vector<PreparedLog>& motion,
+                                          const std::vector<std::size_t>& which) const {
   Run run;
   run.rows.resize(which.size());
   for (std::size_t l = 0; l < logs_.size(); ++l) {
@@ -238,7 +246,12 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
                              const VectorXd& p, const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses,
                              const std::vector<Signature>& signatures, const PerLogAndDrive<double>& position_noise,
                              double cutoff_hz, double low_pass_hz, std::uint64_t seed, int threads)
-    : model_(model), base_(base), p_(p), hypotheses_(hypotheses), position_noise_(position_noise), cutoff_hz_(cutoff_hz) {
+    : model_(model),
+      base_(base),
+      p_(p),
+      hypotheses_(hypotheses),
+      position_noise_(position_noise),
+      cutoff_hz_(cutoff_hz) {
   std::vector<PreparedLog> own;
   for (const LogRows& log : logs) {
     Index step = 1, start = 0;
@@ -272,7 +285,8 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
       const Index amplitudes = hypotheses[h].amplitudes;
       for (Index c = 0; c < inner[k].size(); ++c) {
         const MatrixXd& gram = signatures[h].gram[static_cast<std::size_t>(c / amplitudes)];
-        if (std::abs(inner[k](c)) > kSensitive * std::sqrt(std::max(gram(c % amplitudes, c % amplitudes), 1e-300))) feels[h] = 1;
+        if (std::abs(inner[k](c)) > kSensitive * std::sqrt(std::max(gram(c % amplitudes, c % amplitudes), 1e-300)))
+          feels[h] = 1;
       }
     }
   }
@@ -294,7 +308,8 @@ VectorXd EncoderPilots::clean(const WhiteProblem& problem) const {
   return problem.X.leftCols(b) * problem.beta.head(b);
 }
 
-std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const Run& run, const VectorXd& y, VectorXd& r) const {
+std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const Run& run, const VectorXd& y,
+                                              VectorXd& r) const {
   const Index b = base_.count();
   MatrixXd X = problem.X;
   for (const WhiteSegment& segment : problem.segments) {
@@ -418,9 +433,9 @@ std::vector<VectorXd> EncoderPilots::torque_noise(const WhiteProblem& problem, d
   return taps;
 }
 
-NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses,
-                         const std::vector<Signature>& signatures, const std::vector<VectorXd>& bias, const Omnibus& omnibus,
-                         const NullOptions& options) {
+NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
+                         const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
+                         const std::vector<VectorXd>& bias, const Omnibus& omnibus, const NullOptions& options) {
   NullStudy out;
   out.runs = options.runs;
   out.sensitive = static_cast<int>(pilots.sensitive().size());

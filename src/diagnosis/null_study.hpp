@@ -3,8 +3,9 @@
 /// \file
 /// What the scores are when nothing is missing: the whole pipeline on simulated clean logs.
 ///
-/// Encoder noise enters the position and passes the zero-phase filter, the differentiation, the regressor, the low pass and the
-/// whitening; torque noise enters as the fitted autoregression. Encoder noise alone fakes Stribeck and elasticity otherwise.
+/// Encoder noise enters the position and passes the zero-phase filter, the differentiation, the regressor, the low pass
+/// and the whitening; torque noise enters as the fitted autoregression. Encoder noise alone fakes Stribeck and
+/// elasticity otherwise.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -16,7 +17,8 @@
 
 namespace deltadyn {
 
-/// Distribution of one score: empirical below its upper quarter, exponential above (the tail of a chi-square or of a supremum of some).
+/// Distribution of one score: empirical below its upper quarter, exponential above (the tail of a chi-square or of a
+/// supremum of some).
 class NullDistribution {
  public:
   NullDistribution() = default;
@@ -41,9 +43,11 @@ class Omnibus {
   /// Independent columns of each drive's basis.
   [[nodiscard]] const std::vector<Eigen::Index>& ranks() const { return ranks_; }
   /// Coefficients of the basis for the part of the structure of one drive that stands out of the noise.
-  [[nodiscard]] Eigen::VectorXd clear_part(const WhiteProblem& problem, const Eigen::VectorXd& r, std::size_t drive) const;
+  [[nodiscard]] Eigen::VectorXd clear_part(const WhiteProblem& problem, const Eigen::VectorXd& r,
+                                           std::size_t drive) const;
   /// Gain of each coordinate of the basis alone, for one drive: where the structure lies.
-  [[nodiscard]] std::vector<std::pair<std::string, double>> by_coordinate(const WhiteProblem& problem, const Eigen::VectorXd& r,
+  [[nodiscard]] std::vector<std::pair<std::string, double>> by_coordinate(const WhiteProblem& problem,
+                                                                          const Eigen::VectorXd& r,
                                                                           std::size_t drive) const;
 
  private:
@@ -53,15 +57,16 @@ class Omnibus {
   std::vector<std::vector<std::string>> coordinate_;
 };
 
-/// Encoder noise through the pipeline, some times: which columns it moves, and what it fakes on average. A column and the residual feel
-/// the same noise, so that their product has a mean: a column of second derivatives is the plainest case. All scores are freed of it.
+/// Encoder noise through the pipeline, some times: which columns it moves, and what it fakes on average. A column and
+/// the residual feel the same noise, so that their product has a mean: a column of second derivatives is the plainest
+/// case. All scores are freed of it.
 class EncoderPilots {
  public:
   /// \param position_noise  [log][drive], standard deviation of the recorded positions
-  EncoderPilots(const EffectModel& model, const BaseParameters& base, const std::vector<LogRows>& logs, const Eigen::VectorXd& p,
-                const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
-                const PerLogAndDrive<double>& position_noise, double cutoff_hz, double low_pass_hz, std::uint64_t seed,
-                int threads);
+  EncoderPilots(const EffectModel& model, const BaseParameters& base, const std::vector<LogRows>& logs,
+                const Eigen::VectorXd& p, const WhiteProblem& problem, const std::vector<Hypothesis>& hypotheses,
+                const std::vector<Signature>& signatures, const PerLogAndDrive<double>& position_noise,
+                double cutoff_hz, double low_pass_hz, std::uint64_t seed, int threads);
 
   /// What one noisy motion changes: base rows of every log, and rows of the sensitive hypotheses.
   struct Run {
@@ -69,15 +74,19 @@ class EncoderPilots {
     std::vector<PerLogAndDrive<Eigen::MatrixXd>> rows;  ///< one a sensitive hypothesis
   };
   [[nodiscard]] Run draw(std::uint64_t seed) const;
-  /// What the change of the sensitive hypotheses' columns adds to C^T r, and the residual r for a torque y in white rows.
-  [[nodiscard]] std::vector<Eigen::VectorXd> products(const WhiteProblem& problem, const Run& run, const Eigen::VectorXd& y,
-                                                      Eigen::VectorXd& r) const;
+  /// What the change of the sensitive hypotheses' columns adds to C^T r, and the residual r for a torque y in white
+  /// rows.
+  [[nodiscard]] std::vector<Eigen::VectorXd> products(const WhiteProblem& problem, const Run& run,
+                                                      const Eigen::VectorXd& y, Eigen::VectorXd& r) const;
   /// Mean of C_perp^T r that encoder noise makes, one vector a hypothesis (empty: none).
-  [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem, const std::vector<Signature>& signatures) const;
-  /// Fills Signature::clean: the squares that encoder noise adds to the sensitive columns would make amplitudes come out small.
+  [[nodiscard]] std::vector<Eigen::VectorXd> bias(const WhiteProblem& problem,
+                                                  const std::vector<Signature>& signatures) const;
+  /// Fills Signature::clean: the squares that encoder noise adds to the sensitive columns would make amplitudes come
+  /// out small.
   void correct(const WhiteProblem& problem, std::vector<Signature>& signatures) const;
-  /// Filter taps, one vector a segment, that turn white noise into the torque's own noise: what is left when the encoder's part is
-  /// taken from the unit spectrum of the white residual. \param share  the encoder's share of the variance
+  /// Filter taps, one vector a segment, that turn white noise into the torque's own noise: what is left when the
+  /// encoder's part is taken from the unit spectrum of the white residual. \param share  the encoder's share of the
+  /// variance
   [[nodiscard]] std::vector<Eigen::VectorXd> torque_noise(const WhiteProblem& problem, double& share) const;
 
   [[nodiscard]] const std::vector<std::size_t>& sensitive() const { return sensitive_; }
@@ -90,7 +99,7 @@ class EncoderPilots {
 
   const EffectModel& model_;
   const BaseParameters& base_;
-  std::vector<LogRows> logs_;                         ///< motion only, every few samples: the low pass that follows needs no more
+  std::vector<LogRows> logs_;  ///< motion only, every few samples: the low pass that follows needs no more
   std::vector<Eigen::Index> step_, start_, samples_;  ///< of each log: sample = start + k step, of so many
   std::vector<double> rate_hz_;                       ///< of the logs as recorded
   Run still_;                                         ///< without noise
@@ -102,8 +111,8 @@ class EncoderPilots {
   std::vector<Run> runs_;
 };
 
-/// C_perp^T r freed of what encoder noise fakes. The noise of the positions is known to some tenths of its variance only (quantisation
-/// is not white), so that a share of the fake counts as nothing.
+/// C_perp^T r freed of what encoder noise fakes. The noise of the positions is known to some tenths of its variance
+/// only (quantisation is not white), so that a share of the fake counts as nothing.
 [[nodiscard]] Eigen::VectorXd freed_of_bias(const Eigen::VectorXd& inner, const Eigen::VectorXd& bias);
 
 struct NullOptions {
@@ -129,7 +138,8 @@ struct NullStudy {
 
 /// \param bias  EncoderPilots::bias of the same problem
 [[nodiscard]] NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
-                                       const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
+                                       const std::vector<Hypothesis>& hypotheses,
+                                       const std::vector<Signature>& signatures,
                                        const std::vector<Eigen::VectorXd>& bias, const Omnibus& omnibus,
                                        const NullOptions& options);
 

@@ -22,20 +22,22 @@ namespace {
 
 constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of the one that identification uses: then the
 constexpr double kPassOverCutoff = 1.2;  // low pass of regressor and torque, not that of the motion, bounds the band
-constexpr double kMostCutoff_hz = 25;    // above, encoder noise in the accelerations outweighs what is gained beside reversals
-constexpr double kSharp_hz = 20;         // keeps reversals short, as in choose_cutoff()
-constexpr double kRestFloor = 0.03;      // share of a log's largest rate below which friction is that of rest
-constexpr double kRestOfAll = 0.03;      // share of the largest rate in all logs for which the same holds ...
-constexpr double kMostRest = 0.12;       // ... but no more than this share of a slow log's own, which must show something
-constexpr double kUsualNoise = 0.01;     // of a drive's torque
-constexpr double kHolds = 1.5;           // rms near reversals over the floor from which bristles do not hold
-constexpr Index kFewestRows = 10;        // to judge that by
+// Above, encoder noise in the accelerations outweighs what is gained beside reversals
+constexpr double kMostCutoff_hz = 25;
+constexpr double kSharp_hz = 20;      // keeps reversals short, as in choose_cutoff()
+constexpr double kRestFloor = 0.03;   // share of a log's largest rate below which friction is that of rest
+constexpr double kRestOfAll = 0.03;   // share of the largest rate in all logs for which the same holds ...
+constexpr double kMostRest = 0.12;    // ... but no more than this share of a slow log's own, which must show something
+constexpr double kUsualNoise = 0.01;  // of a drive's torque
+constexpr double kHolds = 1.5;        // rms near reversals over the floor from which bristles do not hold
+constexpr Index kFewestRows = 10;     // to judge that by
 
 bool has_bristle(const ProcessingOptions& processing, Index joint) {
   return joint < processing.presliding.size() && processing.presliding(joint) > 0;
 }
 
-/// Options of the rows. Every log is used as it is, and rest is what leave_rest_out() says, but for joints with bristles.
+/// Options of the rows. Every log is used as it is, and rest is what leave_rest_out() says, but for joints with
+/// bristles.
 ProcessingOptions row_processing(const std::vector<Log>& logs, ProcessingOptions out, double cutoff_hz) {
   double rate_hz = 1e12;
   for (const Log& log : logs) rate_hz = std::min(rate_hz, 1.0 / log.sample_time_s());
@@ -76,7 +78,8 @@ MatrixXd friction_rates(const Robot& robot, const PreparedLog& log) {
 
 using Marks = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Samples x joints that move so slowly that friction can be that of rest: in slow logs, too, what is slow is measured by the fastest.
+/// Samples x joints that move so slowly that friction can be that of rest: in slow logs, too, what is slow is measured
+/// by the fastest.
 std::vector<Marks> slow_samples(const Robot& robot, const std::vector<PreparedLog>& logs) {
   std::vector<MatrixXd> rates;
   VectorXd largest = VectorXd::Zero(robot.friction_joints());
@@ -105,7 +108,8 @@ void leave_rest_out(const Robot& robot, const ProcessingOptions& processing, con
       if (has_bristle(processing, joint) && holds) continue;
       // The telescope bar's friction acts on the limbs' drives.
       const Index first = joint < robot.drives() ? joint : 0, count = joint < robot.drives() ? 1 : limbs;
-      for (Index j = first; j < first + count; ++j) logs[l].reversal.col(j) = logs[l].reversal.col(j) || slow[l].col(joint);
+      for (Index j = first; j < first + count; ++j)
+        logs[l].reversal.col(j) = logs[l].reversal.col(j) || slow[l].col(joint);
     }
   }
 }
@@ -121,7 +125,8 @@ std::optional<double> rms_near_reversals(const std::vector<LogRows>& logs, const
     const VectorXd e = log.tau.col(drive) - log.Y[j].leftCols(base.count()) * beta;
     const Index reach = log.log.low_pass ? log.log.low_pass->half_width() : 0;
     for (Index row = 0; row < log.rows(); ++row) {
-      if (!log.usable[j](row) || !slow[l].col(drive).segment(sample_of_row(log.log, row) - reach, 2 * reach + 1).any()) continue;
+      if (!log.usable[j](row) || !slow[l].col(drive).segment(sample_of_row(log.log, row) - reach, 2 * reach + 1).any())
+        continue;
       square += e(row) * e(row);
       ++count;
     }
@@ -137,7 +142,8 @@ VectorXd floors(const std::vector<LogRows>& logs) {
   const PerLogAndDrive<double> floor = estimate_noise(logs, make_generic_basis(logs), no_effects).floor_rms;
   VectorXd out = VectorXd::Zero(static_cast<Index>(floor.front().size()));
   for (const auto& log : floor) {
-    for (std::size_t j = 0; j < log.size(); ++j) out(static_cast<Index>(j)) = std::max(out(static_cast<Index>(j)), log[j]);
+    for (std::size_t j = 0; j < log.size(); ++j)
+      out(static_cast<Index>(j)) = std::max(out(static_cast<Index>(j)), log[j]);
   }
   return out;
 }
@@ -154,8 +160,9 @@ SearchCutoff search_cutoff(const Robot& robot, const BaseParameters& base, const
   return out;
 }
 
-DiagnosisRows prepare_rows(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const Log* holdout,
-                           const ProcessingOptions& wanted, double cutoff_hz, const std::vector<int>& masked) {
+DiagnosisRows prepare_rows(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+                           const Log* holdout, const ProcessingOptions& wanted, double cutoff_hz,
+                           const std::vector<int>& masked) {
   std::vector<Log> all = logs;
   if (holdout != nullptr) all.push_back(*holdout);
   DiagnosisRows out;

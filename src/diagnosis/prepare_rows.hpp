@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// From logs to the rows that the diagnosis searches in: one cut-off for all, friction at rest left out, rows near reversals used where
-/// the known bristles tell what friction does there.
+/// From logs to the rows that the diagnosis searches in: one cut-off for all, friction at rest left out, rows near
+/// reversals used where the known bristles tell what friction does there.
 
 #include <vector>
 
@@ -20,9 +20,11 @@ struct DiagnosisRows {
 
 /// Cut-offs for the search.
 struct SearchCutoff {
-  double chosen_hz = 0;  ///< the one that delta-identify would choose for these logs, but no more than the search can use
+  /// The one that delta-identify would choose for these logs, but no more than the search can use
+  double chosen_hz = 0;
   double widest_hz = 0;  ///< where reversals would take too many rows at that one: a narrow low pass widens them
-  double sharp_hz = 0;   ///< where they would still take nearly all: beyond the encoders' noise, which the search allows for
+  /// Where they would still take nearly all: beyond the encoders' noise, which the search allows for
+  double sharp_hz = 0;
 };
 [[nodiscard]] SearchCutoff search_cutoff(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                          const ProcessingOptions& wanted, int threads);

@@ -75,7 +75,8 @@ bool near_rest(const SearchContext& context, const Fit& fit) {
   const EffectKind& kind = effect_kind(fit.effect.id);
   if (kind.only_near_rest == nullptr) return false;
   double largest = 0;
-  for (const LogRows& log : context.logs) largest = std::max(largest, log.qd.col(fit.effect.joint).cwiseAbs().maxCoeff());
+  for (const LogRows& log : context.logs)
+    largest = std::max(largest, log.qd.col(fit.effect.joint).cwiseAbs().maxCoeff());
   return kind.only_near_rest(fit.effect.shape.data(), largest);
 }
 

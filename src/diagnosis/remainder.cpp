@@ -8,8 +8,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem, const PerLogAndDrive<MatrixXd>& columns,
-                       const VectorXd& amplitude) {
+Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
+                       const PerLogAndDrive<MatrixXd>& columns, const VectorXd& amplitude) {
   VectorXd white = VectorXd::Zero(problem.rows);
   for (const WhiteSegment& segment : problem.segments) {
     const MatrixXd& raw = columns[segment.log][segment.drive];
@@ -19,7 +19,8 @@ Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem
   const MatrixXd scaled = problem.X * norm.asDiagonal();
   Remainder out;
   const MatrixXd information = scaled.transpose() * scaled;
-  out.beta = norm.asDiagonal() * information.completeOrthogonalDecomposition().solve(VectorXd(scaled.transpose() * white));
+  out.beta =
+      norm.asDiagonal() * information.completeOrthogonalDecomposition().solve(VectorXd(scaled.transpose() * white));
   const Index b = context.base.count();
   for (std::size_t l = 0; l < context.logs.size(); ++l) {
     out.torque.emplace_back();

@@ -30,8 +30,8 @@ PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise) {
   return noise;
 }
 
-/// The effect that raises the likelihood most when the noise is estimated again beside it, among the best by their gain with and
-/// without the noise's memory. None if no effect raises it enough.
+/// The effect that raises the likelihood most when the noise is estimated again beside it, among the best by their gain
+/// with and without the noise's memory. None if no effect raises it enough.
 std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots& pilots,
                                const std::vector<AcceptedEffect>& provisional, const NoiseEstimate& estimate) {
   const EffectSearch& search = context.search;
@@ -80,7 +80,8 @@ EffectSearch::State beside_others(const SearchContext& context, const SearchResu
   return context.search.state(found.noise, others, found.pilots.get());
 }
 
-Fit fit_beside(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others, std::size_t k) {
+Fit fit_beside(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others,
+               std::size_t k) {
   const Fit& fit = context.search.refine(others, found.accepted[k].hypothesis);
   if (!found.hygiene[k] || hygienic(context, fit)) return fit;
   Fit allowed = found.fits[k];  // no more than was allowed for without a name
@@ -89,8 +90,8 @@ Fit fit_beside(const SearchContext& context, const SearchResult& found, const Ef
 }
 
 /// The hypothesis that fits better than `fit` in its place, now that the others are known; `fit` if there is none.
-Fit best_in_place(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others, std::size_t k,
-                  Fit fit) {
+Fit best_in_place(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others,
+                  std::size_t k, Fit fit) {
   if (found.hygiene[k]) return fit;
   const FormErrors form_errors(context, found, others, k);
   const auto named = std::count(found.hygiene.begin(), found.hygiene.end(), false);
@@ -104,8 +105,8 @@ Fit best_in_place(const SearchContext& context, const SearchResult& found, const
   return better ? *best : fit;
 }
 
-/// Takes out the weakest of the effects that no longer count beside the others, or that the others' forms can have left: the first of
-/// several may have been a mixture of them. False if there is none.
+/// Takes out the weakest of the effects that no longer count beside the others, or that the others' forms can have
+/// left: the first of several may have been a mixture of them. False if there is none.
 bool drop_weakest(const SearchContext& context, SearchResult& found) {
   std::optional<std::size_t> weakest;
   double least = 0;
@@ -155,20 +156,24 @@ void take_in_forward(const SearchContext& context, SearchResult& found) {
     named += found.hygiene.back() ? 0 : 1;
     found.accepted.push_back(search.accept(*fit));
     found.fits.push_back(std::move(*fit));
-    // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a third.
+    // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a
+    // third.
     for (std::size_t k = 0; k + 1 < found.accepted.size(); ++k) exchange(context, found, k);
     beside = search.state(found.noise, found.accepted, found.pilots.get());
   }
 }
 
-/// The first of two may have been a mixture of both: the best pair, if it is worth more than the best single and its follower.
+/// The first of two may have been a mixture of both: the best pair, if it is worth more than the best single and its
+/// follower.
 void prefer_the_best_pair(const SearchContext& context, SearchResult& found) {
   const EffectSearch& search = context.search;
   if (found.accepted.size() != 2 || found.hygiene[0] || found.hygiene[1]) return;
   const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
-  const double forward_gain =
-      found.before.problem->r.squaredNorm() - search.state(found.noise, found.accepted, nullptr).problem->r.squaredNorm();
-  const auto taken = [&](std::size_t h) { return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h; };
+  const double forward_gain = found.before.problem->r.squaredNorm() -
+                              search.state(found.noise, found.accepted, nullptr).problem->r.squaredNorm();
+  const auto taken = [&](std::size_t h) {
+    return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h;
+  };
   if (pair.gain <= 1.02 * forward_gain || (taken(pair.first) && taken(pair.second))) return;
   found.accepted.clear();
   found.fits.clear();
@@ -181,7 +186,8 @@ void prefer_the_best_pair(const SearchContext& context, SearchResult& found) {
   }
 }
 
-/// Each must still count beside the others; then its shape, size and set beside them, again where one has given way to another.
+/// Each must still count beside the others; then its shape, size and set beside them, again where one has given way to
+/// another.
 void settle_backward(const SearchContext& context, SearchResult& found) {
   bool exchanged = true;
   for (int pass = 0; exchanged && pass < kMostExchanges; ++pass) {
@@ -195,7 +201,8 @@ void settle_backward(const SearchContext& context, SearchResult& found) {
       exchanged |= fit.hypothesis != found.accepted[k].hypothesis;
       found.hygiene[k] = found.hygiene[k] || hygienic(context, fit);
       set_uncertainty(context, others, fit);
-      found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>() : confusable_set(context, found, others, fit, k));
+      found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>()
+                                            : confusable_set(context, found, others, fit, k));
       found.accepted[k] = context.search.accept(fit);
       found.fits[k] = std::move(fit);
     }
@@ -216,7 +223,8 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     if (options.progress) options.progress(share);
   };
 
-  // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this coarser.
+  // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this
+  // coarser.
   NoiseEstimate estimate;
   if (earlier != nullptr) {
     estimate.noise = earlier->noise;
@@ -228,11 +236,11 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     found.pilots = earlier->pilots;
   } else {
     const EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
-    const double pass_hz =
-        std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz, 0.4 * context.logs.front().log.rate_hz);
-    found.pilots = std::make_shared<EncoderPilots>(context.model, context.base, context.logs, context.p, *state.problem,
-                                                   search.hypotheses(), state.signatures, context.position_noise,
-                                                   context.processing.cutoff_hz, pass_hz, options.seed, options.threads);
+    const double pass_hz = std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz,
+                                    0.4 * context.logs.front().log.rate_hz);
+    found.pilots = std::make_shared<EncoderPilots>(
+        context.model, context.base, context.logs, context.p, *state.problem, search.hypotheses(), state.signatures,
+        context.position_noise, context.processing.cutoff_hz, pass_hz, options.seed, options.threads);
   }
   const EncoderPilots& pilots = *found.pilots;
   report(0.3);
@@ -261,8 +269,8 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
     null_options.seed = options.seed;
     null_options.threads = options.threads;
     null_options.progress = [&](double share) { report(0.45 + 0.4 * share); };
-    found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
-                                found.omnibus_before, null_options);
+    found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures,
+                                found.before.bias, found.omnibus_before, null_options);
   }
   out.encoder_share = found.null.encoder_share;
 

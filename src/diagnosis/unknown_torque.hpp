@@ -1,9 +1,10 @@
 #pragma once
 
 /// \file
-/// Samples at which nothing is known of a drive's torque, as the low-passed rows see them. About a velocity reversal friction follows
-/// no law of the rate: it sticks, creeps and breaks away, and the measured rate has no certain sign. What happens there for a few
-/// milliseconds reaches every row within the low pass, but in a few directions only, so that most of each row can still be used.
+/// Samples at which nothing is known of a drive's torque, as the low-passed rows see them. About a velocity reversal
+/// friction follows no law of the rate: it sticks, creeps and breaks away, and the measured rate has no certain sign.
+/// What happens there for a few milliseconds reaches every row within the low pass, but in a few directions only, so
+/// that most of each row can still be used.
 
 #include <Eigen/Core>
 #include <vector>
@@ -18,11 +19,13 @@ namespace deltadyn {
 struct UnknownTorque {
   Eigen::Index first = 0;
   Eigen::MatrixXd
-      directions;  ///< rows x directions, orthogonal, each as large [N m or N] as an error of the drive's torque can make it
+      /// Rows x directions, orthogonal, each as large [N m or N] as an error of the drive's torque can make it
+      directions;
 };
 
 /// The stretches of samples that PreparedLog::reversal marks for a drive.
-/// \param present  set to false at rows that lie deep inside a long stretch (the joint stands), where nothing is known at all
+/// \param present  set to false at rows that lie deep inside a long stretch (the joint stands), where nothing is known
+/// at all
 [[nodiscard]] std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Eigen::Index drive, RowMask& present);
 
 }  // namespace deltadyn

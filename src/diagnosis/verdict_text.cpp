@@ -18,7 +18,8 @@ std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot
     const auto at = static_cast<Index>(k);
     const double std = one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0.0;
     text += fmt::format("{}{} {:.4g} +- {:.2g} {} (95 %)", text.empty() ? "" : ", ", kind.amplitudes[k].name,
-                        one.effect.amplitude(at), 1.96 * std, effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
+                        one.effect.amplitude(at), 1.96 * std,
+                        effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot));
   }
   return text;
 }
@@ -33,9 +34,9 @@ void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
     const DriveFit& drive = out.drives[j];
     if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
     const char* unit = torque_unit(context, j);
-    out.lines.push_back(
-        fmt::format("But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
-                    drive.rms_given, unit, drive.rms, unit));
+    out.lines.push_back(fmt::format(
+        "But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
+        drive.rms_given, unit, drive.rms, unit));
     out.next.insert(out.next.begin(), "Fit the parameters to these logs with delta-identify before you use the model.");
     return;
   }
@@ -47,7 +48,8 @@ std::string structure_left(const SearchContext& context, const Diagnosis& out) {
     const DriveFit& drive = out.drives[j];
     if (drive.p_left >= kStructureChance || drive.rms_after < kLeftOver * drive.floor) continue;
     return fmt::format(
-        "of drive {} {:.3g} {} are left where noise alone leaves {:.3g}, but no effect of the catalogue explains that on "
+        "of drive {} {:.3g} {} are left where noise alone leaves {:.3g}, but no effect of the catalogue explains that "
+        "on "
         "every log",
         j + 1, drive.rms_after, torque_unit(context, j), drive.floor);
   }
@@ -63,19 +65,21 @@ void say(const SearchContext& context, Diagnosis& out) {
       out.headline = structure_left(context, out).empty()
                          ? "Nothing is missing: what the model leaves is noise as far as these logs can show."
                          : "Nothing is named: " + structure_left(context, out) + ".";
-      out.next.push_back("Use the model. The table of all effects says how large each would have to be to show in these logs.");
+      out.next.push_back(
+          "Use the model. The table of all effects says how large each would have to be to show in these logs.");
       say_parameters_are_off(context, out);
       return;
     case DiagnosisVerdict::not_testable:
       if (!out.next.empty()) return;  // the judge knows what is wanted
-      out.next.push_back(
-          context.holdout != nullptr
-              ? "Record training logs that cover the speeds, accelerations and poses of the hold-out log, fast and slow."
-              : "Record a motion that excites the dynamics, fast and slow: delta-excite plans one.");
+      out.next.push_back(context.holdout != nullptr
+                             ? "Record training logs that cover the speeds, accelerations and poses of the hold-out "
+                               "log, fast and slow."
+                             : "Record a motion that excites the dynamics, fast and slow: delta-excite plans one.");
       return;
     case DiagnosisVerdict::unknown_structure:
       out.headline = "Something is missing that no effect of the catalogue explains: " + out.region + ".";
-      out.next.push_back("Look at the maps of the residual: which coordinate does it follow? Check the machine at that place.");
+      out.next.push_back(
+          "Look at the maps of the residual: which coordinate does it follow? Check the machine at that place.");
       out.next.push_back("Repeat the motion once: a residual that does not repeat is no property of the robot.");
       return;
     default: break;
@@ -85,8 +89,8 @@ void say(const SearchContext& context, Diagnosis& out) {
   for (const NamedEffect& one : out.named) {
     const EffectKind& kind = effect_kind(one.effect.id);
     const std::string shape = effect_shape_text(one.effect, robot);
-    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning, amplitude_text(one, robot),
-                                    shape.empty() ? "" : "; " + shape));
+    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning,
+                                    amplitude_text(one, robot), shape.empty() ? "" : "; " + shape));
     if (!one.confusable.empty()) {
       std::string others;
       for (const EffectCandidate& other : one.confusable)

@@ -20,8 +20,8 @@ constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gr
 
 }  // namespace
 
-VectorXd WhiteColumns::inner(const VectorXd& r, const VectorXd& Q_r, const std::vector<WhiteSegment>& segments, Index first,
-                             Index count) const {
+VectorXd WhiteColumns::inner(const VectorXd& r, const VectorXd& Q_r, const std::vector<WhiteSegment>& segments,
+                             Index first, Index count) const {
   VectorXd u = -base.middleCols(first, count).transpose() * Q_r;
   for (std::size_t s = 0; s < blocks.size(); ++s) {
     if (blocks[s].size() > 0)
@@ -63,10 +63,12 @@ WhiteColumns WhiteColumns::part(Index first, Index count) const {
   return out;
 }
 
-MatrixXd WhiteColumns::projected(const MatrixXd& Q, const std::vector<WhiteSegment>& segments, Index first, Index count) const {
+MatrixXd WhiteColumns::projected(const MatrixXd& Q, const std::vector<WhiteSegment>& segments, Index first,
+                                 Index count) const {
   MatrixXd C = -Q * base.middleCols(first, count);
   for (std::size_t s = 0; s < blocks.size(); ++s) {
-    if (blocks[s].size() > 0) C.middleRows(segments[s].offset, segments[s].rows()) += blocks[s].middleCols(first, count);
+    if (blocks[s].size() > 0)
+      C.middleRows(segments[s].offset, segments[s].rows()) += blocks[s].middleCols(first, count);
   }
   return C;
 }
@@ -118,7 +120,8 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
   for (const WhiteSegment& segment : segments) {
     const MatrixXd& raw = columns[segment.log][segment.drive];
     out.blocks.push_back(raw.size() > 0 ? segment.whitener.apply(raw) : MatrixXd());
-    if (raw.size() > 0) out.base.noalias() += Q.middleRows(segment.offset, segment.rows()).transpose() * out.blocks.back();
+    if (raw.size() > 0)
+      out.base.noalias() += Q.middleRows(segment.offset, segment.rows()).transpose() * out.blocks.back();
   }
   return out;
 }
@@ -128,7 +131,8 @@ Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::ve
   return {best.gain, best.x};
 }
 
-Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis, const PerLogAndDrive<MatrixXd>& rows) {
+Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
+                         const PerLogAndDrive<MatrixXd>& rows) {
   Signature out;
   out.white = problem.whiten(rows);
   const Index k = hypothesis.amplitudes;
@@ -152,7 +156,8 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
 Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem) {
   if (signature.white.cols == 0) return best_score(hypothesis, signature, VectorXd(0));
   const VectorXd Q_r = problem.Q.transpose() * problem.r;
-  return best_score(hypothesis, signature, signature.white.inner(problem.r, Q_r, problem.segments, 0, signature.white.cols));
+  return best_score(hypothesis, signature,
+                    signature.white.inner(problem.r, Q_r, problem.segments, 0, signature.white.cols));
 }
 
 Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner) {
@@ -175,7 +180,8 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
     } else {
       gain = constrained_gain(signature.gram[s], u, positive);
       bool too_large = false;
-      for (Index c = 0; c < k; ++c) too_large |= std::abs(gain.amplitude(c)) > hypothesis.largest(static_cast<std::size_t>(c));
+      for (Index c = 0; c < k; ++c)
+        too_large |= std::abs(gain.amplitude(c)) > hypothesis.largest(static_cast<std::size_t>(c));
       // ... and a fitted one too small.
       if (!too_large) gain.amplitude /= signature.clean[s];
       for (Index c = 0; c < k; ++c) {

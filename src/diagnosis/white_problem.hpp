@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The regression of all logs and drives in white, unit-variance rows, with the base model projected out: a candidate counts only by
-/// its part orthogonal to what a re-fit of the base parameters would absorb.
+/// The regression of all logs and drives in white, unit-variance rows, with the base model projected out: a candidate
+/// counts only by its part orthogonal to what a re-fit of the base parameters would absorb.
 
 #include <Eigen/Core>
 #include <vector>
@@ -35,7 +35,8 @@ struct WhiteColumns {
 
   /// C_perp^T r for the columns [first, first + count).
   [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& r, const Eigen::VectorXd& Q_r,
-                                      const std::vector<WhiteSegment>& segments, Eigen::Index first, Eigen::Index count) const;
+                                      const std::vector<WhiteSegment>& segments, Eigen::Index first,
+                                      Eigen::Index count) const;
   /// C_perp^T C_perp.
   [[nodiscard]] Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index count) const;
   /// The same, zero in rows and columns of which the projection leaves rounding only.
@@ -45,8 +46,8 @@ struct WhiteColumns {
   /// Columns [first, first + count) alone.
   [[nodiscard]] WhiteColumns part(Eigen::Index first, Eigen::Index count) const;
   /// C_perp over all rows.
-  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& Q, const std::vector<WhiteSegment>& segments, Eigen::Index first,
-                                          Eigen::Index count) const;
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& Q, const std::vector<WhiteSegment>& segments,
+                                          Eigen::Index first, Eigen::Index count) const;
 };
 
 /// a^T b between the projected columns of two sets.
@@ -62,11 +63,11 @@ class WhiteProblem {
 
   std::vector<WhiteSegment> segments;
   Eigen::Index rows = 0;
-  Eigen::Index freedom = 0;               ///< rows less the directions that nothing is known of
-  Eigen::MatrixXd X;                      ///< white regressor
-  Eigen::MatrixXd Q;                      ///< orthonormal basis of its columns: rows x rank
-  Eigen::VectorXd y, r;                   ///< white torque, and its part orthogonal to Q
-  Eigen::VectorXd beta;                   ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  Eigen::Index freedom = 0;  ///< rows less the directions that nothing is known of
+  Eigen::MatrixXd X;         ///< white regressor
+  Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
+  Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
+  Eigen::VectorXd beta;      ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
   PerLogAndDrive<Eigen::MatrixXd> extra;  ///< as given
 };
 
@@ -76,17 +77,18 @@ struct Gain {
   Eigen::VectorXd amplitude;  ///< k
 };
 
-/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no part.
-/// \param gram   C_perp^T C_perp
-/// \param inner  C_perp^T r
-[[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner, const std::vector<bool>& positive);
+/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no
+/// part. \param gram   C_perp^T C_perp \param inner  C_perp^T r
+[[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner,
+                                    const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
 struct Signature {
   WhiteColumns white;
   std::vector<Eigen::MatrixXd> gram;  ///< of each shape, projected
-  std::vector<double> clean;  ///< of each shape: share of gram that is not encoder noise in the columns (1: none is known)
-  std::vector<double> kept;   ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
+  /// Of each shape: share of gram that is not encoder noise in the columns (1: none is known)
+  std::vector<double> clean;
+  std::vector<double> kept;  ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
 };
 
 [[nodiscard]] Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,

@@ -93,8 +93,8 @@ void Whitener::factorise() {
     // Sorted by their first rows: only the next few meet this one.
     for (std::size_t b = a; b < taken_.size() && taken_[b].first < taken_[a].end(); ++b) {
       const Index first = taken_[b].first, end = std::min(taken_[a].end(), taken_[b].end());
-      const MatrixXd block =
-          taken_[b].basis.topRows(end - first).transpose() * taken_[a].basis.middleRows(first - taken_[a].first, end - first);
+      const MatrixXd block = taken_[b].basis.topRows(end - first).transpose() *
+                             taken_[a].basis.middleRows(first - taken_[a].first, end - first);
       for (Index r = 0; r < block.rows(); ++r) {
         for (Index c = 0; c < block.cols(); ++c) {
           if (a != b || r >= c)
@@ -135,7 +135,8 @@ void Whitener::take_out(MatrixXd& innovations) const {
   parts = gram_->solve(parts).eval();
   at = 0;
   for (const Directions& one : taken_) {
-    innovations.middleRows(one.first - p, one.basis.rows()).noalias() -= one.basis * parts.middleRows(at, one.basis.cols());
+    innovations.middleRows(one.first - p, one.basis.rows()).noalias() -=
+        one.basis * parts.middleRows(at, one.basis.cols());
     at += one.basis.cols();
   }
 }
@@ -144,7 +145,8 @@ MatrixXd Whitener::rows_of(const MatrixXd& innovations) const {
   if (rows() == innovations.rows()) return innovations;
   MatrixXd out(rows(), innovations.cols());
   for (Index c = 0; c < out.cols(); ++c) {
-    for (Index k = 0; k < rows(); ++k) out(k, c) = innovations(source_[static_cast<std::size_t>(k)] - noise_.order(), c);
+    for (Index k = 0; k < rows(); ++k)
+      out(k, c) = innovations(source_[static_cast<std::size_t>(k)] - noise_.order(), c);
   }
   return out;
 }

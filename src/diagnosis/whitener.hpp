@@ -13,9 +13,10 @@
 
 namespace deltadyn {
 
-/// Linear map from a series to white, unit-variance rows that does not see what is unknown: rows that are not present, and the
-/// directions of unknown torque. They are projected out of the innovations, which is generalised least squares with them as free
-/// parameters (Frisch and Waugh 1933): inner products of two mapped series are those of the parts that can be known.
+/// Linear map from a series to white, unit-variance rows that does not see what is unknown: rows that are not present,
+/// and the directions of unknown torque. They are projected out of the innovations, which is generalised least squares
+/// with them as free parameters (Frisch and Waugh 1933): inner products of two mapped series are those of the parts
+/// that can be known.
 class Whitener {
  public:
   Whitener() = default;
@@ -25,7 +26,8 @@ class Whitener {
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(source_.size()); }
   /// Rows less the unknown directions: what a sum of squares of noise comes to.
   [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
-  /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not matter
+  /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not
+  /// matter
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
   /// The same without taking out what is unknown: enough for inner products with what it has been taken out of.
   [[nodiscard]] Eigen::MatrixXd innovations(const Eigen::Ref<const Eigen::MatrixXd>& x) const;

@@ -18,8 +18,9 @@ namespace {
 
 constexpr double kClearlyBetter = 0.98;  // rms of the improved model over that of the given one
 constexpr double kChance = 0.025;        // of a gain that is none
-constexpr double kWorse = 1.05;          // rms of a named drive over that of the given model from which the improved one is worse
-constexpr double kWorseElsewhere = 1.2;  // the same of any other drive, whose parameters are fitted along
+// Rms of a named drive over that of the given model from which the improved one is worse
+constexpr double kWorse = 1.05;
+constexpr double kWorseElsewhere = 1.2;   // the same of any other drive, whose parameters are fitted along
 constexpr double kWrittenBlock_s = 0.25;  // longer than the memory of the noise
 constexpr Index kFewestDriveRows = 5;     // of a drive, below which its rms says nothing
 constexpr int kWrittenResamples = 1000;
@@ -67,7 +68,8 @@ double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
 }
 
 /// \param touched  drives that the names reach
-WrittenProof compare(const Validation& before, const Validation& after, const std::vector<int>& touched, std::uint64_t seed) {
+WrittenProof compare(const Validation& before, const Validation& after, const std::vector<int>& touched,
+                     std::uint64_t seed) {
   WrittenProof out;
   for (std::size_t j = 0; j < before.drives.size(); ++j) {
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
@@ -95,7 +97,8 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
   return out;
 }
 
-/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number names.
+/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number
+/// names.
 WrittenModel of_another_log(WrittenModel model) {
   std::erase_if(model.effects, [](const Effect& effect) { return of_one_log(effect.id); });
   return model;
@@ -117,10 +120,12 @@ std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const s
   return examine_logs(robot, std::move(logs), {}, {}, gate).logs;
 }
 
-WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given_model, const WrittenModel& written,
-                           const std::vector<int>& touched, double search_hz, const DiagnosisOptions& options) {
+WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given_model,
+                           const WrittenModel& written, const std::vector<int>& touched, double search_hz,
+                           const DiagnosisOptions& options) {
   const WrittenModel given = of_another_log(given_model), improved = of_another_log(written);
-  // A delay that the improved model explains is in the log of both: else the check would have mended what one of them lacks.
+  // A delay that the improved model explains is in the log of both: else the check would have mended what one of them
+  // lacks.
   const bool keep_delay = holds_timing(improved.effects);
   const std::vector<Log> logs = as_validated(robot, {holdout}, improved.effects);
   ProcessingOptions processing = options.processing;
@@ -138,8 +143,8 @@ WrittenProof prove_written(const Robot& robot, const Log& holdout, const Written
     WrittenProof wider = proof_with(false);
     wider.cutoff_hz = cutoff_hz;
     if (!wider.testable()) continue;
-    // The few rows at delta-validate's own cut-off cannot bear the names out, but they can contradict a gain that is small beside
-    // what is lost there.
+    // The few rows at delta-validate's own cut-off cannot bear the names out, but they can contradict a gain that is
+    // small beside what is lost there.
     return wider.passed() && wider.rms_ratio * out.largest_loss >= 1 ? out : wider;
   }
   return out;

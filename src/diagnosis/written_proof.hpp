@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The proof of what is written: the model as given and the improved one on the hold-out log, on the path of delta-validate.
+/// The proof of what is written: the model as given and the improved one on the hold-out log, on the path of
+/// delta-validate.
 
 #include <string>
 #include <vector>
@@ -13,7 +14,8 @@ namespace deltadyn::detail {
 
 struct WrittenProof {
   std::vector<HoldoutFigure> drives;
-  double rms_ratio = 1;     ///< improved over given, over the drives that the names reach, each in units of its own residual
+  /// Improved over given, over the drives that the names reach, each in units of its own residual
+  double rms_ratio = 1;
   double p_no_gain = 1;     ///< chance that the improved model is no better (paired block bootstrap)
   int worse_drive = -1;     ///< from 0: it got worse; -1: none
   double largest_loss = 1;  ///< improved over given of the drive that got worst; 1: none did
@@ -25,13 +27,14 @@ struct WrittenProof {
 };
 
 /// The hold-out log as delta-validate takes it: a delay that is certain is removed, unless the effects explain it.
-[[nodiscard]] std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const std::vector<Effect>& effects);
+[[nodiscard]] std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs,
+                                            const std::vector<Effect>& effects);
 
 /// \param touched    drives from 0 that the named effects reach
 /// \param search_hz  cut-off of the search, for hold-out logs in which the chosen one leaves too few rows
 /// Throws deltadyn::Error as validate_written() does.
 [[nodiscard]] WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given,
-                                         const WrittenModel& improved, const std::vector<int>& touched, double search_hz,
-                                         const DiagnosisOptions& options);
+                                         const WrittenModel& improved, const std::vector<int>& touched,
+                                         double search_hz, const DiagnosisOptions& options);
 
 }  // namespace deltadyn::detail

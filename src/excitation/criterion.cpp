@@ -41,7 +41,8 @@ CriterionValue of_determinant(Criterion criterion, const Eigen::MatrixXd& M) {
 Criterion criterion_of(const std::string& word) {
   for (const auto& [name, criterion] : kWords)
     if (word == name) return criterion;
-  throw Error("'" + word + "' is not a criterion", "", "use logdet, det, cond, trace or min-eigenvalue", ExitCode::usage);
+  throw Error("'" + word + "' is not a criterion", "", "use logdet, det, cond, trace or min-eigenvalue",
+              ExitCode::usage);
 }
 
 const char* word_of(Criterion criterion) {

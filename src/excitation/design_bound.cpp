@@ -29,7 +29,8 @@ VectorXd sensitivities(const std::vector<MatrixXd>& blocks, const std::vector<In
   const auto count = static_cast<Index>(which.size());
   VectorXd d(count);
   const auto pass = [&](Index k) {
-    const MatrixXd half = llt.matrixL().solve(blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])].transpose());
+    const MatrixXd half =
+        llt.matrixL().solve(blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])].transpose());
     d(k) = half.squaredNorm();
   };
   // Small sets are faster on one thread than the threads are to meet.
@@ -41,7 +42,8 @@ MatrixXd information(const std::vector<MatrixXd>& blocks, const std::vector<Inde
   MatrixXd M = MatrixXd::Zero(p, p);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const double share = w(static_cast<Index>(k));
-    if (share > 0) M.selfadjointView<Eigen::Lower>().rankUpdate(blocks[static_cast<std::size_t>(which[k])].transpose(), share);
+    if (share > 0)
+      M.selfadjointView<Eigen::Lower>().rankUpdate(blocks[static_cast<std::size_t>(which[k])].transpose(), share);
   }
   return M.selfadjointView<Eigen::Lower>();
 }

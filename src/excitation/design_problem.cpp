@@ -38,8 +38,8 @@ DesignProblem::DesignProblem(const DesignSpace& space, const MotionLimits& limit
     scale_matrix_(0, i) = space.coordinate_scale(i);
     for (int k = 1; k <= settings.harmonics; ++k) {
       const double rate = k * omega;
-      const double largest =
-          std::min({space.coordinate_scale(i), space.rate_scale(i) / rate, space.acceleration_scale(i) / (rate * rate)});
+      const double largest = std::min(
+          {space.coordinate_scale(i), space.rate_scale(i) / rate, space.acceleration_scale(i) / (rate * rate)});
       scale_matrix_(2 * k - 1, i) = scale_matrix_(2 * k, i) = largest;
     }
   }
@@ -88,8 +88,9 @@ void DesignProblem::chain(const Samples& samples, Index i, const VectorXd& g, Ou
   for (Index c = 0; c < n; ++c) {
     const double g0 = g(c), g1 = w * g(n + c), g2 = w * w * g(2 * n + c);
     if (g0 != 0 || g1 != 0 || g2 != 0) {
-      out.segment(c * terms, terms) +=
-          (g0 * basis_[0].row(i) + g1 * basis_[1].row(i) + g2 * basis_[2].row(i)).transpose().cwiseProduct(scale_matrix_.col(c));
+      out.segment(c * terms, terms) += (g0 * basis_[0].row(i) + g1 * basis_[1].row(i) + g2 * basis_[2].row(i))
+                                           .transpose()
+                                           .cwiseProduct(scale_matrix_.col(c));
       by_omega += (g(n + c) * samples.x(n + c, i) + 2 * g(2 * n + c) * samples.x(2 * n + c, i)) / w;
     }
   }
@@ -112,8 +113,12 @@ void DesignProblem::limit_gradient(const Limit& limit, const Samples& samples, I
     case LimitedQuantity::zd: g.setZero(), g(n + k) = slope; return;
     case LimitedQuantity::zdd: g.setZero(), g(2 * n + k) = slope; return;
     case LimitedQuantity::q: g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(k).transpose(); return;
-    case LimitedQuantity::qd: g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(n + k).transpose(); return;
-    case LimitedQuantity::qdd: g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(2 * n + k).transpose(); return;
+    case LimitedQuantity::qd:
+      g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(n + k).transpose();
+      return;
+    case LimitedQuantity::qdd:
+      g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(2 * n + k).transpose();
+      return;
     case LimitedQuantity::tau: g = slope * samples.tau_jacobian[static_cast<std::size_t>(i)].row(k).transpose(); return;
   }
 }
@@ -129,7 +134,8 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
   at.omega = s.omega();
   at.omega_by_variable = 2 * std::numbers::pi * (settings_.highest_hz - settings_.lowest_hz);
   at.x.resize(3 * n, count);
-  for (int d = 0; d < 3; ++d) at.x.middleRows(d * n, n) = std::pow(at.omega, d) * (basis_[d] * s.coefficients).transpose();
+  for (int d = 0; d < 3; ++d)
+    at.x.middleRows(d * n, n) = std::pow(at.omega, d) * (basis_[d] * s.coefficients).transpose();
   at.drives.resize(3 * n, count);
   at.A.resize(n * count, p);
   const bool torque = limits_.parameters.size() > 0;
@@ -143,7 +149,8 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
     if (torque) at.tau.col(i) = Y * limits_.parameters;
     for (Index k = 0; k < p; ++k) {
       at.A.col(k).segment(i * n, n) =
-          Y.col(space_.base_columns[static_cast<std::size_t>(k)]).cwiseQuotient(space_.torque_scale) / space_.column_scale(k);
+          Y.col(space_.base_columns[static_cast<std::size_t>(k)]).cwiseQuotient(space_.torque_scale) /
+          space_.column_scale(k);
     }
   }
   out.information = MatrixXd::Zero(p, p);
@@ -251,7 +258,8 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
   if (minds_reversals()) add_reversals(at, true, out);
 }
 
-/// One constraint a drive: least share away from reversals minus the mean of the smooth distances, own times that of the bar.
+/// One constraint a drive: least share away from reversals minus the mean of the smooth distances, own times that of
+/// the bar.
 void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Evaluation& out) const {
   const Index n = space_.regressor->drives(), count = settings_.samples;
   const auto first = static_cast<Index>(list_.size()) * settings_.windows;
@@ -266,7 +274,8 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
   out.constraints.tail(n).setConstant(settings_.least_away);
   VectorXd g(3 * n);
   for (Index i = 0; i < count; ++i) {
-    // The bar's length L turns where L dL/dt = d . v does, d from its upper to its lower joint and v the plate's velocity.
+    // The bar's length L turns where L dL/dt = d . v does, d from its upper to its lower joint and v the plate's
+    // velocity.
     SmoothDistance bar;
     Eigen::Vector3d d = Eigen::Vector3d::Zero(), v = d, a = d;
     if (robot.telescope) {
@@ -277,8 +286,8 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
     }
     for (Index j = 0; j < n; ++j) {
       const bool with_bar = robot.telescope && j < limbs;
-      const SmoothDistance own =
-          distance_from_reversal(samples.drives(n + j, i), samples.drives(2 * n + j, i), reach, kLeastRate * rate_unit_(j));
+      const SmoothDistance own = distance_from_reversal(samples.drives(n + j, i), samples.drives(2 * n + j, i), reach,
+                                                        kLeastRate * rate_unit_(j));
       const double of_bar = with_bar ? bar.value : 1.0;
       out.constraints(first + j) -= own.value * of_bar / static_cast<double>(count);
       if (!derivatives) continue;

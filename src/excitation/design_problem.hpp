@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The optimisation problem (9)-(11) in one vector of variables: value, exact gradient, and the limits in a smooth form.
+/// The optimisation problem (9)-(11) in one vector of variables: value, exact gradient, and the limits in a smooth
+/// form.
 
 #include <Eigen/Core>
 #include <vector>
@@ -17,18 +18,19 @@ struct ProblemSettings {
   double velocity_weight = 0;  ///< w of (9)
   int harmonics = 5;
   double lowest_hz = 0.1, highest_hz = 1;
-  int samples = 100;      ///< of the period
-  int windows = 4;        ///< parts of the period in which each limit is gathered into one constraint
-  double sharpness = 60;  ///< of the smooth maximum over a window: it lies above the true one by log(samples)/sharpness at most
-  double sign_share = 0.02;           ///< width of the smooth Coulomb sign as a share of the joint's rate scale; 0: true sign
+  int samples = 100;  ///< of the period
+  int windows = 4;    ///< parts of the period in which each limit is gathered into one constraint
+  /// Of the smooth maximum over a window: it lies above the true one by log(samples)/sharpness at most
+  double sharpness = 60;
+  double sign_share = 0.02;  ///< width of the smooth Coulomb sign as a share of the joint's rate scale; 0: true sign
   Eigen::MatrixXd other_information;  ///< of the other segments, times their shares of time; empty: none
   double share = 1;                   ///< share of time of this segment
-  double reversal_reach_s = 0;        ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
-  double least_away = 0;              ///< share of the period that every drive is away from reversals, at least
+  double reversal_reach_s = 0;  ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
+  double least_away = 0;        ///< share of the period that every drive is away from reversals, at least
 };
 
-/// Variables v: the coefficients in units of the largest amplitude that the limits allow them, then the base frequency between
-/// 0 (lowest) and 1 (highest).
+/// Variables v: the coefficients in units of the largest amplitude that the limits allow them, then the base frequency
+/// between 0 (lowest) and 1 (highest).
 class DesignProblem {
  public:
   struct Evaluation {

@@ -35,9 +35,10 @@ class StateDraw {
     int tries = 0;
     do {
       if (++tries > kTriesPerPlace) {
-        throw Error(fmt::format("of {} random places in the ranges of the task coordinates none lies in the workspace ({})",
-                                kTriesPerPlace, limits_.region->text()),
-                    "limits", "widen these ranges or move the workspace into them", ExitCode::bad_input);
+        throw Error(
+            fmt::format("of {} random places in the ranges of the task coordinates none lies in the workspace ({})",
+                        kTriesPerPlace, limits_.region->text()),
+            "limits", "widen these ranges or move the workspace into them", ExitCode::bad_input);
       }
       draw_state(zd, zdd);
     } while (has_plate() && !limits_.region->contains(z_.head<3>()));
@@ -93,8 +94,8 @@ class StateDraw {
 
 }  // namespace
 
-AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regressor, const MotionLimits& limits, int count,
-                                   std::uint64_t seed) {
+AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regressor, const MotionLimits& limits,
+                                   int count, std::uint64_t seed) {
   limits.validate(robot.description());
   const std::vector<Limit> list = limits.list(robot.description());
   const int n = robot.drives();
@@ -116,8 +117,10 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
     for (unsigned directions = 0; directions < (1U << static_cast<unsigned>(n)); ++directions) {
       rest.x = VectorXd::Zero(3 * n);
       rest.x.head(n) = z;
-      for (int i = 0; i < n; ++i) rest.x(n + i) = (directions >> static_cast<unsigned>(i)) % 2 == 0 ? kSlight : -kSlight;
-      if (regressor.evaluate(rest.x, VectorXd(), Y, rest.drives) != Status::ok) return std::numeric_limits<double>::infinity();
+      for (int i = 0; i < n; ++i)
+        rest.x(n + i) = (directions >> static_cast<unsigned>(i)) % 2 == 0 ? kSlight : -kSlight;
+      if (regressor.evaluate(rest.x, VectorXd(), Y, rest.drives) != Status::ok)
+        return std::numeric_limits<double>::infinity();
       rest.tau = Y * limits.parameters;
       for (const Limit& limit : list)
         if (limit.quantity == LimitedQuantity::tau)
@@ -155,7 +158,8 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
     if (allowed) states.x.col(found++) = state.x;
     if (!pose_allowed) continue;
     // At rest nothing but gravity loads the drives. A motion shrinks towards the centre, which should hold itself.
-    if (1 - pose_load > best_room && limits.parameters.size() > 0) pose_load = std::max(pose_load, load_at_rest(state.x.head(n)));
+    if (1 - pose_load > best_room && limits.parameters.size() > 0)
+      pose_load = std::max(pose_load, load_at_rest(state.x.head(n)));
     if (1 - pose_load > best_room) {
       best_room = 1 - pose_load;
       states.centre = state.x.head(n);
@@ -166,13 +170,14 @@ AdmissibleStates admissible_states(const Robot& robot, const TaskRegressor& regr
     if (unreachable > 0.9 * total)
       throw Error(fmt::format("the robot reaches only {:.1f} % of the workspace ({})", 100 - 100 * unreachable / total,
                               limits.region ? limits.region->text() : "range of the drive"),
-                  "workspace", "move the workspace into the reach of the robot (delta-model info shows it)", ExitCode::bad_input);
+                  "workspace", "move the workspace into the reach of the robot (delta-model info shows it)",
+                  ExitCode::bad_input);
     const auto worst = static_cast<std::size_t>(std::ranges::max_element(broken) - broken.begin());
-    throw Error(
-        fmt::format(
-            "the limits leave no motion: of {} random states {} are allowed, and {} break the limit '{}' ({:.6g} to {:.6g} {})",
-            states.drawn, found, broken[worst], list[worst].name, list[worst].lower, list[worst].upper, list[worst].unit),
-        "limits", "widen this limit or move the workspace", ExitCode::bad_input);
+    throw Error(fmt::format("the limits leave no motion: of {} random states {} are allowed, and {} break the limit "
+                            "'{}' ({:.6g} to {:.6g} {})",
+                            states.drawn, found, broken[worst], list[worst].name, list[worst].lower, list[worst].upper,
+                            list[worst].unit),
+                "limits", "widen this limit or move the workspace", ExitCode::bad_input);
   }
   states.x.conservativeResize(Eigen::NoChange, found);
   return states;
@@ -198,7 +203,8 @@ DesignSpace make_design_space(const Robot& robot, const MotionLimits& limits, co
                               const VectorXd& torque_scale, int states, std::uint64_t seed) {
   const int n = robot.drives();
   if (torque_scale.size() != n || !(torque_scale.minCoeff() > 0) || !torque_scale.allFinite())
-    throw Error("the torque scale needs one positive number a drive", "", fmt::format("give {} numbers", n), ExitCode::usage);
+    throw Error("the torque scale needs one positive number a drive", "", fmt::format("give {} numbers", n),
+                ExitCode::usage);
   if (base_columns.empty()) throw Error("no base parameters were given", "", "", ExitCode::usage);
   DesignSpace space;
   space.robot = &robot;

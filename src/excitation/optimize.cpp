@@ -38,11 +38,11 @@ constexpr double kRandomUntil = 0.6, kKicksUntil = 0.85;
 constexpr int kUsualEvaluations = 130;   // that a start takes in the mean
 constexpr int kPolishEvaluations = 250;  // of a motion that is polished
 constexpr int kPolished = 4;
-constexpr double kKickedShare = 0.4;        // of the starts that begin near the best of the others
-constexpr double kNominalRate = 14000;      // samples a second and thread that a desktop machine differentiates
-constexpr double kChecksKept = 2.5;         // time for the last check of a segment, in units of that of its first motion
-constexpr double kPreparation_s = 2;        // before the starts and after them
-constexpr double kShareOfTime = 0.6;        // of the time limit that the starts may plan for
+constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
+constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
+constexpr double kChecksKept = 2.5;     // time for the last check of a segment, in units of that of its first motion
+constexpr double kPreparation_s = 2;    // before the starts and after them
+constexpr double kShareOfTime = 0.6;    // of the time limit that the starts may plan for
 constexpr double kTimeForTwoRounds_s = 10;  // a segment: with less time it is not taken up a second time
 
 constexpr double kAwayRoom = 0.03;  // the smooth share away from reversals differs from the true one by about as much
@@ -88,8 +88,8 @@ double margin_of(const DesignSpace& space, const MotionLimits& limits, const Fou
   return check_limits(*space.robot, limits, one_period(series), samples).margin();
 }
 
-/// The largest factor on the deviations from the centre, up to `most`, with which the limits are kept; none if not even small
-/// motions keep them.
+/// The largest factor on the deviations from the centre, up to `most`, with which the limits are kept; none if not even
+/// small motions keep them.
 std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits& limits, const FourierSeries& series,
                                     double most, int samples) {
   const VectorXd centre = space.states.centre;
@@ -100,8 +100,8 @@ std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits
   if (room_high >= 0) return series.scaled(centre, most);
   double room_low = room_at(0.0);
   if (room_low < 0) return std::nullopt;
-  // Regula falsi with the weight of an end that stays halved (Illinois), which needs a third of the looks that halving takes;
-  // every third step halves, because the room jumps where the robot cannot reach.
+  // Regula falsi with the weight of an end that stays halved (Illinois), which needs a third of the looks that halving
+  // takes; every third step halves, because the room jumps where the robot cannot reach.
   constexpr int kSteps = 40;
   constexpr double kEnough = 1e-8;
   int side = 0;
@@ -126,8 +126,8 @@ std::optional<FourierSeries> fitted(const DesignSpace& space, const MotionLimits
   return series.scaled(centre, low);
 }
 
-/// The limits as the search takes them, which the final check agrees with: Coulomb friction always on the side of the rest of the
-/// torque, as if it took its share of the limit away.
+/// The limits as the search takes them, which the final check agrees with: Coulomb friction always on the side of the
+/// rest of the torque, as if it took its share of the limit away.
 MotionLimits without_friction(const Robot& robot, MotionLimits limits) {
   if (limits.parameters.size() == 0) return limits;
   for (const Index k : coulomb_columns(robot)) {
@@ -167,8 +167,8 @@ namespace {
 /// The search for one segment beside the others.
 class SegmentSearch {
  public:
-  SegmentSearch(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options, const Clock& clock,
-                MatrixXd other_information, double share)
+  SegmentSearch(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options,
+                const Clock& clock, MatrixXd other_information, double share)
       : space_(space),
         limits_(limits),
         search_limits_(without_friction(*space.robot, limits)),
@@ -284,7 +284,8 @@ std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& can
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (candidates[k] && std::isfinite(candidates[k]->value)) order.push_back(k);
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
   return order;
 }
 
@@ -309,7 +310,8 @@ void ExcitationOptions::validate() const {
     refuse(fmt::format("{} Hz is too slow for {} harmonics of {} Hz", rate_hz, harmonics, highest_hz), "--rate-hz",
            fmt::format("give at least {} Hz, twenty samples in the fastest harmonic", 20 * harmonics * highest_hz));
   if (!(time_limit_s > 0)) refuse("the time limit must be positive", "--time-limit-s", "give seconds, e.g. 60");
-  if (starts < 0) refuse("the number of starts is negative", "--starts", "give 1 or more, or 0 for as many as the time allows");
+  if (starts < 0)
+    refuse("the number of starts is negative", "--starts", "give 1 or more, or 0 for as many as the time allows");
   if (!(reversal_reach_s >= 0) || !(least_away >= 0 && least_away < 1))
     refuse(fmt::format("a share of {} away from velocity reversals cannot be", least_away), "--away-from-reversals",
            "give 0 to 0.9; 0 leaves reversals out of account");
@@ -318,7 +320,8 @@ void ExcitationOptions::validate() const {
   if (speeds.empty()) refuse("there is no segment", "--segments", "give 1 or more");
   for (const double speed : speeds)
     if (!(speed > 0 && speed <= 1))
-      refuse(fmt::format("the speed {} of a segment is not in (0, 1]", speed), "--segment-speeds", "give shares such as 0.3,1");
+      refuse(fmt::format("the speed {} of a segment is not in (0, 1]", speed), "--segment-speeds",
+             "give shares such as 0.3,1");
 }
 
 double Excitation::margin() const {
@@ -328,27 +331,28 @@ double Excitation::margin() const {
 }
 
 std::string Excitation::brief_report() const {
-  return fmt::format("D-efficiency {:.3f}, condition number {:.4g}, margin {:.2e}, {} of {} starts, {} evaluations in {:.1f} s{}",
-                     d_efficiency, condition_number, margin(), finished_starts, starts, evaluations, total_time_s,
-                     interrupted ? ", interrupted" : (out_of_time ? ", stopped by the time limit" : ""));
+  return fmt::format(
+      "D-efficiency {:.3f}, condition number {:.4g}, margin {:.2e}, {} of {} starts, {} evaluations in {:.1f} s{}",
+      d_efficiency, condition_number, margin(), finished_starts, starts, evaluations, total_time_s,
+      interrupted ? ", interrupted" : (out_of_time ? ", stopped by the time limit" : ""));
 }
 
 std::string Excitation::full_report() const {
   std::string text = brief_report() + "\n";
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const Segment& segment = segments[k];
-    text += fmt::format("segment {}: base frequency {:.6g} Hz, period {:.6g} s\n", k + 1, segment.series.base_frequency_hz,
-                        segment.series.period_s());
+    text += fmt::format("segment {}: base frequency {:.6g} Hz, period {:.6g} s\n", k + 1,
+                        segment.series.base_frequency_hz, segment.series.period_s());
     for (const LimitUse& use : segment.check.uses)
       text += fmt::format("  {:<24} {:>10.4g} of {:.4g} {}, used to {:.2f} %\n", use.limit.name, use.value,
-                          use.value < 0 && std::isfinite(use.limit.lower) ? use.limit.lower : use.limit.upper, use.limit.unit,
-                          100 * use.load);
+                          use.value < 0 && std::isfinite(use.limit.lower) ? use.limit.lower : use.limit.upper,
+                          use.limit.unit, 100 * use.load);
   }
   return text;
 }
 
-FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimits& limits, const ExcitationOptions& options,
-                                     std::uint64_t seed) {
+FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimits& limits,
+                                     const ExcitationOptions& options, std::uint64_t seed) {
   const Clock clock(options);
   const SegmentSearch search(space, limits, options, clock, MatrixXd(), 1.0);
   auto series = search.random_start(seed);
@@ -360,8 +364,8 @@ FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimit
 namespace {
 
 /// All stages for one segment: random starts, kicks of the best, polishing.
-std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options, const Clock& clock,
-                                        double slice_end_s, int starts, std::uint64_t seed,
+std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options,
+                                        const Clock& clock, double slice_end_s, int starts, std::uint64_t seed,
                                         const std::optional<FourierSeries>& incumbent, RunCount& run,
                                         const std::function<void(const Candidate&)>& first) {
   const double begin = clock.seconds();
@@ -390,7 +394,8 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
       const double before = search.value(*start);
       if (better && better->value > before) {
         found[k] = std::move(better);
-      } else if (std::isfinite(before) && margin_of(search.space(), search.limits(), search.on_grid(*start), kRankSamples) >= 0) {
+      } else if (std::isfinite(before) &&
+                 margin_of(search.space(), search.limits(), search.on_grid(*start), kRankSamples) >= 0) {
         found[k] = Candidate{search.on_grid(*start), before};
       }
     }
@@ -499,22 +504,25 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
       const auto first = [&](const Candidate& candidate) {
         if (result.first_feasible_time_s > 0) return;
         result.first_feasible_time_s = clock.seconds();
-        result.first_feasible_efficiency = d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
+        result.first_feasible_efficiency =
+            d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
       const long evaluations_before = run.evaluations;
       const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], run, first);
       evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
-        const LimitCheck check = check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);
+        const LimitCheck check =
+            check_limits(*space.robot, segment_limits[k], one_period(search.slight_motion()), kRankSamples);
         const LimitUse& use = check.tightest();
-        throw Error(
-            use.load > 1
-                ? fmt::format(
-                      "no motion keeps all limits: even the slightest about the pose with the most room breaks the limit '{}' "
-                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn break theirs further",
-                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
-                : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'", use.limit.name),
-            "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
+        throw Error(use.load > 1
+                        ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most "
+                                      "room breaks the limit '{}' "
+                                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn "
+                                      "break theirs further",
+                                      use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
+                        : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'",
+                                      use.limit.name),
+                    "limits", "widen this limit, move the workspace, or give more time", ExitCode::no_convergence);
       }
       if (found) {
         series[k] = found->series;
@@ -533,7 +541,8 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
   result.log_det = log_determinant(result.information);
   result.log_det_physical = result.log_det + space.log_det_of_scales();
   result.d_efficiency = d_efficiency(result.log_det, bound, p);
-  const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(result.information, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<MatrixXd>(result.information, Eigen::EigenvaluesOnly).eigenvalues();
   result.condition_number = std::sqrt(eigenvalues(p - 1) / eigenvalues(0));
   const CriterionValue value = evaluate(options.criterion, result.information);
   result.value = value.regular ? value.value : -std::numeric_limits<double>::infinity();

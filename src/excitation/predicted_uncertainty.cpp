@@ -16,13 +16,13 @@ VectorXd predicted_std(const Robot& robot, const std::vector<int>& base_columns,
                        const VectorXd& torque_noise, int every) {
   const Index n = robot.drives(), p = static_cast<Index>(base_columns.size());
   if (torque_noise.size() != n || !(torque_noise.minCoeff() > 0))
-    throw Error("the torque noise needs one positive number a drive", "--torque-noise", fmt::format("give {} numbers", n),
-                ExitCode::usage);
+    throw Error("the torque noise needs one positive number a drive", "--torque-noise",
+                fmt::format("give {} numbers", n), ExitCode::usage);
   if (every < 1) throw Error("every how manieth sample counts must be 1 or more", "", "", ExitCode::usage);
   MatrixXd information = MatrixXd::Zero(p, p), Y(n, robot.parameters());
   for (Index row = 0; row < samples.samples(); row += every) {
-    if (robot.regressor(samples.q.row(row).transpose(), samples.qd.row(row).transpose(), samples.qdd.row(row).transpose(), Y) !=
-        Status::ok)
+    if (robot.regressor(samples.q.row(row).transpose(), samples.qd.row(row).transpose(),
+                        samples.qdd.row(row).transpose(), Y) != Status::ok)
       continue;
     const MatrixXd A = Y(Eigen::all, base_columns).array().colwise() / torque_noise.array();
     information.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose(), static_cast<double>(every));

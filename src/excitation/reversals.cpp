@@ -24,13 +24,15 @@ VectorXd share_away_from_reversals(const Robot& robot, const TrajectorySamples& 
   VectorXd v(joints);
   for (Index i = 0; i < count; ++i) {
     const Status status = robot.friction_joint_rates(samples.q.row(i).transpose(), samples.qd.row(i).transpose(), v);
-    if (status != Status::ok) throw Error(message(status), "reversals", "keep the motion inside the reach of the robot");
+    if (status != Status::ok)
+      throw Error(message(status), "reversals", "keep the motion inside the reach of the robot");
     rates.row(i) = v.transpose();
   }
   const double step_s = (samples.t_s(count - 1) - samples.t_s(0)) / static_cast<double>(count - 1);
   const auto grow = static_cast<Index>(std::lround(reach_s / step_s));
   std::vector<std::vector<char>> near;
-  for (int j = 0; j < joints; ++j) near.push_back(reversal_mask(rates.col(j), floor * rates.col(j).cwiseAbs().maxCoeff(), grow));
+  for (int j = 0; j < joints; ++j)
+    near.push_back(reversal_mask(rates.col(j), floor * rates.col(j).cwiseAbs().maxCoeff(), grow));
   const auto limbs = static_cast<int>(robot.description().limbs.size());
   VectorXd share(n);
   for (int j = 0; j < n; ++j) {

@@ -31,8 +31,8 @@ class Evaluator {
     if (!e_.regular) return;
     // To bring a load of 1 + c back to 1 the amplitudes shrink by c, and so do the torques: log det M falls by 2 p c.
     const double excess = std::max(0.0, e_.worst - 1);
-    const double rating =
-        e_.value - 2.0 * static_cast<double>(e_.information.rows()) * (std::log1p(excess) + kPriceOfReversals * e_.lacks_away);
+    const double rating = e_.value - 2.0 * static_cast<double>(e_.information.rows()) *
+                                         (std::log1p(excess) + kPriceOfReversals * e_.lacks_away);
     if (rating > best_rating_) {
       best_rating_ = rating;
       best_ = last_;

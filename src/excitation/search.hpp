@@ -10,8 +10,8 @@
 
 namespace deltadyn::detail {
 
-/// What a share of the time that a drive lacks away from reversals costs, in units of the share of its amplitude that a motion over
-/// its limits must give up: dear enough that a motion with its share wins.
+/// What a share of the time that a drive lacks away from reversals costs, in units of the share of its amplitude that a
+/// motion over its limits must give up: dear enough that a motion with its share wins.
 constexpr double kPriceOfReversals = 5;
 
 struct SearchResult {

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// TaskRegressor for one compile-time type. The kinematics run once in numbers that carry their derivatives by the 3 N entries
-/// of the state (forward mode); what the bodies make of them is differentiated by hand (reverse mode), because a body turns
-/// few numbers into ten columns for each drive.
+/// TaskRegressor for one compile-time type. The kinematics run once in numbers that carry their derivatives by the 3 N
+/// entries of the state (forward mode); what the bodies make of them is differentiated by hand (reverse mode), because
+/// a body turns few numbers into ten columns for each drive.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -40,7 +40,8 @@ class TaskRegressorOf final : public TaskRegressor {
   int parameters() const override { return static_cast<int>(columns_.size()); }
   int friction_joints() const override { return Layout::kFrictionJoints; }
 
-  Status evaluate(Vec x, Vec sign_width, Eigen::Ref<Eigen::MatrixXd> Y, Eigen::Ref<Eigen::VectorXd> out) const override {
+  Status evaluate(Vec x, Vec sign_width, Eigen::Ref<Eigen::MatrixXd> Y,
+                  Eigen::Ref<Eigen::VectorXd> out) const override {
     Motion<double, R> motion;
     const Status status = motion_from_task(geometry_, Drives(x.template head<N>()), Drives(x.template segment<N>(N)),
                                            Drives(x.template tail<N>()), motion);
@@ -68,8 +69,8 @@ class TaskRegressorOf final : public TaskRegressor {
 
     State sum = State::Zero();
     for_each_body(jet_geometry_, motion, [&](Body kind, int index, int count, const BodyMotion<Jet, N>& body) {
-      sum += count *
-             body_gradient(body, G.template middleCols<kInertialParameters>(kInertialParameters * Layout::body(kind, index)));
+      sum += count * body_gradient(body, G.template middleCols<kInertialParameters>(kInertialParameters *
+                                                                                    Layout::body(kind, index)));
     });
     for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
       const auto f = friction_joint(motion, joint);
@@ -130,9 +131,9 @@ class TaskRegressorOf final : public TaskRegressor {
     sum += weight.x() * v.x().slope + weight.y() * v.y().slope + weight.z() * v.z().slope;
   }
 
-  /// Gradient of sum_ij G_ij (J_v' F + J_w' M)_ij with the force and moment regressors F, M of the body. With the rows of G as
-  /// parameters (m, c, I) of bodies, row i adds J_v,i . f_i + J_w,i . n_i, where
-  /// f = m a + w_d x c + w x (w x c) and n = I w_d + w x I w + c x a.
+  /// Gradient of sum_ij G_ij (J_v' F + J_w' M)_ij with the force and moment regressors F, M of the body. With the rows
+  /// of G as parameters (m, c, I) of bodies, row i adds J_v,i . f_i + J_w,i . n_i, where f = m a + w_d x c + w x (w x
+  /// c) and n = I w_d + w x I w + c x a.
   static State body_gradient(const BodyMotion<Jet, N>& body, const Matrix<double, N, kInertialParameters>& G) {
     const Vec3 a = value(body.a), w = value(body.w), w_d = value(body.w_d);
     Vec3 by_a = Vec3::Zero(), by_w = Vec3::Zero(), by_w_d = Vec3::Zero();

@@ -48,16 +48,17 @@ std::string expression(const Eigen::RowVectorXd& b, int independent, const std::
 
 BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptions& options) {
   if (options.states * robot.drives() < 2 * robot.parameters() || !(options.tolerance > 0 && options.tolerance < 1)) {
-    throw Error(
-        "options for the base parameters are out of range", "states, tolerance",
-        fmt::format("use at least {} states and a tolerance between 0 and 1", 2 * robot.parameters() / robot.drives() + 1),
-        ExitCode::usage);
+    throw Error("options for the base parameters are out of range", "states, tolerance",
+                fmt::format("use at least {} states and a tolerance between 0 and 1",
+                            2 * robot.parameters() / robot.drives() + 1),
+                ExitCode::usage);
   }
   Eigen::MatrixXd W = random_regressor(robot, options);
   const Eigen::Index P = W.cols();
   Eigen::VectorXd norm = W.colwise().norm();
   for (Eigen::Index k = 0; k < P; ++k) {
-    if (norm(k) < 1e-14) norm(k) = 1.0;  // a column without any effect, like the mass of an arm that turns about a fixed axis
+    // A column without any effect, like the mass of an arm that turns about a fixed axis
+    if (norm(k) < 1e-14) norm(k) = 1.0;
     W.col(k) /= norm(k);
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
@@ -68,10 +69,11 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
   BaseParameters base;
   base.rank_gap = rank < P ? diagonal(rank - 1) / std::max(diagonal(rank), 1e-300) : 1.0 / options.tolerance;
   if (base.rank_gap < 1e3) {
-    throw Error(fmt::format("the number of base parameters cannot be told: the diagonal of R falls only {:.1f}-fold at {}",
-                            base.rank_gap, rank),
-                robot.description().name, "check the lengths of the robot; an almost singular design has no clear rank",
-                ExitCode::not_trusted);
+    throw Error(
+        fmt::format("the number of base parameters cannot be told: the diagonal of R falls only {:.1f}-fold at {}",
+                    base.rank_gap, rank),
+        robot.description().name, "check the lengths of the robot; an almost singular design has no clear rank",
+        ExitCode::not_trusted);
   }
   // W_dep = W_ind K, so that Y p = Y_ind (p_ind + K p_dep); undo the column scaling.
   const Eigen::MatrixXd R = qr.matrixQR().topLeftCorner(rank, P).triangularView<Eigen::Upper>();

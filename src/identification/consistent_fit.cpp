@@ -42,7 +42,8 @@ Eigen::VectorXd fitted_entries(const Block& block, const double* variables, Eige
 /// First term of (15): A y(pi) - b over all blocks at once.
 class DataResidual final : public ceres::CostFunction {
  public:
-  DataResidual(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b) : layout_(layout), A_(A), b_(b) {
+  DataResidual(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
+      : layout_(layout), A_(A), b_(b) {
     set_num_residuals(static_cast<int>(A.rows()));
     for (const Block& block : layout.blocks) mutable_parameter_block_sizes()->push_back(block.width());
   }
@@ -117,7 +118,8 @@ Eigen::VectorXd fitted_of(const Layout& layout, const Variables& variables) {
 }
 
 void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
-                      const ConsistentFitOptions& options, double lambda, Variables& variables, ConsistentFitSummary& summary) {
+                      const ConsistentFitOptions& options, double lambda, Variables& variables,
+                      ConsistentFitSummary& summary) {
   ceres::Problem problem;
   std::vector<double*> all;
   for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
@@ -210,14 +212,15 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
       if (cost) chosen = middle;  // without convergence, look further up
     }
   }
-  std::sort(summary.l_curve.begin(), summary.l_curve.end(), [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
+  std::sort(summary.l_curve.begin(), summary.l_curve.end(),
+            [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
   return std::exp(chosen);
 }
 
-/// The best of three proofs for y: from its own gradient, and from the dual points of the centred solution next to it, by gradient and
-/// by barrier. Where bodies end on the boundary, the latter bound the optimum more tightly than the point where Ceres stops, which
-/// lies lower but is not centred.
-/// \param centred  result of the convex solver with its splits, or empty
+/// The best of three proofs for y: from its own gradient, and from the dual points of the centred solution next to it,
+/// by gradient and by barrier. Where bodies end on the boundary, the latter bound the optimum more tightly than the
+/// point where Ceres stops, which lies lower but is not centred. \param centred  result of the convex solver with its
+/// splits, or empty
 OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, double lambda, const Eigen::VectorXd& y,
                               const Eigen::VectorXd& centred) {
   OptimalityCertificate best = convex.certify(metric, lambda, y);
@@ -241,9 +244,9 @@ void add_least_squares(const ConsistentFitProblem& problem, const Layout& layout
   summary.data_cost_free = rotated.tail(rotated.size() - summary.data_rank).squaredNorm();
 }
 
-/// Entries that section VI drops keep the prior's value where the data do not see them and the body stays consistent: the mass
-/// matrix does not change, and a model handed to a simulator keeps what its maker knew. Where a fitted inertia moved too far for
-/// that, the others move in proportion.
+/// Entries that section VI drops keep the prior's value where the data do not see them and the body stays consistent:
+/// the mass matrix does not change, and a model handed to a simulator keeps what its maker knew. Where a fitted inertia
+/// moved too far for that, the others move in proportion.
 InertialVector<double> complete_body(const Block& block, const ConsistentFitProblem& problem, const Layout& layout,
                                      const InertialVector<double>& fitted) {
   const InertialVector<double> prior = problem.prior.segment<10>(block.column);
@@ -266,13 +269,14 @@ InertialVector<double> complete_body(const Block& block, const ConsistentFitProb
   return fitted;
 }
 
-/// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width. A prior that the data moved by
-/// more than its width claimed too much: all its masses and inertias then count with a width larger by the root mean square of
-/// these moves, and no parameter with less than its own.
+/// std and data_share of the fitted parameters, from the curvature of chi^2 and the prior's width. A prior that the
+/// data moved by more than its width claimed too much: all its masses and inertias then count with a width larger by
+/// the root mean square of these moves, and no parameter with less than its own.
 void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOptions& options, const Layout& layout,
                      const Eigen::MatrixXd& A, ConsistentFitSummary& summary) {
   const int n = layout.fitted;
-  summary.std = problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
+  summary.std =
+      problem.prior_std.size() > 0 ? problem.prior_std : Eigen::VectorXd(options.prior_relative_std * layout.scale);
   summary.data_share = Eigen::VectorXd::Zero(layout.parameters);
   const Eigen::VectorXd move = (summary.p - problem.prior).cwiseAbs();
   double square = 0, inertial = 0;
@@ -294,7 +298,8 @@ void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOpt
   Eigen::MatrixXd stacked(A.rows() + n, n);
   stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  const Eigen::MatrixXd inverse = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd inverse =
+      qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
   for (int i = 0; i < n; ++i) {
     const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
     const double variance = inverse.row(i).squaredNorm();
@@ -328,7 +333,8 @@ bool ConsistentFitOptions::is_valid(std::string* error) const {
   return true;
 }
 
-ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem, const ConsistentFitOptions& options) {
+ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem,
+                                               const ConsistentFitOptions& options) {
   const auto start_time = Clock::now();
   if (std::string error; !options.is_valid(&error)) {
     throw Error(error, "consistent fit, options", "see ConsistentFitOptions for the ranges", ExitCode::usage);
@@ -375,7 +381,8 @@ ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& probl
   for (LCurvePoint& point : summary.l_curve) point.data_cost += constant;
   summary.certificate = certify(convex, options.metric, summary.lambda, y, inside.x);
   summary.certificate.passed = summary.certificate.available && summary.certificate.gap <= options.certificate_gap;
-  // Ceres measures its progress by the size of J, which rounding hides where J is next to nothing: the proof counts for more.
+  // Ceres measures its progress by the size of J, which rounding hides where J is next to nothing: the proof counts for
+  // more.
   summary.converged = summary.converged || summary.certificate.passed;
   add_least_squares(problem, layout, summary);
 

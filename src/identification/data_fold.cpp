@@ -11,10 +11,12 @@ namespace deltadyn {
 
 namespace {
 
-constexpr Eigen::Index kRowsPerBlock = 256;  // large enough for the QR to be efficient, small enough to stay in the cache
+// Large enough for the QR to be efficient, small enough to stay in the cache
+constexpr Eigen::Index kRowsPerBlock = 256;
 
 /// Rows of `block` with the given use, drive by drive.
-void add_rows(const RowBlock& block, int drive, RowUse use, const Eigen::VectorXd* p, const RowWeight& weight, DriveFold& fold) {
+void add_rows(const RowBlock& block, int drive, RowUse use, const Eigen::VectorXd* p, const RowWeight& weight,
+              DriveFold& fold) {
   const auto& Y = block.Y[static_cast<std::size_t>(drive)];
   Eigen::MatrixXd rows(block.rows(), Y.cols());
   Eigen::VectorXd tau(block.rows());
@@ -30,7 +32,8 @@ void add_rows(const RowBlock& block, int drive, RowUse use, const Eigen::VectorX
 }
 
 /// QR of [R d; Y tau] in place of the factor.
-void triangularize(DriveFold& fold, const Eigen::Ref<const Eigen::MatrixXd>& Y, const Eigen::Ref<const Eigen::VectorXd>& tau) {
+void triangularize(DriveFold& fold, const Eigen::Ref<const Eigen::MatrixXd>& Y,
+                   const Eigen::Ref<const Eigen::VectorXd>& tau) {
   const Eigen::Index P = fold.R.cols();
   Eigen::MatrixXd stacked(P + Y.rows(), P + 1);
   stacked.topLeftCorner(P, P) = fold.R;
@@ -89,7 +92,8 @@ void DataFold::add(const DataFold& other) {
   unusable_rows += other.unusable_rows;
 }
 
-DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const Eigen::VectorXd* p, const RowWeight& weight) {
+DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const Eigen::VectorXd* p,
+                  const RowWeight& weight) {
   const int n = robot.drives();
   const auto drives = static_cast<std::size_t>(n);
   DataFold fold;

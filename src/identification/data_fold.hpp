@@ -47,7 +47,7 @@ using RowWeight = std::function<double(int, double)>;
 
 /// Folds a prepared log with `threads` threads (0: all). The result does not depend on the number of threads.
 /// \param p, weight  if given, each row is scaled by sqrt(weight(drive, tau - Y p))
-[[nodiscard]] DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads = 0, const Eigen::VectorXd* p = nullptr,
-                                const RowWeight& weight = {});
+[[nodiscard]] DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads = 0,
+                                const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {});
 
 }  // namespace deltadyn

@@ -85,7 +85,8 @@ void spread(const std::vector<EffectColumn>& law, const auto& J, std::vector<Eff
 }
 
 template <class E>
-std::vector<EffectColumn> columns_on_plate(const EffectSignals& s, const Shape<double>& shape, const Eigen::Vector3d& gravity) {
+std::vector<EffectColumn> columns_on_plate(const EffectSignals& s, const Shape<double>& shape,
+                                           const Eigen::Vector3d& gravity) {
   const Index n = s.q.cols();
   std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, s.q.rows(), n);
   PlateInput<double> in;
@@ -181,8 +182,8 @@ void add_differences_of(const Robot& robot, std::vector<MachineDifference>& all)
   for (const int joint : effect_joints(effect_id<E>, robot.description())) {
     for (const Shape<double>& shape : choices_of(traits)) {
       for (std::size_t a = 0; a < traits.amplitudes.size(); ++a) {
-        all.push_back(
-            {effect_id<E>, joint, shape, a, E::kStep, changed(joint, shape, a, E::kStep), changed(joint, shape, a, -E::kStep)});
+        all.push_back({effect_id<E>, joint, shape, a, E::kStep, changed(joint, shape, a, E::kStep),
+                       changed(joint, shape, a, -E::kStep)});
       }
     }
   }
@@ -238,9 +239,11 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     without = whole;
     for (const int column : own_friction_) without(column) = 0;
     if (const Status status = states_->at(q, qd, qdd, state); status != Status::ok) refuse(log, k, status);
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, whole, tau); status != Status::ok) refuse(log, k, status);
+    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, whole, tau); status != Status::ok)
+      refuse(log, k, status);
     out.torque.row(k) = tau.transpose();
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, without, tau); status != Status::ok) refuse(log, k, status);
+    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, without, tau); status != Status::ok)
+      refuse(log, k, status);
     out.load.row(k) = tau.transpose();
     out.position.row(k) = state.position.transpose();
     out.velocity.row(k) = state.velocity.transpose();
@@ -296,14 +299,16 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
   in_parallel(N, [&](Index k) {
     VectorXd q = out.q.row(k), qd = out.qd.row(k), qdd = out.qdd.row(k), at(n), lagged(n);
     MatrixXd M(n, n);
-    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok) return;
+    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok)
+      return;
     for (Index j = 0; j < n; ++j) out.coupling.row(k).segment(n * j, n) = M.col(j).transpose();
     const auto along = [&](Index j, double step, double lag, double lag_d, double lag_dd, MatrixXd& to) {
       const double q_j = q(j), qd_j = qd(j), qdd_j = qdd(j);
       q(j) += step * lag;
       qd(j) += step * lag_d;
       qdd(j) += step * lag_dd;
-      if (robot_.inverse_dynamics(q, qd, qdd, smooth, lagged) == Status::ok) to.row(k) = (lagged - at).transpose() / step;
+      if (robot_.inverse_dynamics(q, qd, qdd, smooth, lagged) == Status::ok)
+        to.row(k) = (lagged - at).transpose() / step;
       q(j) = q_j;
       qd(j) = qd_j;
       qdd(j) = qdd_j;
@@ -347,9 +352,11 @@ std::vector<EffectColumn> EffectModel::columns_of_changes(const EffectSignals& s
 }
 
 template <class E>
-std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, int joint, const Shape<double>& shape) const {
+std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, int joint,
+                                                            const Shape<double>& shape) const {
   const Index N = s.q.rows(), n = s.q.cols();
-  if (joint >= 0) return columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
+  if (joint >= 0)
+    return columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
   std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, N, n);
   for (Index j = 0; j < n; ++j) {
     if (!acts_on_all(effect_id<E>, static_cast<int>(j), robot_.description())) continue;
@@ -422,7 +429,8 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
     for (const EffectColumn& column : model.columns(signals, effect.id, effect.joint, effect.shape, log_number)) {
       const MatrixXd rows = low_passed_rows(log, column.values);
       for (Index j = 0; j < n; ++j) {
-        if (column.drive < 0 || column.drive == j) out[static_cast<std::size_t>(j)].col(at) = rows.col(column.drive < 0 ? j : 0);
+        if (column.drive < 0 || column.drive == j)
+          out[static_cast<std::size_t>(j)].col(at) = rows.col(column.drive < 0 ? j : 0);
       }
       ++at;
     }
@@ -432,7 +440,8 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
 
 bool needs_differences(const std::vector<Effect>& effects) {
   bool any = false;
-  for (const Effect& one : effects) visit_effect(one.id, [&any](auto effect) { any |= kIs<decltype(effect), MachineChange>; });
+  for (const Effect& one : effects)
+    visit_effect(one.id, [&any](auto effect) { any |= kIs<decltype(effect), MachineChange>; });
   return any;
 }
 

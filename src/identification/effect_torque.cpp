@@ -34,8 +34,8 @@ struct AmplitudeRows {
   std::vector<bool> positive;  ///< for each column
 };
 
-AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const VectorXd& p,
-                             const std::vector<Effect>& effects, const Identification& used) {
+AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+                             const VectorXd& p, const std::vector<Effect>& effects, const Identification& used) {
   const EffectModel model(robot);
   const Index b = base.count(), e = amplitude_count(effects), n = robot.drives();
   AmplitudeRows out;
@@ -62,7 +62,8 @@ AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, con
       MatrixXd& X = out.X[drive];
       VectorXd& y = out.y[drive];
       const auto counts = [&](Index k) {
-        return block.use(k, j) == RowUse::regular || (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
+        return block.use(k, j) == RowUse::regular ||
+               (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
       };
       Index count = 0;
       for (Index k = 0; k < prepared.rows; ++k) count += counts(k) ? 1 : 0;
@@ -83,8 +84,8 @@ AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, con
 
 /// Variances of the solution over some columns of a Gram matrix of weighted rows; 0 elsewhere.
 VectorXd variances_over(const MatrixXd& information, const std::vector<bool>& columns) {
-  const VectorXd taken =
-      VectorXd::NullaryExpr(information.rows(), [&](Index c) { return columns[static_cast<std::size_t>(c)] ? 1.0 : 0.0; });
+  const VectorXd taken = VectorXd::NullaryExpr(
+      information.rows(), [&](Index c) { return columns[static_cast<std::size_t>(c)] ? 1.0 : 0.0; });
   const VectorXd scale = taken.cwiseProduct(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse());
   const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(scaled).pseudoInverse();
@@ -95,7 +96,8 @@ VectorXd variances_over(const MatrixXd& information, const std::vector<bool>& co
 VectorXd variances(const MatrixXd& information, const std::vector<bool>& free) {
   const VectorXd all = variances_over(information, std::vector<bool>(free.size(), true)),
                  inside = variances_over(information, free);
-  return VectorXd::NullaryExpr(all.size(), [&](Index c) { return free[static_cast<std::size_t>(c)] ? inside(c) : all(c); });
+  return VectorXd::NullaryExpr(all.size(),
+                               [&](Index c) { return free[static_cast<std::size_t>(c)] ? inside(c) : all(c); });
 }
 
 }  // namespace
@@ -189,13 +191,15 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
   }
   const double cutoff_hz = settled.processing.motion_over_pass * settled.processing.cutoff_hz;
   // With what the file says first, so that the model's torque is known for the effects that follow it.
-  Identification result = identify(robot, without_effects(robot, logs, prior, effects, cutoff_hz), prior, prior_std, settled);
+  Identification result =
+      identify(robot, without_effects(robot, logs, prior, effects, cutoff_hz), prior, prior_std, settled);
   for (int pass = 0; pass < 2; ++pass) {
     effects = estimate_amplitudes(robot, logs, result.fit.p, effects, result);
     result = identify(robot, without_effects(robot, logs, result.fit.p, effects, cutoff_hz), prior, prior_std, settled);
   }
   // What a residual is a share of is the torque of the drives, with that of the effects.
-  const Validation whole = validate_with_effects(robot, logs, effects, result.fit.p, result.processing, options.threads);
+  const Validation whole =
+      validate_with_effects(robot, logs, effects, result.fit.p, result.processing, options.threads);
   for (std::size_t j = 0; j < result.drives.size(); ++j) result.drives[j].rms_torque = whole.drives[j].rms_torque;
   return result;
 }

@@ -17,9 +17,8 @@ using Eigen::VectorXd;
 
 constexpr int kPhases = 8;          // tell a standard deviation to a quarter
 constexpr Index kSamples = 20'000;  // of each log: longer ones average no less
-constexpr double kFineSteps =
-    20;  // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4); with fewer it may follow
-         // the motion
+constexpr double kFineSteps = 20;   // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4);
+                                    // with fewer it may follow the motion
 constexpr std::uint64_t kSeed = 1;
 
 constexpr double kFewSteps = 3;  // the same: their error lies about the turning points of the motion
@@ -61,7 +60,8 @@ Eigen::MatrixXd encoder_covariance(const std::vector<Log>& logs, double motion_h
   VectorXd mean;
   for (int k = 0; k < kPhases; ++k) {
     std::vector<Log> again;
-    for (std::size_t l = 0; l < middles.size(); ++l) again.push_back(requantised(middles[l], smooth[l], steps[l], random));
+    for (std::size_t l = 0; l < middles.size(); ++l)
+      again.push_back(requantised(middles[l], smooth[l], steps[l], random));
     found.push_back(estimate(again));
     mean = k == 0 ? found.back() : VectorXd(mean + found.back());
   }

@@ -19,23 +19,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kDelaySamples = 20'000;   // of each log, as for presliding
-constexpr int kSteps = 4;                 // of Gauss and Newton; three suffice
-constexpr double kSigmas = 5;             // a delay within these is chance
-constexpr double kLeast = 0.05;           // of a sample: less is no matter
-constexpr double kMost = 3;               // samples; a larger one is for the gate
-constexpr double kCleanDelayFit = 0.015;  // of the torque: above it what the model lacks can pass for a delay, as in the gate
-constexpr double kAlike = 4;              // standard deviations of the drives' own delays about the common one
+constexpr Index kDelaySamples = 20'000;  // of each log, as for presliding
+constexpr int kSteps = 4;                // of Gauss and Newton; three suffice
+constexpr double kSigmas = 5;            // a delay within these is chance
+constexpr double kLeast = 0.05;          // of a sample: less is no matter
+constexpr double kMost = 3;              // samples; a larger one is for the gate
+// Of the torque: above it what the model lacks can pass for a delay, as in the gate
+constexpr double kCleanDelayFit = 0.015;
+constexpr double kAlike = 4;  // standard deviations of the drives' own delays about the common one
 constexpr double kDampingStep_s = 1e-3, kDisplacementStep = 0.02;  // for the slopes; the second is a share
 constexpr double kMemory_s = 0.2;                                  // of the residual, as in identify()
 
 class DelaySearch {
  public:
-  DelaySearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const ProcessingOptions& processing,
-              const VectorXd* known)
+  DelaySearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+              const ProcessingOptions& processing, const VectorXd* known)
       : robot_(robot), base_(base), processing_(processing), coulomb_(coulomb_columns(robot)), known_(known) {
     processing_.periods = Periods::ignore;
-    if (processing_.presliding_damping_s.size() == 0) processing_.presliding_damping_s.setZero(processing_.presliding.size());
+    if (processing_.presliding_damping_s.size() == 0)
+      processing_.presliding_damping_s.setZero(processing_.presliding.size());
     for (const Log& log : logs) logs_.push_back(middle_of(log, kDelaySamples));
     sample_s_ = logs.front().sample_time_s();
   }
@@ -52,8 +54,8 @@ class DelaySearch {
       if (std::abs(out.delay_s) > kMost * sample_s_) return out;
       if (std::abs(change) < 0.2 * out.std_s) break;
     }
-    out.certain =
-        clean_ && std::abs(out.delay_s) > std::max(kSigmas * out.std_s, kLeast * sample_s_) && drives_agree(out.delay_s);
+    out.certain = clean_ && std::abs(out.delay_s) > std::max(kSigmas * out.std_s, kLeast * sample_s_) &&
+                  drives_agree(out.delay_s);
     return out;
   }
 
@@ -95,8 +97,8 @@ class DelaySearch {
           square += usable.select(e.array(), 0.0).square().sum();
           torque += usable.select(torque_[l].col(j).array(), 0.0).square().sum();
           count += static_cast<double>(usable.count());
-          const auto lags =
-              static_cast<Index>(std::ceil(kMemory_s * prepared_[l].rate_hz / static_cast<double>(prepared_[l].stride)));
+          const auto lags = static_cast<Index>(
+              std::ceil(kMemory_s * prepared_[l].rate_hz / static_cast<double>(prepared_[l].stride)));
           memory = std::max(memory, noise_correlation(e, usable, std::min<Index>(lags, 50)));
         }
         clean_ = clean_ && count > 0 && square < kCleanDelayFit * kCleanDelayFit * torque;
@@ -107,7 +109,8 @@ class DelaySearch {
     }
   }
 
-  /// What a later torque does to the rows, for each of the drives (-1: all alike), then slopes of the bristles' friction.
+  /// What a later torque does to the rows, for each of the drives (-1: all alike), then slopes of the bristles'
+  /// friction.
   [[nodiscard]] std::vector<Columns> columns(const std::vector<int>& drives) const {
     std::vector<Columns> out(prepared_.size());
     for (std::size_t l = 0; l < prepared_.size(); ++l) {
@@ -147,7 +150,8 @@ class DelaySearch {
 
   /// The joint's Coulomb friction among the base parameters; -1: not there.
   [[nodiscard]] Index base_index(Index joint) const {
-    const auto at = std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
+    const auto at =
+        std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
     return at == base_.independent.end() ? -1 : at - base_.independent.begin();
   }
 
@@ -161,7 +165,8 @@ class DelaySearch {
       const double friction = std::max(beta(base_index(joint)), 1e-12);
       double &damping = processing_.presliding_damping_s(joint), &displacement = processing_.presliding(joint);
       damping = std::max(0.0, damping + result.amplitude(at) / friction);
-      displacement = std::clamp(displacement + result.amplitude(at + 1) / friction, 0.5 * displacement, 2 * displacement);
+      displacement =
+          std::clamp(displacement + result.amplitude(at + 1) / friction, 0.5 * displacement, 2 * displacement);
       at += 2;
     }
   }

@@ -18,10 +18,11 @@ using Vector10 = InertialVector<double>;
 constexpr double kRounding = 1e-9;  // relative slack for priors written with a few digits on the boundary
 constexpr double kInside = 1e-4;    // how far a prior on the boundary is moved inside, relative
 constexpr double kLength = 0.1;     // size [m] of a body of which the prior says a mass and nothing else
-constexpr double kTiny = 1e-3;      // a prior below this part of its natural scale says "about 0", not "to this precision"
+constexpr double kTiny = 1e-3;  // a prior below this part of its natural scale says "about 0", not "to this precision"
 
 [[noreturn]] void refuse_prior(const std::string& body, const std::string& rule, const std::string& mend) {
-  throw Error(fmt::format("the prior of body '{}' is not physically consistent: {}", body, rule), "prior, " + body, mend);
+  throw Error(fmt::format("the prior of body '{}' is not physically consistent: {}", body, rule), "prior, " + body,
+              mend);
 }
 
 /// What section VI keeps of a body.
@@ -55,8 +56,8 @@ void check_mass_and_triangle(const std::string& body, const Vector10& p) {
   for (int j = 0; j < 3; ++j) {
     if (S(j, j) < -kRounding * size) {
       refuse_prior(body,
-                   fmt::format("the triangle inequality {} is broken (Ixx {:g}, Iyy {:g}, Izz {:g} kg m^2)", kRule[j], p(kIxx),
-                               p(kIyy), p(kIzz)),
+                   fmt::format("the triangle inequality {} is broken (Ixx {:g}, Iyy {:g}, Izz {:g} kg m^2)", kRule[j],
+                               p(kIxx), p(kIyy), p(kIzz)),
                    "check the three inertias about the body frame's origin, and their units");
     }
   }
@@ -81,13 +82,15 @@ bool make_spatial_anchor(const std::string& body, Vector10& p) {
   PseudoInertia<double> M = to_pseudo_inertia(p);
   const double size = std::max(M.topLeftCorner<3, 3>().trace(), p(kM) * kLength * kLength);
   if (M(3, 3) <= 0) M(3, 3) = kInside * M.topLeftCorner<3, 3>().trace() / (kLength * kLength);
-  // a matrix on the boundary becomes positive definite by any lift, one that is truly outside does not by so small a one
+  // a matrix on the boundary becomes positive definite by any lift, one that is truly outside does not by so small a
+  // one
   for (int j = 0; j < 3; ++j) M(j, j) = std::max(M(j, j), 0.0) + kInside * size;
   M(3, 3) *= 1 + kInside;
   const Vector10 lifted = from_pseudo_inertia<double>(M);
   if (!is_physically_consistent(lifted)) {
-    refuse_prior(body, "the first moments are too large for its mass and inertia (m S must exceed (m c)^2 along every axis)",
-                 "give the inertias about the body frame's origin, not about the centre of mass, and check the moments");
+    refuse_prior(
+        body, "the first moments are too large for its mass and inertia (m S must exceed (m c)^2 along every axis)",
+        "give the inertias about the body frame's origin, not about the centre of mass, and check the moments");
   }
   p = lifted;
   return true;
@@ -109,8 +112,8 @@ std::string make_planar_anchor(Block& block, const Vector10& prior) {
   check_has_mass(block.name, mass, moment);
   if (moment * moment > mass * inertia * (1 + kRounding)) {
     refuse_prior(block.name,
-                 fmt::format("the first moments are too large: m {0} >= {1}^2 + {2}^2 is broken", inertia_name, kInertialNames[a],
-                             kInertialNames[b]),
+                 fmt::format("the first moments are too large: m {0} >= {1}^2 + {2}^2 is broken", inertia_name,
+                             kInertialNames[a], kInertialNames[b]),
                  "give the inertia about the body frame's origin, not about the centre of mass, and check the moments");
   }
   std::string moved;
@@ -132,7 +135,8 @@ std::string make_planar_anchor(Block& block, const Vector10& prior) {
   const double used = shrink * shrink * sum * sum / inertia;  // mass that the moments need at least
   if (block.fixed_alpha) block.mass_floor = std::min(mass / 10, (mass - used) / 2);
 
-  const double third_prior = to_pseudo_inertia(prior)(3 - block.axes[0] - block.axes[1], 3 - block.axes[0] - block.axes[1]);
+  const double third_prior =
+      to_pseudo_inertia(prior)(3 - block.axes[0] - block.axes[1], 3 - block.axes[0] - block.axes[1]);
   double ma = shrink * prior(a), mb = shrink * prior(b);
   if (block.fixed_alpha && ma == 0 && mb == 0)
     ma = 1e-6 * std::sqrt(mass * inertia);  // alpha alone would hold the mass at its floor
@@ -220,8 +224,8 @@ Vector10 natural_scale(const Vector10& anchor) {
   const PseudoInertia<double> M = to_pseudo_inertia(anchor);
   const auto root = [&](int i, int j) { return std::sqrt(M(i, i) * M(j, j)); };
   Vector10 scale;
-  scale << M(3, 3), root(0, 3), root(1, 3), root(2, 3), anchor(kIxx), anchor(kIyy), anchor(kIzz), root(0, 1), root(1, 2),
-      root(0, 2);
+  scale << M(3, 3), root(0, 3), root(1, 3), root(2, 3), anchor(kIxx), anchor(kIyy), anchor(kIzz), root(0, 1),
+      root(1, 2), root(0, 2);
   // an inertia of 0 in a prior says "slender", not how slender
   const double slender = 0.01 * M.topLeftCorner<3, 3>().trace();
   scale.segment<3>(kIxx) = scale.segment<3>(kIxx).cwiseMax(slender);
@@ -245,7 +249,8 @@ void check_sizes(const ConsistentFitProblem& problem) {
   }
   for (Eigen::Index i = 0; i < P; ++i) {
     const std::string name = parameter_name(problem.parameters[static_cast<std::size_t>(i)]);
-    if (!std::isfinite(problem.prior(i))) throw Error("the prior is not a finite number", "prior, " + name, "give a number");
+    if (!std::isfinite(problem.prior(i)))
+      throw Error("the prior is not a finite number", "prior, " + name, "give a number");
     if (problem.prior_std.size() > 0 && !(problem.prior_std(i) > 0)) {
       throw Error("the prior's standard deviation must be positive", "prior, " + name, "give a number above 0");
     }
@@ -259,9 +264,9 @@ Block make_body(const ConsistentFitProblem& problem, int column, ParameterSet se
   for (id.entry = 0; id.entry < kInertialParameters; ++id.entry) {
     const auto index = static_cast<std::size_t>(column + id.entry);
     if (index >= problem.parameters.size() || problem.parameters[index] != id) {
-      throw Error(
-          fmt::format("the ten parameters of body '{}' do not stand together, '{}' is not in its place", name, quantity_name(id)),
-          "consistent fit, parameters", "keep the order m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz");
+      throw Error(fmt::format("the ten parameters of body '{}' do not stand together, '{}' is not in its place", name,
+                              quantity_name(id)),
+                  "consistent fit, parameters", "keep the order m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz");
     }
   }
   const Vector10 prior = problem.prior.segment<10>(column);
@@ -305,7 +310,8 @@ Block make_body(const ConsistentFitProblem& problem, int column, ParameterSet se
   std::string moved;
   if (block.shape == BlockKind::spatial) {
     for (const int entry : block.entries) block.anchor(entry) = prior(entry);
-    if (make_spatial_anchor(name, block.anchor)) moved = "was on the boundary of what a body can have and starts a hair inside";
+    if (make_spatial_anchor(name, block.anchor))
+      moved = "was on the boundary of what a body can have and starts a hair inside";
   } else if (block.shape == BlockKind::planar) {
     moved = make_planar_anchor(block, prior);
   } else {

@@ -1,10 +1,12 @@
 #pragma once
 
 /// \file
-/// The consistent fit's view of the parameter vector: one block a body or scalar, with its cone, metric and free variables.
+/// The consistent fit's view of the parameter vector: one block a body or scalar, with its cone, metric and free
+/// variables.
 ///
-/// Coordinates: p all parameters; y the fitted ones (a subset of p); x = (y, splits), the variables of the convex problem. A split
-/// is S_aa - S_bb of a body of which only the sum S_aa + S_bb is fitted (upper arm, tool in the reduced set).
+/// Coordinates: p all parameters; y the fitted ones (a subset of p); x = (y, splits), the variables of the convex
+/// problem. A split is S_aa - S_bb of a body of which only the sum S_aa + S_bb is fitted (upper arm, tool in the
+/// reduced set).
 
 #include <Eigen/Core>
 #include <string>
@@ -23,7 +25,8 @@ enum class BlockKind {
   free,      ///< a scalar of any sign
 };
 
-/// A symmetric matrix that is linear in the block's variables: base + sum x_i basis_i, in the leading size x size corner.
+/// A symmetric matrix that is linear in the block's variables: base + sum x_i basis_i, in the leading size x size
+/// corner.
 struct LinearMatrix {
   int size = 0;
   Eigen::Matrix4d base = Eigen::Matrix4d::Zero();
@@ -44,7 +47,8 @@ struct Block {
   bool fixed_alpha = false;    ///< planar: alpha is not a variable (upper arm, VI.b)
   bool has_reference = true;   ///< false: a positive scalar whose prior is 0, which no divergence can be taken from
   double mass_floor = 0;       ///< e^{2 alpha} of a fixed alpha: the mass stays above it
-  InertialVector<double> anchor = InertialVector<double>::Zero();    ///< consistent body nearest to the prior; scalars: entry 0
+  /// Consistent body nearest to the prior; scalars: entry 0
+  InertialVector<double> anchor = InertialVector<double>::Zero();
   LogCholeskyVector<double> pi = LogCholeskyVector<double>::Zero();  ///< of the anchor; scalars: entry 0
   LinearMatrix cone;    ///< positive definite on the consistent set, in (entries, split)
   LinearMatrix metric;  ///< what bregman and riemannian compare, in the entries; size 0: compared as in `relative`
@@ -75,7 +79,8 @@ struct Layout {
 /// The start of the convex problem: the anchors, strictly inside every cone.
 [[nodiscard]] Eigen::VectorXd convex_start(const Layout& layout);
 
-/// Log-Cholesky variables of the block (scalars: entry 0) that give its fitted entries in x; the other variables stay as in block.pi.
+/// Log-Cholesky variables of the block (scalars: entry 0) that give its fitted entries in x; the other variables stay
+/// as in block.pi.
 [[nodiscard]] LogCholeskyVector<double> variables_of(const Block& block, const Eigen::VectorXd& x);
 
 /// Splits an inertia I = Sa + Sb so that a^2/Sa + b^2/Sb = mass with both positive; the smaller moment gets the room.

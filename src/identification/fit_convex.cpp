@@ -38,8 +38,8 @@ ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, con
     centring_.segment(block.y, block.fitted()) = -gradient.head(block.fitted());
     if (block.split >= 0) centring_(block.split) = -gradient(block.fitted());
   }
-  // Normal equations of a problem with far more digits in some directions than in others lose the weak ones. In the singular
-  // directions the data term is diagonal, and nothing blurs.
+  // Normal equations of a problem with far more digits in some directions than in others lose the weak ones. In the
+  // singular directions the data term is diagonal, and nothing blurs.
   const int n = layout.fitted;
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(n);
@@ -64,8 +64,8 @@ double ConvexProblem::regularization_cost(FitMetric metric, const Eigen::VectorX
   return sum;
 }
 
-bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barrier, const Eigen::VectorXd& x, Terms& terms,
-                                    bool derivatives) const {
+bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barrier, const Eigen::VectorXd& x,
+                                    Terms& terms, bool derivatives) const {
   terms.value = 0;
   if (derivatives) {
     terms.gradient.setZero(layout_.convex);
@@ -80,7 +80,8 @@ bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barr
     Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
     double value = 0;
-    if (!metric_terms(block, layout_, metric, own.head(count), value, derivatives ? &gradient : nullptr, &hessian)) return false;
+    if (!metric_terms(block, layout_, metric, own.head(count), value, derivatives ? &gradient : nullptr, &hessian))
+      return false;
     terms.value += lambda * value;
     if (derivatives) {
       g.head(count) += lambda * gradient;
@@ -88,10 +89,11 @@ bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barr
     }
     if (block.cone.size > 0) {
       if (!log_det_barrier(block.cone, own, value, derivatives ? &gradient : nullptr, &hessian)) return false;
-      // The barrier is the log-det divergence from the anchor. A plain -log det has no minimum where neither the data nor a weak
-      // lambda hold a body, and would send it to infinity. The last stage does without the divergence's linear part: from a thin
-      // anchor it would bias the result by more than the certificate admits.
-      const Eigen::VectorXd centring = barrier > kFinalBarrier ? block.gather(centring_) : Eigen::VectorXd::Zero(n).eval();
+      // The barrier is the log-det divergence from the anchor. A plain -log det has no minimum where neither the data
+      // nor a weak lambda hold a body, and would send it to infinity. The last stage does without the divergence's
+      // linear part: from a thin anchor it would bias the result by more than the certificate admits.
+      const Eigen::VectorXd centring =
+          barrier > kFinalBarrier ? block.gather(centring_) : Eigen::VectorXd::Zero(n).eval();
       terms.value += barrier * (value + centring.dot(own));
       if (derivatives) {
         g += barrier * (gradient + centring);
@@ -125,8 +127,9 @@ ConvexProblem::Newton ConvexProblem::newton_step(const Terms& terms, const Eigen
   // in (V^T y, splits)
   Eigen::VectorXd gradient = terms.gradient;
   gradient.head(fitted) = V_.transpose() * terms.gradient.head(fitted) + 2 * singular_.cwiseProduct(residual);
-  // The Newton matrix is stacked^T stacked. Where a body nears the boundary it spreads over more than the digits there are, and
-  // its Cholesky factor would need a ridge that hides what descent is left; a QR of the stack needs half the digits.
+  // The Newton matrix is stacked^T stacked. Where a body nears the boundary it spreads over more than the digits there
+  // are, and its Cholesky factor would need a ridge that hides what descent is left; a QR of the stack needs half the
+  // digits.
   Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(n + fitted, n);
   stacked.topRows(n) = terms.factor.transpose();
   stacked.topLeftCorner(n, fitted) = terms.factor.topRows(fitted).transpose() * V_;
@@ -185,7 +188,8 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
 
 namespace {
 
-/// Dual of one block's cone: the gradient as symmetric matrices that must be positive semidefinite, scaled to the anchor.
+/// Dual of one block's cone: the gradient as symmetric matrices that must be positive semidefinite, scaled to the
+/// anchor.
 struct Dual {
   double min_eigenvalue = 0;
   Eigen::VectorXd identity;  // gradient that shifts every eigenvalue by 1
@@ -209,7 +213,8 @@ Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
       dual.identity(i) = basis.diagonal().cwiseQuotient(size.cwiseAbs2()).sum();
     }
   } else if (block.shape == BlockKind::planar) {
-    // The cone (|a| + |b|)^2 <= m I has the dual max(|g_a|, |g_b|)^2 <= 4 g_m g_I: two 2 x 2 matrices (the completion of S_ab).
+    // The cone (|a| + |b|)^2 <= m I has the dual max(|g_a|, |g_b|)^2 <= 4 g_m g_I: two 2 x 2 matrices (the completion
+    // of S_ab).
     const double m = block.anchor(inertial::kM), I = block.anchor(block.inertia);
     for (int j = 0; j < 2; ++j) {
       Eigen::Matrix2d G;
@@ -228,9 +233,11 @@ Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
 
 }  // namespace
 
-/// Near the central path: the slope of the barrier after one more Newton step. It lies in the dual cone where that step stays in the
-/// barrier's Dikin ellipsoid, and what it leaves of J's slope, the step times J's Hessian, is as small as the step.
-std::optional<Eigen::VectorXd> ConvexProblem::barrier_dual(FitMetric metric, double lambda, const Eigen::VectorXd& x) const {
+/// Near the central path: the slope of the barrier after one more Newton step. It lies in the dual cone where that step
+/// stays in the barrier's Dikin ellipsoid, and what it leaves of J's slope, the step times J's Hessian, is as small as
+/// the step.
+std::optional<Eigen::VectorXd> ConvexProblem::barrier_dual(FitMetric metric, double lambda,
+                                                           const Eigen::VectorXd& x) const {
   Terms terms;
   if (!separable_terms(metric, lambda, kFinalBarrier, x, terms, true)) return std::nullopt;
   const Eigen::VectorXd step = newton_step(terms, residual_at(x.cwiseQuotient(scale_))).step.cwiseProduct(scale_);
@@ -242,7 +249,8 @@ std::optional<Eigen::VectorXd> ConvexProblem::barrier_dual(FitMetric metric, dou
     double value = 0;
     if (block.cone.size == 0) continue;
     if (!log_det_barrier(block.cone, block.gather(x), value, &gradient, &hessian)) return std::nullopt;
-    z.segment(block.y, block.fitted()) = -kFinalBarrier * (gradient + hessian * block.gather(step)).head(block.fitted());
+    z.segment(block.y, block.fitted()) =
+        -kFinalBarrier * (gradient + hessian * block.gather(step)).head(block.fitted());
   }
   return z;
 }
@@ -252,11 +260,13 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
   if (metric == FitMetric::riemannian) return certificate;
   const int n = layout_.fitted;
   const Eigen::VectorXd y = x.head(n), scale = scale_.head(n);
-  const std::optional<Eigen::VectorXd> dual = x.size() == layout_.convex ? barrier_dual(metric, lambda, x) : std::nullopt;
-  // J(y') >= J(y) + g.(y'-y) + ||A (y'-y)||^2 + lambda (D's own growth). For any z in the dual cone, z.y' >= z.floor, so that
+  const std::optional<Eigen::VectorXd> dual =
+      x.size() == layout_.convex ? barrier_dual(metric, lambda, x) : std::nullopt;
+  // J(y') >= J(y) + g.(y'-y) + ||A (y'-y)||^2 + lambda (D's own growth). For any z in the dual cone, z.y' >= z.floor,
+  // so that
   //   gap <= z.(y - floor) + max over steps of -(g - z).step - growth(step),
-  // where growth is a quadratic form H (relative), or a self-concordant function with Hessian H (bregman). Slopes and H stand in
-  // the singular directions of the data, in which sharp and weak ones do not blur each other.
+  // where growth is a quadratic form H (relative), or a self-concordant function with Hessian H (bregman). Slopes and H
+  // stand in the singular directions of the data, in which sharp and weak ones do not blur each other.
   Eigen::VectorXd of_metric(n);                               // lambda D'
   Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(2 * n, n);  // R^T R = half the Hessian of J
   Eigen::VectorXd gradient;
@@ -264,7 +274,8 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
   for (const Block& block : layout_.blocks) {
     const int count = block.fitted();
     double value = 0;
-    if (!metric_terms(block, layout_, metric, y.segment(block.y, count), value, &gradient, &hessian)) return certificate;
+    if (!metric_terms(block, layout_, metric, y.segment(block.y, count), value, &gradient, &hessian))
+      return certificate;
     of_metric.segment(block.y, count) = lambda * gradient;
     stacked.block(n + block.y, block.y, count, count) =
         Eigen::LLT<Eigen::MatrixXd>(0.5 * lambda * hessian).matrixU().toDenseMatrix() *

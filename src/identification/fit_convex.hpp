@@ -50,7 +50,8 @@ class ConvexProblem {
   };
   [[nodiscard]] Newton newton_step(const Terms& terms, const Eigen::VectorXd& residual) const;
   [[nodiscard]] Eigen::VectorXd residual_at(const Eigen::VectorXd& scaled) const;  // in the singular directions
-  [[nodiscard]] std::optional<Eigen::VectorXd> barrier_dual(FitMetric metric, double lambda, const Eigen::VectorXd& x) const;
+  [[nodiscard]] std::optional<Eigen::VectorXd> barrier_dual(FitMetric metric, double lambda,
+                                                            const Eigen::VectorXd& x) const;
 
   const Layout& layout_;
   Eigen::MatrixXd A_;

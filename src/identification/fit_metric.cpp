@@ -53,8 +53,9 @@ int residual_size(const Block& block, FitMetric metric) {
   return block.metric.size * (block.metric.size + 1) / 2;
 }
 
-bool metric_residual(const Block& block, const Layout& layout, FitMetric metric, const Eigen::Ref<const Eigen::VectorXd>& y,
-                     Eigen::Ref<Eigen::VectorXd> residual, Eigen::MatrixXd* jacobian) {
+bool metric_residual(const Block& block, const Layout& layout, FitMetric metric,
+                     const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> residual,
+                     Eigen::MatrixXd* jacobian) {
   if (is_relative(block, metric)) {
     if (jacobian != nullptr) jacobian->setZero(block.fitted(), block.fitted());
     for (int i = 0; i < block.fitted(); ++i) {
@@ -87,8 +88,8 @@ bool metric_residual(const Block& block, const Layout& layout, FitMetric metric,
   Eigen::MatrixXd differences(n, n);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      differences(i, j) =
-          divided_difference(l(i), l(j), values[static_cast<std::size_t>(i)], values[static_cast<std::size_t>(j)], metric);
+      differences(i, j) = divided_difference(l(i), l(j), values[static_cast<std::size_t>(i)],
+                                             values[static_cast<std::size_t>(j)], metric);
     }
   }
   for (int k = 0; k < block.fitted(); ++k) {
@@ -123,8 +124,9 @@ bool log_det_barrier(const LinearMatrix& matrix, const Eigen::Ref<const Eigen::V
   return true;
 }
 
-bool metric_terms(const Block& block, const Layout& layout, FitMetric metric, const Eigen::Ref<const Eigen::VectorXd>& y,
-                  double& value, Eigen::VectorXd* gradient, Eigen::MatrixXd* hessian) {
+bool metric_terms(const Block& block, const Layout& layout, FitMetric metric,
+                  const Eigen::Ref<const Eigen::VectorXd>& y, double& value, Eigen::VectorXd* gradient,
+                  Eigen::MatrixXd* hessian) {
   const int count = block.fitted();
   if (is_relative(block, metric)) {
     value = 0;
@@ -158,9 +160,11 @@ bool metric_terms(const Block& block, const Layout& layout, FitMetric metric, co
   if (!log_det_barrier(block.metric, y, value, gradient, hessian)) return false;
   const int n = block.metric.size;
   const Eigen::Matrix4d inverse = block.metric_root * block.metric_root.transpose();
-  value += inverse.cwiseProduct(block.metric(y)).sum() - n - 2 * block.metric_root.diagonal().head(n).array().abs().log().sum();
+  value += inverse.cwiseProduct(block.metric(y)).sum() - n -
+           2 * block.metric_root.diagonal().head(n).array().abs().log().sum();
   if (gradient != nullptr) {
-    for (int i = 0; i < count; ++i) (*gradient)(i) += inverse.cwiseProduct(block.metric.basis[static_cast<std::size_t>(i)]).sum();
+    for (int i = 0; i < count; ++i)
+      (*gradient)(i) += inverse.cwiseProduct(block.metric.basis[static_cast<std::size_t>(i)]).sum();
   }
   return true;
 }

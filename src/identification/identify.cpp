@@ -24,16 +24,17 @@ using Clock = std::chrono::steady_clock;
 constexpr double kReversalRatio = 3.0;     // above it, rows near reversals follow another law than the model's
 constexpr Index kFewestReversalRows = 10;  // to judge them by
 constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 0.1;         // of the best known parameter's standard deviation: a smaller bias is no matter
+constexpr double kFeltNoise = 0.1;  // of the best known parameter's standard deviation: a smaller bias is no matter
 
-DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads, const Eigen::VectorXd* p = nullptr,
-                  const RowWeight& weight = {}) {
+DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads,
+                  const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {}) {
   DataFold fold;
   for (const PreparedLog& log : logs) fold.add(fold_log(robot, log, threads, p, weight));
   return fold;
 }
 
-/// Regular rows that are fewer than those near reversals show little of the motion: reversals are then judged beside a fit of both.
+/// Regular rows that are fewer than those near reversals show little of the motion: reversals are then judged beside a
+/// fit of both.
 bool needs_reversals(const DriveFold& regular, const DriveFold& reversal) {
   return regular.rows < reversal.rows;
 }
@@ -99,7 +100,8 @@ MotionHz motion_bands(const std::vector<Log>& logs, const Identification& found)
   }
 }
 
-std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs, const ProcessingOptions& options) {
+std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs,
+                                     const ProcessingOptions& options) {
   std::vector<PreparedLog> prepared;
   prepared.reserve(logs.size());
   for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
@@ -131,7 +133,8 @@ class Identifier {
     make_rows();
     report(0.4);
     if (options_.processing.filter && options_.reversals == Reversals::automatic) find_everyday_friction();
-    for (const PreparedLog& log : rows_.prepared) out_.notes.insert(out_.notes.end(), log.notes.begin(), log.notes.end());
+    for (const PreparedLog& log : rows_.prepared)
+      out_.notes.insert(out_.notes.end(), log.notes.begin(), log.notes.end());
     out_.fold_time_s = seconds_since(fold_start);
     report(0.9);
     out_.samples = rows_.fold.samples;
@@ -158,8 +161,8 @@ class Identifier {
     }
     motion_ = motion_bands(logs_, out_);
     ProcessingOptions usual = filtered(motion_);
-    // The steps of coarse encoders lie about the reversals, where they bend friction, and no instrument sees them there: a narrower
-    // filter of the positions takes them out, where the motion has nothing beyond it.
+    // The steps of coarse encoders lie about the reversals, where they bend friction, and no instrument sees them
+    // there: a narrower filter of the positions takes them out, where the motion has nothing beyond it.
     if (has_coarse_encoders(logs_)) {
       ProcessingOptions smooth = filtered(motion_.narrow());
       if (unexplained(smooth) < unexplained(usual)) {
@@ -177,7 +180,8 @@ class Identifier {
     return out;
   }
 
-  /// Mean logarithm of the drives' residuals with the base parameters that fit best; infinite if the logs are too short.
+  /// Mean logarithm of the drives' residuals with the base parameters that fit best; infinite if the logs are too
+  /// short.
   [[nodiscard]] double unexplained(const ProcessingOptions& processing) const {
     try {
       const DataFold fold = fold_all(robot_, prepare_all(robot_, logs_, processing), options_.threads);
@@ -222,7 +226,9 @@ class Identifier {
 
   void add_ripples() { out_.processing.ripples = find_ripples(robot_, out_.base, logs_, out_.processing, rows_.keep); }
 
-  [[nodiscard]] Eigen::VectorXd any() const { return any_parameters(out_.base, out_.base_estimate.value, robot_.parameters()); }
+  [[nodiscard]] Eigen::VectorXd any() const {
+    return any_parameters(out_.base, out_.base_estimate.value, robot_.parameters());
+  }
 
   /// Base parameters, their covariance, and what the consistent fit takes from them.
   void estimate_base() {
@@ -239,9 +245,11 @@ class Identifier {
         out_.base_estimate = estimate_base_parameters(out_.base, folds, {}, &*bias_);
       }
     }
-    const std::vector<double> correlation = correlations(robot_, logs_, rows_.prepared, any(), rows_.keep, options_.threads);
+    const std::vector<double> correlation =
+        correlations(robot_, logs_, rows_.prepared, any(), rows_.keep, options_.threads);
     out_.base_estimate = estimate_base_parameters(out_.base, folds, correlation, bias_ ? &*bias_ : nullptr);
-    if (!options_.robust && options_.processing.filter && !averages_periods(rows_.prepared)) add_encoder_steps(correlation);
+    if (!options_.robust && options_.processing.filter && !averages_periods(rows_.prepared))
+      add_encoder_steps(correlation);
   }
 
   /// Huber's weights, a few passes of them.

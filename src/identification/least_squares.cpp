@@ -88,7 +88,8 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     out.condition_number = s(0) / std::max(s(s.size() - 1), 1e-300);
     std::string unseen;
     for (Index k = 0; k < norm.size(); ++k) {
-      if (norm(k) < kSilent * largest) unseen += (unseen.empty() ? "" : ", ") + base.expressions[static_cast<std::size_t>(k)];
+      if (norm(k) < kSilent * largest)
+        unseen += (unseen.empty() ? "" : ", ") + base.expressions[static_cast<std::size_t>(k)];
     }
     if (unseen.empty() && out.condition_number > 1 / kSilent) unseen = weakest(base, svd.matrixV().rightCols<1>());
     if (!unseen.empty()) {
@@ -104,8 +105,9 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     const Eigen::VectorXd p = any_parameters(base, out.value, P);
     for (Index j = 0; j < drives; ++j) {
       const DriveFold& fold = folds[static_cast<std::size_t>(j)];
-      const double share = std::min(0.9, weight(j) * weight(j) * (fold.R(Eigen::all, base.independent) * root).squaredNorm() /
-                                             std::max<double>(1.0, static_cast<double>(fold.rows)));
+      const double share =
+          std::min(0.9, weight(j) * weight(j) * (fold.R(Eigen::all, base.independent) * root).squaredNorm() /
+                            std::max<double>(1.0, static_cast<double>(fold.rows)));
       DriveNoise& noise = out.noise[static_cast<std::size_t>(j)];
       const double floor = 1e-9 * std::max(fold.tau_max, 1e-12);  // noise-free logs
       noise.std = std::max(floor, fold.rms(p) / std::sqrt(1 - share));
@@ -130,7 +132,8 @@ void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covarian
 }
 
 double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
-                         const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags, double white) {
+                         const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, Eigen::Index lags,
+                         double white) {
   const Eigen::VectorXd e = usable.select(residual.array(), 0.0).matrix();
   const auto count = static_cast<double>(usable.count());
   const double variance = e.squaredNorm() / std::max(count, 1.0);

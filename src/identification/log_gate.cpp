@@ -31,8 +31,8 @@ using Eigen::Index;
 
 constexpr Index kPoints = 500;        // of all logs, for signs, orders and units
 constexpr double kLeastDelay = 0.05;  // of a sample: less is no matter
-// Relative residual of a log without other faults. Above it the model lacks something (friction after reversals, load), and what it
-// lacks can pass for a delay: then the delay must take half of the residual away.
+// Relative residual of a log without other faults. Above it the model lacks something (friction after reversals, load),
+// and what it lacks can pass for a delay: then the delay must take half of the residual away.
 constexpr double kCleanFit = 0.015;
 constexpr double kNoiseOnly = 1.5;  // times what the noise of the torque makes of the residual
 constexpr double kHalf = 0.5;
@@ -43,8 +43,9 @@ constexpr double kWorthRemoving =
 constexpr double kLongest_s = 0.025;  // no recorder or drive is later; what looks so is slow friction or a spring
 constexpr double kSteady = 3.0;       // standard deviations by which a timing may differ in a lower band
 constexpr double kLowestTiming_hz = 4;
-constexpr double kOutOfReach = 0.01;   // share of poses
-constexpr double kMassesMean = 0.15;   // relative residual above which estimated masses are not compared with the prior's
+constexpr double kOutOfReach = 0.01;  // share of poses
+// Relative residual above which estimated masses are not compared with the prior's
+constexpr double kMassesMean = 0.15;
 constexpr double kUnexplained = 0.25;  // relative residual that no sound log of this robot leaves
 
 /// The gate at work on one set of logs.
@@ -97,7 +98,8 @@ class Gate {
 
  private:
   void add(std::vector<LogFinding> more) {
-    out_.findings.insert(out_.findings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    out_.findings.insert(out_.findings.end(), std::make_move_iterator(more.begin()),
+                         std::make_move_iterator(more.end()));
   }
 
   /// Rows of the logs as they are, evenly thinned.
@@ -148,15 +150,16 @@ class Gate {
       f.value = first.value;
       f.std = first.std;
     }
-    f.text =
-        fmt::format("{}: residual {} as given, {:.2g} % so", first.words, as_given_in_words(judgement), 100 * first.residual);
+    f.text = fmt::format("{}: residual {} as given, {:.2g} % so", first.words, as_given_in_words(judgement),
+                         100 * first.residual);
     for (std::size_t k = 1; k < std::min<std::size_t>(3, judgement.winners.size()); ++k) {
       f.text += fmt::format("{}{}", k == 1 ? "; as well explained: " : "; or: ", judgement.winners[k].words);
     }
     f.mend = first.mend;
     if (is_turned_yaw(robot_.description(), first)) {
       f.text += "; as well explained: the limbs are numbered clockwise";
-      f.mend += "; or swap the columns of limbs 2 and 3: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above";
+      f.mend +=
+          "; or swap the columns of limbs 2 and 3: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above";
     }
     out_.findings.push_back(std::move(f));
     add(std::move(limits));
@@ -179,15 +182,17 @@ class Gate {
       f.key = "pose";
       f.value = judgement.as_given.unreachable;
       f.text = fmt::format(
-          "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives explains it",
+          "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives "
+          "explains it",
           100 * judgement.as_given.unreachable);
       f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
-    } else if (judgement.as_given.residual > kUnexplained && judgement.with_springs > kHalf * judgement.as_given.residual &&
-               !coarse_) {
+    } else if (judgement.as_given.residual > kUnexplained &&
+               judgement.with_springs > kHalf * judgement.as_given.residual && !coarse_) {
       f.level = judgement.as_given.residual > kNoiseOnly * torque_noise_ ? FindingLevel::fault : FindingLevel::warning;
       f.key = "unexplained";
       f.text = fmt::format(
-          "{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, order, unit or zero of the drives",
+          "{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, order, unit or zero of "
+          "the drives",
           100 * judgement.as_given.residual);
       f.mend = "check that the robot file belongs to this machine, and look at the raw signals";
     } else {
@@ -219,27 +224,30 @@ class Gate {
       options.highest_band_hz = options.lowest_band_hz = band_hz;
       Sample narrow = take_sample(out_.logs, options);
       if (!narrow.stretches.empty()) return narrow;
-    } catch (const Error&) {  // NOLINT(bugprone-empty-catch): logs too short for a cut-off, or poses out of reach: others say so
+    } catch (const Error&) {  // NOLINT(bugprone-empty-catch): logs too short for a cut-off, or poses out of reach:
+                              // others say so
     }
     return std::nullopt;
   }
 
   /// Sum of delay and lag of each log and drive, and its standard deviation.
   static std::pair<Eigen::MatrixXd, Eigen::MatrixXd> lateness(const Timing& timing) {
-    return {timing.delay_s + timing.lag_s, (timing.delay_std.array().square() + timing.lag_std.array().square()).sqrt()};
+    return {timing.delay_s + timing.lag_s,
+            (timing.delay_std.array().square() + timing.lag_std.array().square()).sqrt()};
   }
 
   /// Is a timing the same in a lower band, as far as that band tells it?
   static bool holds(const Timing& timing, const Timing& lower) {
     const auto [late, std] = lateness(timing);
     const auto [late_lower, std_lower] = lateness(lower);
-    const Eigen::ArrayXXd chance = (std_lower.array().square() - std.array().square()).max(0.25 * std.array().square()).sqrt();
+    const Eigen::ArrayXXd chance =
+        (std_lower.array().square() - std.array().square()).max(0.25 * std.array().square()).sqrt();
     return ((late - late_lower).array().abs() < kSteady * chance).all();
   }
 
-  /// A drive's loop answers the noise of its encoder: that torque is real, while the acceleration beside it is not all seen, and both
-  /// together look like a delay. It shrinks with the band much faster than what a band tells of a real one: the highest band whose
-  /// timing holds in the next lower one is taken.
+  /// A drive's loop answers the noise of its encoder: that torque is real, while the acceleration beside it is not all
+  /// seen, and both together look like a delay. It shrinks with the band much faster than what a band tells of a real
+  /// one: the highest band whose timing holds in the next lower one is taken.
   [[nodiscard]] Timing steady_timing(Sample sample) const {
     Timing timing = timing_of(sample);
     while (timing.significant && sample.band_hz > kLowestTiming_hz) {
@@ -270,7 +278,8 @@ class Gate {
       f.value = drift.rate;
       f.std = drift.rate_std;
       f.text = fmt::format(
-          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms (+- {:.2g}) "
+          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms "
+          "(+- {:.2g}) "
           "over the log: {} (residual {:.2g} % with one delay, {:.2g} % so)",
           f.file, 1e3 * drift.first_s, 1e3 * drift.last_s,
           1e3 * std::abs(drift.rate_std / drift.rate * (drift.last_s - drift.first_s)) / 2,
@@ -301,8 +310,10 @@ class Gate {
       sample = take_sample(out_.logs);
       timing = steady_timing(sample);
     }
-    // Where the model does not hold in the whole band, what it lacks passes for a delay: the band is that of the model then.
-    if (const std::optional<Sample> narrow = timing.rms_after > clean(noise) ? within_model_band(sample) : std::nullopt) {
+    // Where the model does not hold in the whole band, what it lacks passes for a delay: the band is that of the model
+    // then.
+    if (const std::optional<Sample> narrow =
+            timing.rms_after > clean(noise) ? within_model_band(sample) : std::nullopt) {
       timing = steady_timing(*narrow);
       noise = relative_torque_noise(out_.logs, *narrow);
     }
@@ -317,9 +328,11 @@ class Gate {
       if (f.std > 0) out_.findings.push_back(std::move(f));
       return;
     }
-    const bool simple = timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
+    const bool simple =
+        timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
     const double longest = std::max(timing.delay_s.cwiseAbs().maxCoeff(), timing.lag_s.cwiseAbs().maxCoeff());
-    const bool sharp = longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
+    const bool sharp =
+        longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
     const bool sound = timing.rms_after < clean(noise) || timing.rms_after < kHalf * timing.rms_before;
     if (!sharp) {
       tell_vague(timing);
@@ -346,8 +359,9 @@ class Gate {
     f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
     f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
     f.unit = "s";
-    f.text = fmt::format("this log does not tell a delay: at best {}, residual {:.2g} % as recorded, {:.2g} % with that removed",
-                         words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
+    f.text = fmt::format(
+        "this log does not tell a delay: at best {}, residual {:.2g} % as recorded, {:.2g} % with that removed",
+        words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
     out_.findings.push_back(std::move(f));
   }
 
@@ -364,15 +378,16 @@ class Gate {
     f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
     f.unit = "s";
     f.text = fmt::format(
-        "{} as it seems, but that is not certain enough to remove it: residual {:.2g} % as recorded, {:.2g} % with it removed",
+        "{} as it seems, but that is not certain enough to remove it: residual {:.2g} % as recorded, {:.2g} % with it "
+        "removed",
         words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
     f.mend = "record a faster motion, or mend the delay where the log is made (delta-log import: delay in the map)";
     out_.findings.push_back(std::move(f));
   }
 
   /// One finding for all drives and logs alike, else one for each that differs.
-  void tell_timing(const Eigen::MatrixXd& value, const Eigen::MatrixXd& std, const Timing& timing, const std::string& key,
-                   bool removed) {
+  void tell_timing(const Eigen::MatrixXd& value, const Eigen::MatrixXd& std, const Timing& timing,
+                   const std::string& key, bool removed) {
     const bool same_drives = (value.array().colwise() - value.col(0).array()).abs().maxCoeff() < 1e-9;
     const bool same_logs = (value.array().rowwise() - value.row(0).array()).abs().maxCoeff() < 1e-9;
     const Index L = same_logs ? 1 : value.rows(), n = same_drives ? 1 : value.cols();
@@ -457,7 +472,8 @@ class Gate {
 }  // namespace
 
 bool GateResult::fault() const {
-  return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) { return f.level == FindingLevel::fault; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const LogFinding& f) { return f.level == FindingLevel::fault; });
 }
 
 bool GateResult::stop() const {
@@ -467,8 +483,8 @@ bool GateResult::stop() const {
   });
 }
 
-GateResult examine_logs(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std,
-                        const GateOptions& options) {
+GateResult examine_logs(const Robot& robot, std::vector<Log> logs, const Eigen::VectorXd& prior,
+                        const Eigen::VectorXd& prior_std, const GateOptions& options) {
   return Gate(robot, std::move(logs), prior, prior_std, options).run();
 }
 

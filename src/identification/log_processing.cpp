@@ -23,8 +23,8 @@ constexpr Index kFewestRows = 20;
 constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
-constexpr double kRest_s = 0.05;        // slow for longer is no reversal but rest, where static friction takes any value
-constexpr double kForgotten = 3.0;      // displacements after which a bristle has forgotten how the log began (5 % left)
+constexpr double kRest_s = 0.05;    // slow for longer is no reversal but rest, where static friction takes any value
+constexpr double kForgotten = 3.0;  // displacements after which a bristle has forgotten how the log began (5 % left)
 
 std::string place(const PreparedLog& log, Index sample) {
   if (!log.line.empty() && log.line[static_cast<std::size_t>(sample)] > 0) {
@@ -96,7 +96,8 @@ std::vector<char> rest_of(const std::vector<char>& slow, double rate_hz) {
   std::vector<char> rest(slow.size(), 0);
   for (auto begin = slow.begin(); begin != slow.end();) {
     const auto end = std::find_if(begin, slow.end(), [&](char value) { return value != *begin; });
-    if (*begin != 0 && end - begin >= shortest) std::fill_n(rest.begin() + (begin - slow.begin()), end - begin, char{1});
+    if (*begin != 0 && end - begin >= shortest)
+      std::fill_n(rest.begin() + (begin - slow.begin()), end - begin, char{1});
     begin = end;
   }
   return rest;
@@ -113,17 +114,19 @@ std::vector<char> unknown_start(const Eigen::Ref<const Eigen::VectorXd>& rate, d
   return unknown;
 }
 
-/// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the telescope in
-/// the drives of the limbs (the bar's length does not depend on psi). A joint whose friction builds up over a displacement needs no
-/// sign: there only rest is uncertain.
-void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd, PreparedLog& log) {
+/// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the
+/// telescope in the drives of the limbs (the bar's length does not depend on psi). A joint whose friction builds up
+/// over a displacement needs no sign: there only rest is uncertain.
+void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd,
+                    PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
   std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
     const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
-    mask.push_back(reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), 0));
+    mask.push_back(
+        reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), 0));
     rest.push_back(rest_of(mask.back(), log.rate_hz));
     if (const double displacement = value_or_none(options.presliding, j); displacement > 0)
       mask.back() = unknown_start(rates.col(j), displacement, log.rate_hz);
@@ -154,9 +157,9 @@ Eigen::VectorXd velocity_noise(const Log& log, double motion_cutoff_hz) {
 /// Copies what a log holds. The torque columns are needed from here on.
 PreparedLog copy_log(const Robot& robot, const Log& log) {
   if (log.q.cols() != robot.drives() || log.tau.cols() != robot.drives()) {
-    throw Error(
-        fmt::format("the log has {} positions and {} torques, the robot {} drives", log.q.cols(), log.tau.cols(), robot.drives()),
-        log.file, "use the robot file of the machine that the log was recorded on");
+    throw Error(fmt::format("the log has {} positions and {} torques, the robot {} drives", log.q.cols(),
+                            log.tau.cols(), robot.drives()),
+                log.file, "use the robot file of the machine that the log was recorded on");
   }
   PreparedLog out;
   out.file = log.file;
@@ -177,16 +180,20 @@ void ProcessingOptions::keep_motion(double motion_hz) {
 
 void ProcessingOptions::validate() const {
   const auto refuse = [](const char* field, const char* range) {
-    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range", ExitCode::usage);
+    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
+                ExitCode::usage);
   };
   if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
-  if (!(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass)) refuse("motion_over_pass", "it must be 0.02 to 10");
-  if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10)) refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
+  if (!(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass))
+    refuse("motion_over_pass", "it must be 0.02 to 10");
+  if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10))
+    refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
   if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
   if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
   if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
   if (stride < 0) refuse("stride", "it must be at least 0");
-  if (!((presliding.array() >= 0).all() && presliding.allFinite())) refuse("presliding", "displacements must be at least 0");
+  if (!((presliding.array() >= 0).all() && presliding.allFinite()))
+    refuse("presliding", "displacements must be at least 0");
   if (!((presliding_damping_s.array() >= 0).all() && presliding_damping_s.allFinite()))
     refuse("presliding_damping_s", "dampings must be at least 0 s");
 }
@@ -217,19 +224,20 @@ std::optional<double> period_of(const Log& log, const ProcessingOptions& options
   }
   const double per_period = period_s / log.sample_time_s();
   if (period_s * motion_cutoff_hz(options) > kMostHarmonics || std::abs(per_period - std::round(per_period)) > 1e-3) {
-    notes.push_back(
-        fmt::format("{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
-                    "{:.3g} s at this cut-off)",
-                    log.file, period_s, kMostHarmonics / motion_cutoff_hz(options)));
+    notes.push_back(fmt::format(
+        "{}: periods of {:.6g} s are not averaged (a period must be a whole number of samples and shorter than "
+        "{:.3g} s at this cut-off)",
+        log.file, period_s, kMostHarmonics / motion_cutoff_hz(options)));
     return std::nullopt;
   }
   return period_s;
 }
 
-/// One period: Fourier series of the motion up to the cut-off, mean of the torque. Continued on either side by what the low pass
-/// needs, so that no edge is lost.
+/// One period: Fourier series of the motion up to the cut-off, mean of the torque. Continued on either side by what the
+/// low pass needs, so that no edge is lost.
 PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s, const ProcessingOptions& options) {
-  const PeriodMean mean = average_periods(log, period_s, std::max(1, static_cast<int>(period_s * motion_cutoff_hz(options))));
+  const PeriodMean mean =
+      average_periods(log, period_s, std::max(1, static_cast<int>(period_s * motion_cutoff_hz(options))));
   const Index samples = mean.log.samples();
   PreparedLog out = copy_log(robot, mean.log);
   out.line.clear();
@@ -238,8 +246,9 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
   out.first = out.low_pass->half_width();
   out.rows = samples / out.stride;
   const Index length = samples + 2 * out.first;
-  out.t_s = Eigen::VectorXd::LinSpaced(length, -static_cast<double>(out.first), static_cast<double>(length - 1 - out.first)) /
-            out.rate_hz;
+  out.t_s =
+      Eigen::VectorXd::LinSpaced(length, -static_cast<double>(out.first), static_cast<double>(length - 1 - out.first)) /
+      out.rate_hz;
   out.q = mean.series.evaluate(out.t_s);
   out.qd = mean.series.evaluate(out.t_s, 1);
   out.qdd = mean.series.evaluate(out.t_s, 2);
@@ -253,10 +262,10 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
     if (out.torque_out.size() > 0) out.torque_out.row(k) = mean.log.torque_out.row(phase);
   }
   out.period_s = period_s;
-  mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)) / std::sqrt(static_cast<double>(mean.periods)),
-                 out);
-  out.notes.push_back(fmt::format("{}: periodic, {} periods of {:.6g} s averaged, {} harmonics", log.file, mean.periods, period_s,
-                                  mean.series.harmonics));
+  mark_reversals(robot, options,
+                 velocity_noise(log, motion_cutoff_hz(options)) / std::sqrt(static_cast<double>(mean.periods)), out);
+  out.notes.push_back(fmt::format("{}: periodic, {} periods of {:.6g} s averaged, {} harmonics", log.file, mean.periods,
+                                  period_s, mean.series.harmonics));
   return out;
 }
 
@@ -326,7 +335,8 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   Eigen::MatrixXd Y(n, P);
   for (Index k = 0; k < samples; ++k) {
     const Index at = first_sample + k * step;
-    const Status status = robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y);
+    const Status status =
+        robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y);
     if (status != Status::ok) refuse_pose(log, at, status);
     for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
       Y.col(coulomb[joint]) *= log.coulomb_share(at, static_cast<Index>(joint));
@@ -355,7 +365,8 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
     const Index centre = sample_of_row(log, first_row + k);
     for (int j = 0; j < n; ++j) {
       if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
-      if (log.rest.size() > 0 && log.rest.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::unusable;
+      if (log.rest.size() > 0 && log.rest.col(j).segment(centre - reach, 2 * reach + 1).any())
+        block.use(k, j) = RowUse::unusable;
     }
     for (int j = 0; j < n; ++j) {
       if (left_out(log, j, centre - reach, 2 * reach + 1)) block.use(k, j) = RowUse::unusable;

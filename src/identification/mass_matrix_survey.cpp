@@ -11,7 +11,8 @@
 
 namespace deltadyn {
 
-MassMatrixSurvey survey_mass_matrix(const Robot& robot, const Eigen::VectorXd& p, int states, std::uint64_t seed, int keep) {
+MassMatrixSurvey survey_mass_matrix(const Robot& robot, const Eigen::VectorXd& p, int states, std::uint64_t seed,
+                                    int keep) {
   if (states < 1 || keep < 1) {
     throw Error(fmt::format("a survey over {} states of which {} are kept", states, keep), "mass matrix",
                 "give counts of at least 1", ExitCode::usage);
@@ -43,8 +44,8 @@ MassMatrixSurvey survey_mass_matrix(const Robot& robot, const Eigen::VectorXd& p
     // Cholesky decides: an eigenvalue that rounding lifts above zero does not make M usable.
     const bool positive = Eigen::LLT<Eigen::MatrixXd>(M).info() == Eigen::Success && values(0) > 0;
     if (!positive) ++survey.not_positive;
-    survey.worst_condition =
-        std::max(survey.worst_condition, positive ? values(n - 1) / values(0) : std::numeric_limits<double>::infinity());
+    survey.worst_condition = std::max(survey.worst_condition,
+                                      positive ? values(n - 1) / values(0) : std::numeric_limits<double>::infinity());
     survey.max_eigenvalue = std::max(survey.max_eigenvalue, values(n - 1));
     if (values(0) < survey.min_eigenvalue) {
       survey.min_eigenvalue = values(0);

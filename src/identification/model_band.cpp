@@ -25,11 +25,12 @@ constexpr double kPartRatio = std::numbers::sqrt2;  // half an octave
 constexpr double kHalfBand =
     0.5;  // of the model's torque: with less of it in the record, leaving the part out explains more than the model
 constexpr double kNextToNothing = 0.25;
-constexpr double kBandSigmas = 3;          // within which the record does not hold the whole of the model's torque
-constexpr double kLeastSignal = 2;         // the model's torque over what noise makes of it
-constexpr double kRowsPerIndependent = 4;  // rows of half an octave are taken so many times closer than they are independent
-constexpr double kLowest_hz = 2.5;         // machines that are built to move move faster than that
-constexpr double kLeastPeriods = 20;       // of the cut-off in a log, as for the motion's
+constexpr double kBandSigmas = 3;   // within which the record does not hold the whole of the model's torque
+constexpr double kLeastSignal = 2;  // the model's torque over what noise makes of it
+// Rows of half an octave are taken so many times closer than they are independent
+constexpr double kRowsPerIndependent = 4;
+constexpr double kLowest_hz = 2.5;    // machines that are built to move move faster than that
+constexpr double kLeastPeriods = 20;  // of the cut-off in a log, as for the motion's
 constexpr std::uint64_t kBandSeed = 1;
 constexpr Index kFewestRowsOfPart = 20;  // of all drives in a part
 
@@ -91,7 +92,8 @@ struct BandRows {
   MatrixXd tau, all;        ///< rows x drives; all: with what is below the part
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
 
-  BandRows(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options, double low_hz) {
+  BandRows(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options,
+           double low_hz) {
     PreparedLog wide = prepare_log(robot, log, options);
     PreparedLog narrow = wide;
     narrow_down(wide, narrow, options.torque_cutoff_ratio * low_hz);
@@ -99,7 +101,8 @@ struct BandRows {
     RowBlock above, below;
     read_rows(robot, wide, 0, wide.rows, above);
     read_rows(robot, narrow, 0, narrow.rows, below);
-    for (std::size_t j = 0; j < above.Y.size(); ++j) Y.emplace_back((above.Y[j] - below.Y[j])(Eigen::all, base.independent));
+    for (std::size_t j = 0; j < above.Y.size(); ++j)
+      Y.emplace_back((above.Y[j] - below.Y[j])(Eigen::all, base.independent));
     tau = above.tau - below.tau;
     all = std::move(above.tau);
     use = std::move(below.use);
@@ -125,10 +128,10 @@ VectorXd without_coulomb(const Robot& robot, const BaseParameters& base) {
   return out;
 }
 
-/// Adds the rows of a log between two cut-offs. Coulomb friction is taken off the torque and no part of the model's: its steps reach
-/// into every band, and how they really look is another question.
-void add_part(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options, double low_hz,
-              const BaseEstimate& estimate, std::mt19937_64& random, std::vector<DriveSums>& sums) {
+/// Adds the rows of a log between two cut-offs. Coulomb friction is taken off the torque and no part of the model's:
+/// its steps reach into every band, and how they really look is another question.
+void add_part(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options,
+              double low_hz, const BaseEstimate& estimate, std::mt19937_64& random, std::vector<DriveSums>& sums) {
   const BandRows rows(robot, base, log, options, low_hz), noisy(robot, base, noisier(log, random), options, low_hz);
   const VectorXd smooth = without_coulomb(robot, base);
   for (Index j = 0; j < rows.tau.cols(); ++j) {
@@ -153,7 +156,8 @@ void add_part(const Robot& robot, const BaseParameters& base, const Log& log, co
 
 /// The part of the band, or nothing if too few rows tell it.
 std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                          const ProcessingOptions& options, double low_hz, const BaseEstimate& estimate) {
+                                          const ProcessingOptions& options, double low_hz,
+                                          const BaseEstimate& estimate) {
   std::vector<DriveSums> sums(static_cast<std::size_t>(robot.drives()));
   std::mt19937_64 random(kBandSeed);
   for (const Log& log : logs) add_part(robot, base, log, options, low_hz, estimate, random, sums);
@@ -165,7 +169,8 @@ std::optional<ModelBandPart> part_between(const Robot& robot, const BaseParamete
   const double model = total.model - total.chance;
   ModelBandPart part{low_hz, options.cutoff_hz, total.torque_model / model, 0};
   const double left = total.torque - 2 * part.found * total.torque_model + part.found * part.found * total.model;
-  part.std = std::sqrt(kRowsPerIndependent * std::max(left, 0.0) * total.model / static_cast<double>(total.rows)) / model;
+  part.std =
+      std::sqrt(kRowsPerIndependent * std::max(left, 0.0) * total.model / static_cast<double>(total.rows)) / model;
   return part;
 }
 
@@ -176,7 +181,8 @@ bool fails(const ModelBandPart& part) {
 }  // namespace
 
 const ModelBandPart* ModelBand::beyond() const {
-  const auto part = std::find_if(parts.begin(), parts.end(), [&](const ModelBandPart& p) { return p.low_hz == limit_hz; });
+  const auto part =
+      std::find_if(parts.begin(), parts.end(), [&](const ModelBandPart& p) { return p.low_hz == limit_hz; });
   return part != parts.end() ? &*part : nullptr;
 }
 
@@ -193,7 +199,8 @@ ModelBand find_model_band(const Robot& robot, const BaseParameters& base, const 
   const auto look = [&](double low, double high) {
     const std::optional<BaseEstimate> estimate = fit_below(robot, base, middles, at_cutoff(processing, low), threads);
     if (!estimate) return false;
-    const std::optional<ModelBandPart> part = part_between(robot, base, middles, at_cutoff(processing, high), low, *estimate);
+    const std::optional<ModelBandPart> part =
+        part_between(robot, base, middles, at_cutoff(processing, high), low, *estimate);
     if (part) out.parts.push_back(*part);
     return part.has_value();
   };
@@ -204,8 +211,9 @@ ModelBand find_model_band(const Robot& robot, const BaseParameters& base, const 
     if (fails(out.parts.back())) out.limit_hz = low;
     low = high;
   }
-  // Where the model fails from the first part on, it may fail below, too. But a lower cut-off costs rows near reversals, and what
-  // friction makes of slow motions pulls at the model there: only where next to nothing of its torque is in the record.
+  // Where the model fails from the first part on, it may fail below, too. But a lower cut-off costs rows near
+  // reversals, and what friction makes of slow motions pulls at the model there: only where next to nothing of its
+  // torque is in the record.
   const double floor_hz = std::max(kLowest_hz, kLeastPeriods / shortest_s);
   while (out.parts.size() > 0 && fails(out.parts.front()) && out.limit_hz / kPartRatio >= floor_hz) {
     if (!look(out.limit_hz / kPartRatio, out.limit_hz)) break;

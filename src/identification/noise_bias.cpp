@@ -95,7 +95,8 @@ MatrixXd inverse_of(const MatrixXd& ZtZ) {
 }  // namespace
 
 NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                     const ProcessingOptions& processing, const std::vector<bool>& keep_reversals, double instrument_hz) {
+                     const ProcessingOptions& processing, const std::vector<bool>& keep_reversals,
+                     double instrument_hz) {
   ProcessingOptions wide = processing;
   wide.periods = Periods::ignore;
   ProcessingOptions narrow = wide;
@@ -127,7 +128,8 @@ NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::
   return bias;
 }
 
-void take_off_noise(const BaseParameters& base, const MatrixXd& information, const VectorXd& torque, MatrixXd& R, VectorXd& d) {
+void take_off_noise(const BaseParameters& base, const MatrixXd& information, const VectorXd& torque, MatrixXd& R,
+                    VectorXd& d) {
   const Index count = base.count();
   const MatrixXd R_base = R(Eigen::all, base.independent);
   const VectorXd scale = R_base.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();

@@ -27,7 +27,8 @@ class ActiveSet {
     for (Index i = 0; i < inner.size(); ++i) used_.push_back(gram(i, i) > 0);
   }
 
-  /// All columns, and of those with the wrong sign the worst leaves until there is none. Most often that is the answer already.
+  /// All columns, and of those with the wrong sign the worst leaves until there is none. Most often that is the answer
+  /// already.
   void start() {
     free_ = used_;
     while (true) {
@@ -42,7 +43,8 @@ class ActiveSet {
     gain_ = u_.dot(x_);
   }
 
-  /// Takes back columns at their bound as long as that lowers the sum of squares, which it does finitely often: no set comes twice.
+  /// Takes back columns at their bound as long as that lowers the sum of squares, which it does finitely often: no set
+  /// comes twice.
   void finish() {
     std::vector<bool> refused(free_.size(), false);
     const double at_rest = kAtRest * u_.cwiseAbs().maxCoeff();
@@ -84,8 +86,8 @@ class ActiveSet {
     return x;
   }
 
-  /// Frees a column and goes towards the least squares of the free ones; those that come to their bound on the way stay there.
-  /// \return false, with nothing changed, if the sum of squares did not fall
+  /// Frees a column and goes towards the least squares of the free ones; those that come to their bound on the way stay
+  /// there. \return false, with nothing changed, if the sum of squares did not fall
   bool take_back(Index column) {
     std::vector<bool> set = free_;
     set[static_cast<std::size_t>(column)] = true;
@@ -127,8 +129,8 @@ class ActiveSet {
 
 }  // namespace
 
-NonNegativeSolution non_negative_least_squares(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive,
-                                               double singular) {
+NonNegativeSolution non_negative_least_squares(const MatrixXd& gram, const VectorXd& inner,
+                                               const std::vector<bool>& positive, double singular) {
   if (inner.size() == 0) return {VectorXd(0), {}, 0.0};
   ActiveSet set(gram, inner, positive, singular);
   set.start();

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// Columns tried beside all base parameters: what they take off the squared residual with everything else fitted along. A bristle's
-/// friction near reversals looks like inertia, a slow ripple like gravity; neither must be held where it fits best without the column.
+/// Columns tried beside all base parameters: what they take off the squared residual with everything else fitted along.
+/// A bristle's friction near reversals looks like inertia, a slow ripple like gravity; neither must be held where it
+/// fits best without the column.
 
 #include <Eigen/Core>
 #include <Eigen/QR>

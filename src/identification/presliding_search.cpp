@@ -25,11 +25,12 @@ using Eigen::VectorXd;
 constexpr Index kPreslidingSamples = 20'000;  // of each log; reversals enough, and a log of hours costs no more
 constexpr int kPasses = 4;                    // displacements and base parameters settle in three
 constexpr double kSmallest = 2e-5;            // of the joint's range: no filter shows less
-constexpr double kOverNoise = 1;              // of the position's noise: what jitters within it rounds a reversal like a bristle
+constexpr double kOverNoise = 1;  // of the position's noise: what jitters within it rounds a reversal like a bristle
 constexpr double kLargest =
-    0.02;                  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
+    0.02;  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
-constexpr double kClearGain = 25;  // of the squared residual in units of its noise: five standard deviations for one parameter
+// Of the squared residual in units of its noise: five standard deviations for one parameter
+constexpr double kClearGain = 25;
 constexpr double kForm =
     0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
 constexpr double kPreslidingMemory_s = 0.2;  // of the residual, as in identify()
@@ -47,8 +48,8 @@ struct SearchLog {
 
 class Search {
  public:
-  Search(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const ProcessingOptions& processing,
-         int threads)
+  Search(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+         const ProcessingOptions& processing, int threads)
       : robot_(robot), base_(base), processing_(processing), threads_(threads), coulomb_(coulomb_columns(robot)) {
     processing_.presliding.setZero(robot.friction_joints());
     processing_.presliding_damping_s.setZero(robot.friction_joints());
@@ -89,7 +90,8 @@ class Search {
     }
     std::vector<DriveFold> folds = fold.regular;
     for (std::size_t j = 0; j < folds.size(); ++j) {
-      if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);  // else too little is left to start from
+      // Else too little is left to start from
+      if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);
     }
     const BaseEstimate estimate = estimate_base_parameters(base_, folds);
     const VectorXd p = any_parameters(base_, estimate.value, robot_.parameters());
@@ -99,11 +101,12 @@ class Search {
       SearchLog& log = searched_[l];
       log.prepared = std::move(prepared[l]);
       log.rows = base_rows(robot_, base_, log.prepared, log.use);
-      const auto lags =
-          static_cast<Index>(std::ceil(kPreslidingMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
+      const auto lags = static_cast<Index>(
+          std::ceil(kPreslidingMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
       for (Index j = 0; j < robot_.drives(); ++j) {
-        const double memory = noise_correlation(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
-                                                log.use.col(j) == RowUse::regular, std::min<Index>(lags, 50));
+        const double memory =
+            noise_correlation(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
+                              log.use.col(j) == RowUse::regular, std::min<Index>(lags, 50));
         noise_(j) = std::max(noise_(j), estimate.noise[static_cast<std::size_t>(j)].std * std::sqrt(memory));
       }
     }
@@ -119,7 +122,8 @@ class Search {
       log.direction.assign(coulomb_.size(), MatrixXd::Zero(samples, robot_.drives()));
       for (Index k = 0; k < samples; ++k) {
         const VectorXd q = log.prepared.q.row(k), qd = log.prepared.qd.row(k), qdd = log.prepared.qdd.row(k);
-        if (robot_.friction_joint_rates(q, qd, v) != Status::ok || robot_.regressor(q, qd, qdd, Y) != Status::ok) continue;
+        if (robot_.friction_joint_rates(q, qd, v) != Status::ok || robot_.regressor(q, qd, qdd, Y) != Status::ok)
+          continue;
         log.rates.row(k) = v.transpose();
         for (std::size_t joint = 0; joint < coulomb_.size(); ++joint)
           log.direction[joint].row(k) = sign_of(v(static_cast<Index>(joint))) * Y.col(coulomb_[joint]).transpose();
@@ -184,7 +188,8 @@ class Search {
 
   /// The joint's Coulomb friction among the base parameters; -1 if the motion does not show it.
   [[nodiscard]] Index base_index(Index joint) const {
-    const auto at = std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
+    const auto at =
+        std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
     return at == base_.independent.end() ? -1 : at - base_.independent.begin();
   }
 
@@ -210,8 +215,9 @@ class Search {
     const auto at = std::min_element(costs.begin(), costs.end()) - costs.begin();
     const double without = cost(0);
     if (at == 0 || without - costs[static_cast<std::size_t>(at)] < kClearGain) return out;
-    out.displacement = golden_section_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
-                                                   tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
+    out.displacement =
+        golden_section_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
+                                    tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
     const double found = cost(out.displacement);
     out.gain = without - found;
     out.std = deviation(cost, out.displacement);
@@ -230,7 +236,8 @@ class Search {
   /// Damping of the bristles where that explains clearly more. Without it their displacement comes out too small.
   void add_damping(const PartialFit& fit, Index joint, double undamped, PreslidingJoint& found) const {
     const auto cost = [&](double displacement) { return result(fit, joint, displacement, true).cost; };
-    const double displacement = golden_section_in_logarithm(cost, found.displacement / kWider, found.displacement * kWider);
+    const double displacement =
+        golden_section_in_logarithm(cost, found.displacement / kWider, found.displacement * kWider);
     const PartialFit::Result best = result(fit, joint, displacement, true);
     if (undamped - best.cost < kClearGain || !(best.amplitude(0) > 0)) return;
     const double damping_s = best.amplitude(1) / best.amplitude(0);
@@ -254,8 +261,9 @@ class Search {
 
 }  // namespace
 
-std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                             const ProcessingOptions& processing, int threads) {
+std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParameters& base,
+                                             const std::vector<Log>& logs, const ProcessingOptions& processing,
+                                             int threads) {
   return Search(robot, base, logs, processing, threads).run();
 }
 

@@ -17,10 +17,12 @@ using Eigen::Index;
 
 constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
 
-/// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations alternates, so that
-/// little of it is left in slow sums; the steps of a coarse one follow the motion about its turning points.
+/// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations
+/// alternates, so that little of it is left in slow sums; the steps of a coarse one follow the motion about its turning
+/// points.
 double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double noise_std) {
-  constexpr double kCountsPerSample = 3;  // of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
+  // Of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
+  constexpr double kCountsPerSample = 3;
   constexpr double kFine = 0.05, kCoarse = 0.25;
   const double step = std::sqrt(12.0) * noise_std;
   const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
@@ -30,8 +32,9 @@ double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double nois
 
 }  // namespace
 
-std::vector<double> correlations(const Robot& robot, const std::vector<Log>& recorded, const std::vector<PreparedLog>& logs,
-                                 const Eigen::VectorXd& p, const std::vector<bool>& keep, int threads) {
+std::vector<double> correlations(const Robot& robot, const std::vector<Log>& recorded,
+                                 const std::vector<PreparedLog>& logs, const Eigen::VectorXd& p,
+                                 const std::vector<bool>& keep, int threads) {
   std::vector<double> sum(keep.size(), 0.0), rows(keep.size(), 0.0);
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const PreparedLog& log = logs[l];
@@ -67,11 +70,13 @@ std::vector<double> robust_scales(const Robot& robot, const std::vector<Prepared
     }
   }
   std::vector<double> scales;
-  for (std::vector<double>& size : sizes) scales.push_back(std::max(kMedianToSigma * upper_median(std::move(size)), 1e-12));
+  for (std::vector<double>& size : sizes)
+    scales.push_back(std::max(kMedianToSigma * upper_median(std::move(size)), 1e-12));
   return scales;
 }
 
-/// White up to the positions' cut-off f, of density D, encoder noise has the power (2 pi)^4 D f^5 / 5 in the acceleration.
+/// White up to the positions' cut-off f, of density D, encoder noise has the power (2 pi)^4 D f^5 / 5 in the
+/// acceleration.
 double acceleration_noise_share(const std::vector<Log>& logs, const std::vector<PreparedLog>& prepared,
                                 const ProcessingOptions& processing) {
   const double f = processing.motion_over_pass * processing.cutoff_hz;

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Noise of the torque residual as the fit weighs it: memory, robust size, and what encoder noise adds to the accelerations.
+/// Noise of the torque residual as the fit weighs it: memory, robust size, and what encoder noise adds to the
+/// accelerations.
 
 #include <Eigen/Core>
 #include <vector>
@@ -18,7 +19,8 @@ namespace deltadyn {
 
 /// Standard deviation of each drive's residual from its median size, which outliers hardly move.
 [[nodiscard]] std::vector<double> robust_scales(const Robot& robot, const std::vector<PreparedLog>& prepared,
-                                                const Eigen::VectorXd& p, const std::vector<bool>& keep_reversals, int threads);
+                                                const Eigen::VectorXd& p, const std::vector<bool>& keep_reversals,
+                                                int threads);
 
 /// Largest share, over logs and drives, of the power of the accelerations that is encoder noise.
 [[nodiscard]] double acceleration_noise_share(const std::vector<Log>& logs, const std::vector<PreparedLog>& prepared,

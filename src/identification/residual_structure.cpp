@@ -78,8 +78,8 @@ std::vector<ResidualStructure> residual_structure(const Validation& validation) 
       }
       const auto lags = static_cast<Index>(std::ceil(kStructureMemory_s * log.row_rate_hz));
       if (rows.rows() > 1) {
-        weighted += static_cast<double>(usable.count()) *
-                    noise_correlation(rows.tau.col(drive) - rows.model.col(drive), usable, std::clamp<Index>(lags, 1, 50));
+        weighted += static_cast<double>(usable.count()) * noise_correlation(rows.tau.col(drive) - rows.model.col(drive),
+                                                                            usable, std::clamp<Index>(lags, 1, 50));
       }
     }
     ResidualStructure& out = result[j];

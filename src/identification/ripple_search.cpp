@@ -24,16 +24,17 @@ using Eigen::VectorXd;
 
 constexpr double kPi = std::numbers::pi;
 constexpr Index kRippleSamples = 20'000;  // of each log, as for presliding
-constexpr double kFewestWaves = 4;        // over the drive's range; slower ones are the shape of gravity and wrong lengths
-constexpr double kSlowShare = 0.1;        // of the rows whose speed keeps the fastest waves within the pass band
-constexpr Index kMostWaves = 2000;        // over the range
-constexpr Index kMostOfDrive = 4;         // ripples
-constexpr Index kFinePhase = 8;           // bins a wave of the fastest ripple
-constexpr Index kPadding = 4;             // points of the spectrum a wave over the range
-constexpr double kClearWaveGain = 40;     // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
-constexpr double kHalfShare = 0.3;        // of a half's own gain that the amplitude of the other half must bring there
-constexpr Index kPieces = 16;             // of each log, taken in turn by the halves
-constexpr double kMostMemory = 3;  // of what is left, as where structure is told: what else the model lacks can pass for a wave
+constexpr double kFewestWaves = 4;     // over the drive's range; slower ones are the shape of gravity and wrong lengths
+constexpr double kSlowShare = 0.1;     // of the rows whose speed keeps the fastest waves within the pass band
+constexpr Index kMostWaves = 2000;     // over the range
+constexpr Index kMostOfDrive = 4;      // ripples
+constexpr Index kFinePhase = 8;        // bins a wave of the fastest ripple
+constexpr Index kPadding = 4;          // points of the spectrum a wave over the range
+constexpr double kClearWaveGain = 40;  // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
+constexpr double kHalfShare = 0.3;     // of a half's own gain that the amplitude of the other half must bring there
+constexpr Index kPieces = 16;          // of each log, taken in turn by the halves
+// Of what is left, as where structure is told: what else the model lacks can pass for a wave
+constexpr double kMostMemory = 3;
 constexpr double kRippleMemory_s = 0.2;  // of the residual, as in identify()
 
 struct RippleLog {
@@ -43,8 +44,8 @@ struct RippleLog {
 
 class RippleSearch {
  public:
-  RippleSearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs, const ProcessingOptions& processing,
-               const std::vector<bool>& keep)
+  RippleSearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
+               const ProcessingOptions& processing, const std::vector<bool>& keep)
       : robot_(robot), keep_(keep), pass_hz_(processing.torque_cutoff_ratio * processing.cutoff_hz) {
     ProcessingOptions options = processing;
     options.ripples.clear();
@@ -94,7 +95,8 @@ class RippleSearch {
     return out;
   }
 
-  /// Memory of what is left of a drive's torque, mean over the logs: 1 for white noise. Beside other structure a wave is no finding.
+  /// Memory of what is left of a drive's torque, mean over the logs: 1 for white noise. Beside other structure a wave
+  /// is no finding.
   [[nodiscard]] double memory_left(int drive) const {
     const PartialFit fit(rows_);
     double sum = 0, rows = 0;
@@ -163,8 +165,8 @@ class RippleSearch {
     return out;
   }
 
-  /// The residual of a drive with its weights, back through the low pass to the samples, so that its product with a wave at the
-  /// samples is that of the rows with the wave behind the low pass.
+  /// The residual of a drive with its weights, back through the low pass to the samples, so that its product with a
+  /// wave at the samples is that of the rows with the wave behind the low pass.
   [[nodiscard]] VectorXd at_samples(const PartialFit& fit, std::size_t l, int drive) const {
     const PreparedLog& log = logs_[l].prepared;
     const VectorXd e = rows_[l].weight.col(drive).cwiseProduct(fit.residual(l).col(drive));
@@ -207,7 +209,8 @@ class RippleSearch {
     return 2 * kPi * static_cast<double>(best) / (static_cast<double>(kPadding) * range);
   }
 
-  /// Gain of each wave, by the spectrum of the residual over the position: point k is wave number 2 pi k / (padding x range).
+  /// Gain of each wave, by the spectrum of the residual over the position: point k is wave number 2 pi k / (padding x
+  /// range).
   [[nodiscard]] VectorXd gains(const PartialFit& fit, int drive, double low, double range, Index most,
                                const std::vector<std::pair<double, double>>& speeds) const {
     if (static_cast<double>(most) <= kFewestWaves) return {};
@@ -257,8 +260,8 @@ class RippleSearch {
 
   [[nodiscard]] double refine(const PartialFit& fit, int drive, double n) const {
     const double width = peak_width(drive);
-    return golden_section_in_logarithm([&](double at) { return fit.with(columns(drive, at)).cost; }, std::max(n - width, 0.5 * n),
-                                       n + width, 1 + 0.01 * width / n);
+    return golden_section_in_logarithm([&](double at) { return fit.with(columns(drive, at)).cost; },
+                                       std::max(n - width, 0.5 * n), n + width, 1 + 0.01 * width / n);
   }
 
   /// Does the amplitude of either half of the log serve the other one?

@@ -11,14 +11,16 @@ namespace {
 using Eigen::Index;
 
 constexpr double kLeastOfTorque = 0.002;  // less moves no figure that a user acts on
-// A dependence with a share of a fifth that chance gives once in twenty logs; clean logs stay below a twentieth of the residual.
+// A dependence with a share of a fifth that chance gives once in twenty logs; clean logs stay below a twentieth of the
+// residual.
 constexpr double kRareShare = 0.2;
 constexpr double kRare = 0.05;
 constexpr double kNotableShare = 0.1;  // a smaller share must be rarer by chance
 constexpr double kVeryRare = 0.01;
-constexpr double kMemory = 3;  // rows that tell as much as one of white noise; sensors' own noise has none at these rates
-constexpr Index kRanges = 5;   // of speed, with the same number of rows each
-constexpr double kSure = 4;    // standard deviations of the mean in a range
+// Rows that tell as much as one of white noise; sensors' own noise has none at these rates
+constexpr double kMemory = 3;
+constexpr Index kRanges = 5;  // of speed, with the same number of rows each
+constexpr double kSure = 4;   // standard deviations of the mean in a range
 
 struct Row {
   double speed, friction_like, torque;
@@ -55,15 +57,18 @@ void find_speed_range(const Prediction& rows, int drive, double correlation, Str
 }
 
 bool is_structure(const DependenceOnMotion& found) {
-  return (found.share > kRareShare && found.p_value <= kRare) || (found.share > kNotableShare && found.p_value <= kVeryRare);
+  return (found.share > kRareShare && found.p_value <= kRare) ||
+         (found.share > kNotableShare && found.p_value <= kVeryRare);
 }
 
-StructureLeft structure_of(const ValidatedLog& log, const ValidatedDrive& figures, const ResidualStructure& residual, int drive) {
+StructureLeft structure_of(const ValidatedLog& log, const ValidatedDrive& figures, const ResidualStructure& residual,
+                           int drive) {
   StructureLeft out;
   out.file = log.file;
   out.drive = drive;
-  const std::pair<const char*, const DependenceOnMotion*> all[] = {
-      {"velocity", &residual.on_velocity}, {"position", &residual.on_position}, {"acceleration", &residual.on_acceleration}};
+  const std::pair<const char*, const DependenceOnMotion*> all[] = {{"velocity", &residual.on_velocity},
+                                                                   {"position", &residual.on_position},
+                                                                   {"acceleration", &residual.on_acceleration}};
   for (const auto& [coordinate, found] : all) {
     if (!is_structure(*found) || found->share <= out.share) continue;
     out.coordinate = coordinate;

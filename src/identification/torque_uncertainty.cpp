@@ -25,7 +25,8 @@ TorqueUncertainty torque_uncertainty(const Robot& robot, const BaseParameters& b
   if (!fits(q) || !fits(qd) || !fits(qdd) || p.size() != robot.parameters() || covariance.rows() != count ||
       covariance.cols() != count) {
     throw Error("states, parameters or covariance do not have the sizes of the robot", "uncertainty of the torque",
-                fmt::format("give {} drives, {} parameters, {} base parameters", n, robot.parameters(), count), ExitCode::usage);
+                fmt::format("give {} drives, {} parameters, {} base parameters", n, robot.parameters(), count),
+                ExitCode::usage);
   }
   TorqueUncertainty out;
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(n), square = Eigen::VectorXd::Zero(n);
@@ -45,8 +46,9 @@ TorqueUncertainty torque_uncertainty(const Robot& robot, const BaseParameters& b
   return out;
 }
 
-TorqueUncertainty torque_uncertainty_on_logs(const Robot& robot, const BaseParameters& base, const Eigen::MatrixXd& covariance,
-                                             const Eigen::VectorXd& p, const Validation& logs, int states) {
+TorqueUncertainty torque_uncertainty_on_logs(const Robot& robot, const BaseParameters& base,
+                                             const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p,
+                                             const Validation& logs, int states) {
   Index rows = 0;
   for (const ValidatedLog& log : logs.logs) rows += log.prediction.rows();
   const Index count = std::min<Index>(rows, states);
@@ -65,8 +67,8 @@ TorqueUncertainty torque_uncertainty_on_logs(const Robot& robot, const BaseParam
 }
 
 TorqueUncertainty torque_uncertainty_in_workspace(const Robot& robot, const BaseParameters& base,
-                                                  const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p, int states,
-                                                  std::uint64_t seed) {
+                                                  const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p,
+                                                  int states, std::uint64_t seed) {
   WorkspaceSampler sampler(robot, seed);
   Eigen::MatrixXd Q(states, robot.drives()), Qd = Q, Qdd = Q;
   Eigen::VectorXd q, qd, qdd;
@@ -81,7 +83,8 @@ TorqueUncertainty torque_uncertainty_in_workspace(const Robot& robot, const Base
 
 Eigen::VectorXd parameter_effect(const Robot& robot, const Eigen::VectorXd& p, int states, std::uint64_t seed) {
   WorkspaceSampler sampler(robot, seed);
-  Eigen::MatrixXd Y(robot.drives(), robot.parameters()), square = Eigen::MatrixXd::Zero(robot.drives(), robot.parameters());
+  Eigen::MatrixXd Y(robot.drives(), robot.parameters()),
+      square = Eigen::MatrixXd::Zero(robot.drives(), robot.parameters());
   Eigen::VectorXd torque_square = Eigen::VectorXd::Zero(robot.drives()), q, qd, qdd;
   for (int k = 0; k < states; ++k) {
     sampler.next(q, qd, qdd);

@@ -12,8 +12,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Noise of each recorded torque that passes the low pass of the rows, taken as white: as dense as beyond the pass band, in the median
-/// band of a third of an octave. 0 where a log is too short to show it.
+/// Noise of each recorded torque that passes the low pass of the rows, taken as white: as dense as beyond the pass
+/// band, in the median band of a third of an octave. 0 where a log is too short to show it.
 Eigen::VectorXd torque_noise(const PreparedLog& log) {
   constexpr Index kShortest = 60;
   constexpr double kBeyond = 0.01;  // gain of the low pass
@@ -31,14 +31,15 @@ Eigen::VectorXd torque_noise(const PreparedLog& log) {
   return noise;
 }
 
-constexpr double kOtherLaw = 3.0;  // residual near reversals over that elsewhere: from here on friction follows another law there
+// Residual near reversals over that elsewhere: from here on friction follows another law there
+constexpr double kOtherLaw = 3.0;
 
 bool has_bristles(const ProcessingOptions& processing, Index drive) {
   return processing.presliding.size() > drive && processing.presliding(drive) > 0;
 }
 
-/// With the drive's own reversals in the model, what is left out near reversals is those of the telescope, and the rows after the start
-/// of a log. A model that predicts them, too, is judged by them, too.
+/// With the drive's own reversals in the model, what is left out near reversals is those of the telescope, and the rows
+/// after the start of a log. A model that predicts them, too, is judged by them, too.
 void use_predicted_reversals(Index drive, const ValidatedDrive& figures, std::vector<ValidatedLog>& logs) {
   const auto rows = static_cast<double>(figures.rows), reversal_rows = static_cast<double>(figures.reversal_rows);
   if (rows == 0 || reversal_rows == 0) return;

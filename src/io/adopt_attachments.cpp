@@ -12,7 +12,8 @@ namespace {
 constexpr double kClosure = 3e-4;    // of the strut's length: a pose of the CAD that closes to this is assembled
 constexpr double kDirection = 0.02;  // [rad] between the strut that closes and the line through its centre of mass
 constexpr double kDegenerate = 1e-3;
-constexpr double kFlat = 0.02;   // a strut this flat on the plane of the elbows is a tree whose passive joints are at zero
+// A strut this flat on the plane of the elbows is a tree whose passive joints are at zero
+constexpr double kFlat = 0.02;
 constexpr double kLevel = 2e-3;  // [m] attachments of one plate, by centres of mass with four digits
 
 [[noreturn]] void ask(const std::string& what, const std::string& mend) {
@@ -45,7 +46,8 @@ class Solver {
     if (!options_.strut && parts_.plate_place && options_.platform_radius) return by_radius();
     const double length = options_.strut ? *options_.strut : length_of_three();
     if (auto found = by_direction(length)) return *found;
-    ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and with struts of {:.6g} m along their "
+    ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and with struts of {:.6g} m "
+                    "along their "
                     "centres of mass the three limbs do not end alike",
                     length),
         "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
@@ -56,7 +58,8 @@ class Solver {
     return static_cast<std::size_t>(std::ranges::count_if(ends_, [](const auto& a) { return a.has_value(); }));
   }
   [[nodiscard]] std::size_t first_known() const {
-    return static_cast<std::size_t>(std::ranges::find_if(ends_, [](const auto& a) { return a.has_value(); }) - ends_.begin());
+    return static_cast<std::size_t>(std::ranges::find_if(ends_, [](const auto& a) { return a.has_value(); }) -
+                                    ends_.begin());
   }
   [[nodiscard]] double length_of_known() const { return (*ends_[first_known()] - limbs_[first_known()].elbow).norm(); }
 
@@ -85,7 +88,8 @@ class Solver {
     return middle_of(ends, across, up_);
   }
 
-  /// Three ends of one level plate that is narrower than the elbows and lies beside their plane: the parts stand as assembled.
+  /// Three ends of one level plate that is narrower than the elbows and lies beside their plane: the parts stand as
+  /// assembled.
   [[nodiscard]] bool alike() const {
     const Vec centre = middle_of_ends();
     double least = 1e9, most = -1e9;
@@ -104,7 +108,8 @@ class Solver {
   [[nodiscard]] Vec origin_of(const std::string& link) const {
     const auto found = tree_.links.find(link);
     if (found == tree_.links.end())
-      throw Error(fmt::format("there is no link '{}'", link), "--plate-frame", "name a link of the plate", ExitCode::usage);
+      throw Error(fmt::format("there is no link '{}'", link), "--plate-frame", "name a link of the plate",
+                  ExitCode::usage);
     return link_pose(tree_, zero_pose(tree_), link).translation();
   }
 
@@ -132,7 +137,8 @@ class Solver {
     return {(-b - root) / a, (-b + root) / a};
   }
 
-  /// Whether struts of this length, in the directions that their centres of mass show, reach a plate of this radius held at limb k.
+  /// Whether struts of this length, in the directions that their centres of mass show, reach a plate of this radius
+  /// held at limb k.
   [[nodiscard]] bool closes(double radius, std::size_t k, double length) const {
     const Vec centre = *ends_[k] - radius * limbs_[k].outwards;
     for (std::size_t i = 0; i < limbs_.size(); ++i) {
@@ -149,7 +155,8 @@ class Solver {
     for (std::size_t i = 0; i < limbs_.size(); ++i) ends_[i] = centre + radius * limbs_[i].outwards;
   }
 
-  /// One end is known, and with it the length. Limbs are alike and sit on the plate as on the base: the radius is what closes.
+  /// One end is known, and with it the length. Limbs are alike and sit on the plate as on the base: the radius is what
+  /// closes.
   std::optional<Attachments> by_closure() {
     const std::size_t k = first_known();
     const double length = length_of_known();
@@ -167,11 +174,12 @@ class Solver {
       if (!closes(radius, k, length)) continue;
       hold_plate(radius, k);
       if (alike() && options_.platform_radius && std::abs(*options_.platform_radius - radius) > kLevel)
-        ask(fmt::format("--platform-radius is {:.6g} m, but the pose of the CAD closes with {:.6g} m", *options_.platform_radius,
-                        radius),
+        ask(fmt::format("--platform-radius is {:.6g} m, but the pose of the CAD closes with {:.6g} m",
+                        *options_.platform_radius, radius),
             "leave the flag out, or mend the pose of the CAD");
       if (alike())
-        return finish(fmt::format("ends of struts by closure: the plate's radius is {:.6g} m if the limbs are alike", radius));
+        return finish(
+            fmt::format("ends of struts by closure: the plate's radius is {:.6g} m if the limbs are alike", radius));
       ends_ = before;
     }
     return std::nullopt;
@@ -200,8 +208,8 @@ class Solver {
     return finish("ends of struts by --platform-radius about the origin of the plate's link");
   }
 
-  /// The parts do not stand in a pose of the robot. A rigid part keeps its lengths: the strut's from elbow to plate, the plate's
-  /// from its centre to the strut that carries it. The plate's axes count as parallel to the base's.
+  /// The parts do not stand in a pose of the robot. A rigid part keeps its lengths: the strut's from elbow to plate,
+  /// the plate's from its centre to the strut that carries it. The plate's axes count as parallel to the base's.
   Attachments by_lengths() const {
     const std::size_t k = first_known();
     const Vec end = *ends_[k];
@@ -216,15 +224,18 @@ class Solver {
       for (const std::string& link : links) {
         const Vec offset = end - origin_of(link);
         const double along = offset.dot(limbs_[k].outwards);
-        if ((offset - along * limbs_[k].outwards).norm() > kLevel || along < kLevel || along > limbs_[k].radius) continue;
+        if ((offset - along * limbs_[k].outwards).norm() > kLevel || along < kLevel || along > limbs_[k].radius)
+          continue;
         radius = along;
         how = "the origin of link " + link;
       }
     }
     if (how.empty())
-      ask("the plate's radius cannot be found: the joints at zero are no pose of the robot that closes with three like limbs, "
+      ask("the plate's radius cannot be found: the joints at zero are no pose of the robot that closes with three like "
+          "limbs, "
           "and no link of the plate has its origin at the plate's centre",
-          "give --platform-radius (attachments of the limbs from the plate's centre, in metres), or name the link at the centre "
+          "give --platform-radius (attachments of the limbs from the plate's centre, in metres), or name the link at "
+          "the centre "
           "by --plate-frame, or export the robot assembled");
     Attachments result;
     result.assembled = false;
@@ -237,7 +248,8 @@ class Solver {
                                            : line.value_or((end - limbs_[k].elbow).normalized()));
     }
     result.note = fmt::format(
-        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m by {}, and "
+        "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m by "
+        "{}, and "
         "up is z of the base's link",
         radius, how);
     return result;
@@ -252,7 +264,8 @@ class Solver {
       const auto row = 3 * static_cast<Eigen::Index>(i);
       const auto line = direction_of(parts_.limbs[i]);
       if (!line)
-        ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a frame at "
+        ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a "
+                        "frame at "
                         "its end nor a centre of mass on its axis",
                         parts_.limbs[i].struts.front().name),
             "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
@@ -264,7 +277,8 @@ class Solver {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
     qr.setThreshold(kDegenerate);
     if (qr.rank() < 5)
-      ask("the length of the struts cannot be found: no strut carries the plate, and in this pose every length would do",
+      ask("the length of the struts cannot be found: no strut carries the plate, and in this pose every length would "
+          "do",
           "give --strut (ball to ball, in metres)");
     const Eigen::VectorXd x = qr.solve(b);
     if (!(x(0) > 0) || (A * x - b).norm() > 100 * kClosure * x(0))

@@ -33,7 +33,8 @@ struct Limb3d : LimbPlace {
 
 class Placer {
  public:
-  Placer(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options) : tree_(tree), parts_(parts), options_(options) {
+  Placer(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options)
+      : tree_(tree), parts_(parts), options_(options) {
     prismatic_ = parts.limbs.front().drive->prismatic;
   }
 
@@ -92,8 +93,8 @@ class Placer {
     } else if (options_.strut_spacing) {
       out.spacing = *options_.strut_spacing;
     } else {
-      refuse(fmt::format("the two struts of limb {} are one link ({}), so their distance cannot be found", limb.drive->name,
-                         limb.struts.front().name),
+      refuse(fmt::format("the two struts of limb {} are one link ({}), so their distance cannot be found",
+                         limb.drive->name, limb.struts.front().name),
              "", "give --strut-spacing (between the two struts of a limb, in metres)", ExitCode::usage);
     }
     if (prismatic_) {
@@ -104,11 +105,14 @@ class Placer {
     out.across = limb.axis;
     out.drive = limb.place + limb.axis * limb.axis.dot(out.elbow - limb.place);
     if ((out.elbow - out.drive).norm() < kPoint)
-      refuse("the elbow lies on the axis of the drive", at(*limb.drive), "mend the origins of the joints between arm and struts");
+      refuse("the elbow lies on the axis of the drive", at(*limb.drive),
+             "mend the origins of the joints between arm and struts");
     if (between.norm() > 0 && between.normalized().cross(limb.axis).norm() > kParallel)
-      refuse(fmt::format("the two struts of a limb lie apart along the axis of its drive, but here by ({:.6g}, {:.6g}, {:.6g}) m",
-                         between.x(), between.y(), between.z()),
-             at(*limb.drive), "mend the origins of the joints between arm and struts");
+      refuse(
+          fmt::format(
+              "the two struts of a limb lie apart along the axis of its drive, but here by ({:.6g}, {:.6g}, {:.6g}) m",
+              between.x(), between.y(), between.z()),
+          at(*limb.drive), "mend the origins of the joints between arm and struts");
     return out;
   }
 
@@ -125,9 +129,9 @@ class Placer {
     up_ = widest.normalized();
     for (std::size_t i = 0; i < 3; ++i)
       if (std::abs(limbs_[i].across.dot(up_)) > kParallel)
-        refuse(fmt::format(
-                   "the axes of the three {} lie in parallel planes, but this one leaves the plane of the others by {:.4g} rad",
-                   prismatic_ ? "elbows" : "drives", std::abs(std::asin(limbs_[i].across.dot(up_)))),
+        refuse(fmt::format("the axes of the three {} lie in parallel planes, but this one leaves the plane of the "
+                           "others by {:.4g} rad",
+                           prismatic_ ? "elbows" : "drives", std::abs(std::asin(limbs_[i].across.dot(up_)))),
                at(*parts_.limbs[i].drive), "mend the joint's rpy or axis");
     double down = 0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -135,7 +139,8 @@ class Placer {
         if (strut.end) down += (*strut.end - strut.elbow).dot(up_);
         if (strut.direction) down += strut.direction->dot(up_);
       }
-    if (parts_.plate_place) down += (*parts_.plate_place - (limbs_[0].elbow + limbs_[1].elbow + limbs_[2].elbow) / 3).dot(up_);
+    if (parts_.plate_place)
+      down += (*parts_.plate_place - (limbs_[0].elbow + limbs_[1].elbow + limbs_[2].elbow) / 3).dot(up_);
     if (down > 0) up_ = -up_;
   }
 
@@ -175,8 +180,8 @@ class Placer {
   /// Positive is towards the plate, as an arm's angle is.
   [[nodiscard]] double rail_sign(std::size_t i) const { return parts_.limbs[i].axis.dot(up_) > kParallel ? -1.0 : 1.0; }
 
-  /// The zero of a rail is the end of its range that is farther from the plate, if those ends are at one height for all, as rails
-  /// of a robot are; else it stays where the CAD has it.
+  /// The zero of a rail is the end of its range that is farther from the plate, if those ends are at one height for
+  /// all, as rails of a robot are; else it stays where the CAD has it.
   void align_rails() {
     zero_.assign(3, 0.0);
     if (!prismatic_) return;
@@ -282,7 +287,8 @@ class Placer {
     add_drive(drive, bar.drive->limits);
   }
 
-  /// Of a bar that the pose does not bring to the plate: on the plate's middle axis, as high above the tool's link as drawn.
+  /// Of a bar that the pose does not bring to the plate: on the plate's middle axis, as high above the tool's link as
+  /// drawn.
   Vec lower_joint_alone(const Telescope& bar) {
     double height = 0;
     const std::vector<Pose> X_R = zero_pose(tree_);
@@ -299,7 +305,8 @@ class Placer {
     DriveLimits limits;
     const bool range = cad.lower < cad.upper;  // 0 to 0 is what exporters write where nothing was given
     if (range) {
-      const auto [low, high] = std::minmax({drive.sign * cad.lower + drive.offset, drive.sign * cad.upper + drive.offset});
+      const auto [low, high] =
+          std::minmax({drive.sign * cad.lower + drive.offset, drive.sign * cad.upper + drive.offset});
       const bool finite = std::isfinite(low + high);
       limits.lower = finite ? tidy(low) : low;
       limits.upper = finite ? tidy(high) : high;
@@ -307,7 +314,8 @@ class Placer {
     if (cad.velocity > 0) limits.velocity = cad.velocity;
     if (cad.effort > 0) limits.effort = cad.effort;
     if (!range || !(cad.velocity > 0) || !(cad.effort > 0))
-      out_.notes.push_back(fmt::format("joint {}: a range, velocity or effort of 0 counts as not limited", drive.joint));
+      out_.notes.push_back(
+          fmt::format("joint {}: a range, velocity or effort of 0 counts as not limited", drive.joint));
     limits.acceleration = acceleration_of(drive.joint);
     out_.robot.limits.push_back(limits);
     out_.drives.push_back(drive);
@@ -334,13 +342,15 @@ class Placer {
       for (double& entry : g)
         if (std::abs(entry) < 1e-9) entry = 0;
       if ((down + Vec::UnitZ()).norm() > kParallel)
-        out_.notes.push_back(fmt::format("gravity along -z of {}, which is ({:.4g}, {:.4g}, {:.4g}) m/s^2 in the robot's base",
-                                         tree_.bodies[0].name, g.x(), g.y(), g.z()));
+        out_.notes.push_back(
+            fmt::format("gravity along -z of {}, which is ({:.4g}, {:.4g}, {:.4g}) m/s^2 in the robot's base",
+                        tree_.bodies[0].name, g.x(), g.y(), g.z()));
       return g;
     }
     if ((down + Vec::UnitZ()).norm() > kParallel)
       out_.notes.push_back(
-          "gravity is taken from base to plate, though z of the root link points elsewhere; if the robot hangs or leans, give "
+          "gravity is taken from base to plate, though z of the root link points elsewhere; if the robot hangs or "
+          "leans, give "
           "--gravity-direction");
     return {0, 0, -size};
   }
@@ -373,11 +383,14 @@ class Placer {
         }
       }
       robot.limbs[k].elbow = posture;
-      const double tolerance = 0.01;  // [rad], [m]: near the straight arm the pose depends on the root of the lengths' last digit
+      // [rad], [m]: near the straight arm the pose depends on the root of the lengths' last digit
+      const double tolerance = 0.01;
       if (!(best < tolerance))
-        refuse(fmt::format("the pose of the CAD does not close: limb {} would have to stand {:.4g} {} from where it is drawn",
-                           k + 1, best, prismatic_ ? "m" : "rad"),
-               at(*parts_.limbs[out_.order[k]].drive), "assemble the robot in the CAD before the export, or give --plate-frame");
+        refuse(fmt::format(
+                   "the pose of the CAD does not close: limb {} would have to stand {:.4g} {} from where it is drawn",
+                   k + 1, best, prismatic_ ? "m" : "rad"),
+               at(*parts_.limbs[out_.order[k]].drive),
+               "assemble the robot in the CAD before the export, or give --plate-frame");
     }
   }
 

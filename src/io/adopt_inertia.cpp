@@ -119,9 +119,10 @@ class Collector {
       return;
     }
     if (!is_physically_consistent<double>(p)) {
-      notes_.push_back(fmt::format(
-          "mass and inertia of {} are not those of a body (no inertia, or one that breaks the triangle rule); they are left out",
-          name));
+      notes_.push_back(
+          fmt::format("mass and inertia of {} are not those of a body (no inertia, or one that breaks the triangle "
+                      "rule); they are left out",
+                      name));
       return;
     }
     for (int k = 0; k < kInertialParameters; ++k) values_[name + "." + kInertialNames[k]] = p(k);
@@ -136,7 +137,8 @@ class Collector {
     for (const Ten& p : limbs) worst = std::max(worst, (p - mean).cwiseAbs().maxCoeff());
     put(name, mean);
     if (worst <= kSame * scale || !(mean(inertial::kM) > 0)) return;
-    notes_.push_back(fmt::format("the limbs' {} are not alike; their mean stands for all", name == "strut" ? "struts" : "arms"));
+    notes_.push_back(
+        fmt::format("the limbs' {} are not alike; their mean stands for all", name == "strut" ? "struts" : "arms"));
   }
 
   const UrdfTree& tree_;
@@ -149,7 +151,8 @@ class Collector {
 
 }  // namespace
 
-NamedValues inertial_values(const UrdfTree& tree, const Parts& parts, const Placed& placed, std::vector<std::string>& notes) {
+NamedValues inertial_values(const UrdfTree& tree, const Parts& parts, const Placed& placed,
+                            std::vector<std::string>& notes) {
   return Collector(tree, parts, placed, notes).run();
 }
 

@@ -91,8 +91,9 @@ class Finder {
       for (const std::string& name : options_.drives) {
         const auto found = std::ranges::find(candidates, name, &Joint::name);
         if (found == candidates.end())
-          refuse(fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
-                 "--drives", "name three or four of them", ExitCode::usage);
+          refuse(
+              fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
+              "--drives", "name three or four of them", ExitCode::usage);
         named.push_back(*found);
       }
       candidates = named;
@@ -124,10 +125,12 @@ class Finder {
     const std::string found = names(drives), all = names(children(base_));
     if (parts_.limbs.size() == 4)
       refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet", found),
-             at(body(base_).name), fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
-    refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}", drives.size(),
-                       drives.empty() ? "" : ": ", found),
-           at(body(base_).name), fmt::format("hang the struts on the arms, or name the drives: --drives A,B,C out of {}", all));
+             at(body(base_).name),
+             fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
+    refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}",
+                       drives.size(), drives.empty() ? "" : ": ", found),
+           at(body(base_).name),
+           fmt::format("hang the struts on the arms, or name the drives: --drives A,B,C out of {}", all));
   }
 
   // --- limbs --------------------------------------------------------------------------------------
@@ -136,7 +139,8 @@ class Finder {
     for (const Joint* j : children(drive.child)) collect_strut(*j, limb);
     if (limb.struts.empty() || limb.struts.size() > 2)
       refuse(fmt::format("an arm or carriage carries one strut or two, but this one carries {}", limb.struts.size()),
-             at(body(drive.child).name), "leave springs and covers between the struts out of the tree, or fix them to a strut");
+             at(body(drive.child).name),
+             "leave springs and covers between the struts out of the tree, or fix them to a strut");
     parts_.limbs.push_back(limb);
   }
 
@@ -166,9 +170,9 @@ class Finder {
     }
     strut.name = body(b).name;
     if (next.size() > 1)
-      refuse(
-          fmt::format("{} moving joints hang on this strut ({}), but it carries nothing but the plate", next.size(), names(next)),
-          at(strut.name), "fix what belongs to the strut to it by fixed joints");
+      refuse(fmt::format("{} moving joints hang on this strut ({}), but it carries nothing but the plate", next.size(),
+                         names(next)),
+             at(strut.name), "fix what belongs to the strut to it by fixed joints");
     if (next.size() == 1) {
       strut.end = place(*next.front());
       hung_plates_.push_back(next.front());
@@ -211,7 +215,8 @@ class Finder {
     I << p(kIxx), p(kIxy), p(kIxz), p(kIxy), p(kIyy), p(kIyz), p(kIxz), p(kIyz), p(kIzz);
     I -= p(0) * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(I);
-    // Where the tensor tells the rod's axis, it must be the line through the centre of mass: else that centre lies beside the rod.
+    // Where the tensor tells the rod's axis, it must be the line through the centre of mass: else that centre lies
+    // beside the rod.
     if (principal.eigenvalues()(0) < kSlim * principal.eigenvalues()(1)) {
       const double across = principal.eigenvectors().col(0).cross(arm.normalized()).norm();
       if (across > kAgree) return std::nullopt;
@@ -240,7 +245,8 @@ class Finder {
     const auto meet = [&](auto from, auto to, const Vec& point, const char* what) {
       for (auto j = from; j != to; ++j)
         if ((place(**j) - point).norm() > kPoint)
-          refuse(fmt::format("{}: its axes must meet, but this one lies {:.6g} beside it", what, (place(**j) - point).norm()),
+          refuse(fmt::format("{}: its axes must meet, but this one lies {:.6g} beside it", what,
+                             (place(**j) - point).norm()),
                  at(**j), "mend the joint's origin");
     };
     meet(below.begin(), slide, bar.upper_joint, "the upper universal joint");
@@ -264,8 +270,8 @@ class Finder {
 
   void find_plate() {
     if (hung_plates_.size() > 1)
-      refuse(fmt::format("the plate hangs on one strut, but joints {} hang on struts", names(hung_plates_)), tree_.where,
-             "a tree has one path to the plate; leave the other joint out");
+      refuse(fmt::format("the plate hangs on one strut, but joints {} hang on struts", names(hung_plates_)),
+             tree_.where, "a tree has one path to the plate; leave the other joint out");
     if (!hung_plates_.empty()) {
       const Joint& first = *hung_plates_.front();
       add_with_children(first.child, place(first));
@@ -282,8 +288,9 @@ class Finder {
     } else {
       std::vector<std::string> found;
       for (const int index : loose_) found.push_back(body(index).name);
-      refuse(loose_.empty() ? std::string("no strut carries a plate, and no link hangs loose that could be it")
-                            : fmt::format("no strut carries a plate, and several links hang loose: {}", fmt::join(found, ", ")),
+      refuse(loose_.empty()
+                 ? std::string("no strut carries a plate, and no link hangs loose that could be it")
+                 : fmt::format("no strut carries a plate, and several links hang loose: {}", fmt::join(found, ", ")),
              tree_.where, "name a link of the plate: --plate LINK", ExitCode::usage);
     }
     parts_.notes.push_back(fmt::format("plate: {}, which no strut carries", parts_.plate_links.front()));
@@ -293,7 +300,8 @@ class Finder {
   void plate_by_name() {
     const auto found = tree_.links.find(options_.plate);
     if (found == tree_.links.end())
-      refuse(fmt::format("there is no link '{}'", options_.plate), "--plate", "name a link of the file", ExitCode::usage);
+      refuse(fmt::format("there is no link '{}'", options_.plate), "--plate", "name a link of the file",
+             ExitCode::usage);
     std::set<std::string> taken = {options_.plate};
     for (bool more = true; more;) {
       more = false;
@@ -318,7 +326,8 @@ class Finder {
 std::vector<Pose> zero_pose(const UrdfTree& tree) {
   std::vector<Pose> X_R(tree.bodies.size(), Pose::Identity());
   // A body stands behind its parent in the list.
-  for (const Joint& j : tree.joints) X_R[static_cast<std::size_t>(j.child)] = X_R[static_cast<std::size_t>(j.parent)] * j.X_PJ;
+  for (const Joint& j : tree.joints)
+    X_R[static_cast<std::size_t>(j.child)] = X_R[static_cast<std::size_t>(j.parent)] * j.X_PJ;
   return X_R;
 }
 

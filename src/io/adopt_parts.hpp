@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The parts of a Delta in the tree of a CAD program, found by structure. All points are in the root link's frame, in the pose in
-/// which all joints are zero.
+/// The parts of a Delta in the tree of a CAD program, found by structure. All points are in the root link's frame, in
+/// the pose in which all joints are zero.
 
 #include <optional>
 #include <string>
@@ -21,7 +21,9 @@ using robot_file::UrdfTree;
 using Vec = Eigen::Vector3d;
 
 constexpr double kPoint =
-    5e-4;  // [m] joints nearer than this are one ball or universal joint; CAD files have 4 to 6 digits, parts hang ten joints deep
+    // [m] joints nearer than this are one ball or universal joint; CAD files have 4 to 6 digits, parts hang ten joints
+    // deep
+    5e-4;
 
 struct Strut {
   std::string name;         ///< link

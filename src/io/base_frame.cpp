@@ -17,7 +17,8 @@ bool turns_the_telescope(const Joint& drive, std::size_t drives) {
   return drives > 1 && !drive.prismatic && std::abs(drive.axis.z()) > 0.5;
 }
 
-/// True if every limb's frame is turned about z of `X_RW` only, and the telescope's not at all: the rules of a base frame.
+/// True if every limb's frame is turned about z of `X_RW` only, and the telescope's not at all: the rules of a base
+/// frame.
 bool is_base_frame(const Pose& X_RW, const std::vector<const Joint*>& drives) {
   return std::ranges::all_of(drives, [&](const Joint* drive) {
     const Eigen::Matrix3d R = X_RW.linear().transpose() * drive->X_PJ.linear();

@@ -7,7 +7,8 @@
 #include "deltadyn/trajectory/task_columns.hpp"
 
 namespace deltadyn {
-void write_coefficients(const std::string& path, const std::vector<FourierSeries>& segments, const RobotDescription& robot) {
+void write_coefficients(const std::string& path, const std::vector<FourierSeries>& segments,
+                        const RobotDescription& robot) {
   std::string text = "segment,harmonic,frequency_hz";
   for (const TaskColumns& column : task_columns(robot))
     text += fmt::format(",{0}_sin{1},{0}_cos{1}", column.name, column.rotation ? "_rad" : "_m");

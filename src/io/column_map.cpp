@@ -20,9 +20,20 @@ namespace deltadyn {
 namespace {
 
 constexpr std::array kTimeKeys = {"source", "unit", "rate_hz", "tick_s"};
-constexpr std::array kChannelKeys = {
-    "drive",           "quantity",        "source",      "unit", "scale",  "offset", "sign", "gear_ratio", "torque_constant_Nm_A",
-    "rated_torque_Nm", "counts_per_turn", "lead_m_turn", "wrap", "delay_s"};
+constexpr std::array kChannelKeys = {"drive",
+                                     "quantity",
+                                     "source",
+                                     "unit",
+                                     "scale",
+                                     "offset",
+                                     "sign",
+                                     "gear_ratio",
+                                     "torque_constant_Nm_A",
+                                     "rated_torque_Nm",
+                                     "counts_per_turn",
+                                     "lead_m_turn",
+                                     "wrap",
+                                     "delay_s"};
 constexpr std::array kTopKeys = {"time", "channel", "topic"};
 
 /// Constants that must be positive.
@@ -83,7 +94,8 @@ class MapReader {
 
   const toml::table& table_of(const toml::node& node, const char* name) const {
     const toml::table* table = node.as_table();
-    if (table == nullptr) fail(node, fmt::format("{} is no table", name), fmt::format("write [{}] and its keys below it", name));
+    if (table == nullptr)
+      fail(node, fmt::format("{} is no table", name), fmt::format("write [{}] and its keys below it", name));
     return *table;
   }
 
@@ -113,7 +125,8 @@ class MapReader {
     const toml::node* node = table.get(key);
     if (node == nullptr) return std::nullopt;
     const double value = number(*node, key);
-    if (value <= 0) fail(*node, fmt::format("{} = {} is not positive", key, value), "a direction is turned by sign = -1");
+    if (value <= 0)
+      fail(*node, fmt::format("{} = {} is not positive", key, value), "a direction is turned by sign = -1");
     return value;
   }
 
@@ -186,9 +199,11 @@ class MapReader {
     if (const auto* node = table.get("delay_s")) channel.delay_s = number(*node, "delay_s");
     if (const auto* node = table.get("sign")) {
       channel.sign = number(*node, "sign");
-      if (std::abs(channel.sign) != 1.0) fail(*node, "sign is neither 1 nor -1", "factors are given by scale or gear_ratio");
+      if (std::abs(channel.sign) != 1.0)
+        fail(*node, "sign is neither 1 nor -1", "factors are given by scale or gear_ratio");
     }
-    if (channel.scale == 0) fail(*table.get("scale"), "scale = 0 leaves nothing of the channel", "give the factor to the unit");
+    if (channel.scale == 0)
+      fail(*table.get("scale"), "scale = 0 leaves nothing of the channel", "give the factor to the unit");
     for (const auto& [key, constant] : kConstants) channel.*constant = positive(table, key);
   }
 
@@ -212,9 +227,10 @@ std::string quoted(const std::string& text) {
 /// Turns, of which there are 2 pi rad, into metres where a spindle or belt makes them so.
 double metres_per_rad(const ChannelMap& channel, const std::string& where) {
   if (!channel.lead) {
-    throw Error(
-        fmt::format("the unit {} is of a motor that turns, but drive {} of the robot slides", channel.unit, channel.drive), where,
-        "give its travel per turn: delta-log import --lead-m-turn, or lead_m_turn in a column map (--map)");
+    throw Error(fmt::format("the unit {} is of a motor that turns, but drive {} of the robot slides", channel.unit,
+                            channel.drive),
+                where,
+                "give its travel per turn: delta-log import --lead-m-turn, or lead_m_turn in a column map (--map)");
   }
   return *channel.lead / (2.0 * std::numbers::pi);
 }
@@ -232,14 +248,15 @@ double torque_factor(const ChannelMap& channel, const LogUnit& unit, bool turns,
     case Dimension::moment: return unit.factor * gear * through_spindle();
     case Dimension::force:
       if (turns) {
-        throw Error(fmt::format("the unit {} is a force, but drive {} of the robot turns", channel.unit, channel.drive), where,
-                    "give the robot file that fits the recording, or correct the unit");
+        throw Error(fmt::format("the unit {} is a force, but drive {} of the robot turns", channel.unit, channel.drive),
+                    where, "give the robot file that fits the recording, or correct the unit");
       }
       return unit.factor * gear;
     case Dimension::current:
       if (!channel.torque_constant) {
         refuse_constant(fmt::format("the current [{}] needs a torque constant to become a torque", channel.unit),
-                        "--torque-constant N m per A (as the current is given, peak or rms)", "torque_constant_Nm_A", where);
+                        "--torque-constant N m per A (as the current is given, peak or rms)", "torque_constant_Nm_A",
+                        where);
       }
       return unit.factor * *channel.torque_constant * gear * at_motor;
     case Dimension::share_of_rated:
@@ -273,8 +290,8 @@ void MapDefaults::validate(int drives) const {
     }
     for (const double value : values) {
       if (!(value > 0) || !std::isfinite(value)) {
-        throw Error(fmt::format("{} {} is not positive", flag, value), "", "a direction is turned by sign = -1 in the column map",
-                    ExitCode::usage);
+        throw Error(fmt::format("{} {} is not positive", flag, value), "",
+                    "a direction is turned by sign = -1 in the column map", ExitCode::usage);
       }
     }
   };
@@ -339,12 +356,15 @@ std::string to_toml(const ChannelMap& channel) {
 std::string to_toml(const ColumnMap& map, const std::vector<std::string>& remarks) {
   std::string text =
       "# Column map of delta-log import (--map of it and of all tools that read logs).\n"
-      "# A channel at the drive in SI units is sign * (scale * recorded + offset) [unit], through its constants and its gear.\n"
-      "# Further keys of a channel: scale, offset, sign (1 or -1), gear_ratio (motor turns per drive turn, where the recording "
+      "# A channel at the drive in SI units is sign * (scale * recorded + offset) [unit], through its constants and "
+      "its gear.\n"
+      "# Further keys of a channel: scale, offset, sign (1 or -1), gear_ratio (motor turns per drive turn, where the "
+      "recording "
       "is of\n"
       "# the motor), torque_constant_Nm_A (unit A), rated_torque_Nm (unit % or permille), counts_per_turn (unit cnt), "
       "lead_m_turn\n"
-      "# (motors of sliding drives), wrap (the number begins again after this much), delay_s (the value is older than its "
+      "# (motors of sliding drives), wrap (the number begins again after this much), delay_s (the value is older than "
+      "its "
       "stamp).\n";
   for (const std::string& remark : remarks) text += "# " + remark + "\n";
   if (!map.topic.empty()) text += fmt::format("\ntopic = {}\n", quoted(map.topic));
@@ -371,14 +391,15 @@ double si_factor(const ChannelMap& channel, DriveKind kind, const std::string& w
   switch (unit->dimension) {
     case Dimension::length:
       if (turns) {
-        throw Error(fmt::format("the unit {} is for a prismatic drive, but drive {} of the robot is revolute", channel.unit,
-                                channel.drive),
+        throw Error(fmt::format("the unit {} is for a prismatic drive, but drive {} of the robot is revolute",
+                                channel.unit, channel.drive),
                     where, "give the robot file that fits the recording, or correct the unit");
       }
       return factor;
     case Dimension::counts:
       if (!channel.counts_per_turn) {
-        refuse_constant("encoder counts need the number of counts in a turn", "--counts-per-turn N", "counts_per_turn", where);
+        refuse_constant("encoder counts need the number of counts in a turn", "--counts-per-turn N", "counts_per_turn",
+                        where);
       }
       factor *= 2.0 * std::numbers::pi / *channel.counts_per_turn;
       break;

@@ -18,8 +18,8 @@ using Eigen::Index;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Below this share of the grid's step a channel is faster, and must not fold.
 constexpr double kFaster = 0.75;
-/// The grid holds frequencies up to half its rate; the filter is 3 dB down here and 30 dB at the first that folds back into the
-/// lower fifth of the rate, where motions live.
+/// The grid holds frequencies up to half its rate; the filter is 3 dB down here and 30 dB at the first that folds back
+/// into the lower fifth of the rate, where motions live.
 constexpr double kLowPassShare = 0.4;
 constexpr double kLongestGap = 2.5;
 
@@ -28,7 +28,8 @@ SampledChannel low_passed(const SampledChannel& series, double step_s, double cu
   const double span = series.t_s(series.t_s.size() - 1) - series.t_s(0);
   const auto samples = static_cast<Index>(std::floor(span / step_s + 0.5)) + 1;
   SampledChannel even;
-  even.t_s = Eigen::VectorXd::LinSpaced(samples, series.t_s(0), series.t_s(0) + static_cast<double>(samples - 1) * step_s);
+  even.t_s =
+      Eigen::VectorXd::LinSpaced(samples, series.t_s(0), series.t_s(0) + static_cast<double>(samples - 1) * step_s);
   even.values = zero_phase_filter(resample(series.t_s, series.values, even.t_s), 1.0 / step_s, cutoff_hz);
   return even;
 }
@@ -54,7 +55,8 @@ double mean_rate_hz(const Eigen::Ref<const Eigen::VectorXd>& t_s) {
   return span > 0 ? static_cast<double>(n - 1) / span : 0.0;
 }
 
-Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s, double& low_pass_hz) {
+Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s,
+                          double& low_pass_hz) {
   const double step_s = usual_step_s(series.t_s), grid_step = usual_step_s(grid_s);
   const Index n = series.t_s.size();
   Eigen::VectorXd result = Eigen::VectorXd::Constant(grid_s.size(), kNan);
@@ -72,7 +74,8 @@ Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const E
     if (t < first - slack || t > last + slack) continue;
     while (interval > 0 && series.t_s(interval) > t) --interval;
     while (interval + 2 < n && series.t_s(interval + 1) <= t) ++interval;
-    const bool on_sample = std::abs(t - series.t_s(interval)) <= slack || std::abs(t - series.t_s(interval + 1)) <= slack;
+    const bool on_sample =
+        std::abs(t - series.t_s(interval)) <= slack || std::abs(t - series.t_s(interval + 1)) <= slack;
     if (on_sample || series.t_s(interval + 1) - series.t_s(interval) <= kLongestGap * step_s) rows.push_back(k);
   }
   result(rows) = resample(source.t_s, source.values, grid_s(rows));
@@ -122,8 +125,8 @@ double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts)
   const double range = range_of(values).width();
   for (const double period : periods) {
     if (range > period * (1.0 + 1e-9) || range < 0.9 * period) continue;
-    const bool all =
-        std::ranges::all_of(steps, [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
+    const bool all = std::ranges::all_of(
+        steps, [&](double step) { return step <= 5.0 * usual || std::abs(step - period) <= 5.0 * usual; });
     if (all) return period;
   }
   return 0.0;

@@ -14,8 +14,8 @@ using Eigen::Index;
 /// A machine may overshoot its limits, and a robot file round them, by this share of the range.
 constexpr double kOvershoot = 0.02;
 
-/// The range of numbers that a counter without a jump may have: a turn of its angle, or of counts the encoder's turn or a usual
-/// number of bits. 0: none.
+/// The range of numbers that a counter without a jump may have: a turn of its angle, or of counts the encoder's turn or
+/// a usual number of bits. 0: none.
 double likely_wrap(const Range& recorded, const ChannelMap& map) {
   const auto unit = log_unit(map.unit);
   if (!unit) return 0.0;
@@ -58,7 +58,8 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
   const Index jumps = seen ? unwrap(values, wrap) : 0;
   std::string done;
   if (jumps > 0)
-    done = fmt::format("the number begins again after {:.10g}; {} jump{} taken out", wrap, jumps, jumps == 1 ? " was" : "s were");
+    done = fmt::format("the number begins again after {:.10g}; {} jump{} taken out", wrap, jumps,
+                       jumps == 1 ? " was" : "s were");
   const std::string as_it_is =
       done.empty() || map.offset != 0
           ? done
@@ -72,7 +73,8 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
   if (!(turn > 0) || !std::isfinite(travel.width())) return as_it_is;
   const Fitting fitting = fitting_turns(travel, turn, limits);
   const char* unit = kind == DriveKind::revolute ? "rad" : "m";
-  const std::string inside = fmt::format("the limits of the robot file, {:.4g} to {:.4g} {}", limits.lower, limits.upper, unit);
+  const std::string inside =
+      fmt::format("the limits of the robot file, {:.4g} to {:.4g} {}", limits.lower, limits.upper, unit);
   if (fitting.count == 1) {
     const double turns = factor > 0 ? fitting.first : -fitting.first;
     if (turns == 0) return done;

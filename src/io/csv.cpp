@@ -87,7 +87,8 @@ Parsed parse(std::string_view text, double& value) {
 
 [[noreturn]] void refuse_number(Parsed parsed, std::string_view text, const std::string& where) {
   switch (parsed) {
-    case Parsed::empty: throw Error("the field is empty, a number is needed", where, "fill in the number or remove the row");
+    case Parsed::empty:
+      throw Error("the field is empty, a number is needed", where, "fill in the number or remove the row");
     case Parsed::not_finite:
       throw Error(fmt::format("'{}' is not a finite number", text), where, "remove the row or correct the value");
     default:
@@ -111,7 +112,8 @@ std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std
 
 std::optional<std::string> comment_of(const std::vector<std::string>& comments, std::string_view key) {
   for (const std::string& comment : comments) {
-    if (comment.compare(0, key.size(), key) == 0) return std::string(trimmed(std::string_view(comment).substr(key.size())));
+    if (comment.compare(0, key.size(), key) == 0)
+      return std::string(trimmed(std::string_view(comment).substr(key.size())));
   }
   return std::nullopt;
 }
@@ -166,17 +168,20 @@ struct CsvReader::Impl {
 CsvReader::CsvReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Error("this is a folder, not a file", path, "give the CSV file");
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error("this is a folder, not a file", path, "give the CSV file");
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
-    throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path, "check the path and the permissions");
+    throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path,
+                "check the path and the permissions");
   }
   impl_->lines = std::make_unique<io::LineReader>(path, std::make_unique<detail::CheckedSource>(file, impl_->findings));
   std::string_view header;
   if (!impl_->next(header)) throw Error("the file is empty", path, "the first line must hold the column names");
   split(header, impl_->fields);
   double ignored_value = 0;
-  if (std::ranges::all_of(impl_->fields, [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
+  if (std::ranges::all_of(impl_->fields,
+                          [&](std::string_view field) { return parse(field, ignored_value) == Parsed::number; })) {
     throw Error("the header line is missing: the first line holds numbers only", place(path, impl_->line()),
                 "add a first line with the column names, separated by commas");
   }
@@ -283,7 +288,8 @@ CsvTable read_csv(const std::string& path) {
       table.ends_.push_back(table.text_.size());
     }
   }
-  if (table.lines_.empty()) throw Error("the file holds a header but no data rows", path, "check that the export is complete");
+  if (table.lines_.empty())
+    throw Error("the file holds a header but no data rows", path, "check that the export is complete");
   return table;
 }
 

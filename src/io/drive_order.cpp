@@ -76,7 +76,8 @@ std::vector<long> running_places(const std::vector<std::string>& names) {
   const std::vector<Words> words = told_apart(names);
   const std::vector<long> numbers = keys_of(words, is_number);
   if (!numbers.empty()) return run_from(numbers, {0, 1}) ? ranks(numbers) : std::vector<long>{};
-  const bool any_number = std::ranges::any_of(words, [](const Words& one) { return std::ranges::any_of(one, is_number); });
+  const bool any_number =
+      std::ranges::any_of(words, [](const Words& one) { return std::ranges::any_of(one, is_number); });
   const std::vector<long> letters = any_number ? std::vector<long>{} : keys_of(words, is_letter);
   return !letters.empty() && run_from(letters, {'a', 'u', 'x'}) ? ranks(letters) : std::vector<long>{};
 }
@@ -94,7 +95,8 @@ std::vector<std::size_t> yaw_names(const std::vector<std::string>& names, bool l
   const std::vector<Words> words = told_apart(names);
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (std::ranges::any_of(words[k], [&](const std::string& word) { return is_yaw_word(word, letters); })) found.push_back(k);
+    if (std::ranges::any_of(words[k], [&](const std::string& word) { return is_yaw_word(word, letters); }))
+      found.push_back(k);
   }
   return found;
 }

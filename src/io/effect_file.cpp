@@ -26,8 +26,9 @@ constexpr const char* kVersion = "deltadyn effects";  // begins the comment on t
 void check_version(const CsvReader& table) {
   const auto version = table.comment(kVersion);
   if (!version || *version == std::to_string(kEffectFileVersion)) return;
-  throw Error(fmt::format("the effect file is of version {}, this program reads version {}", *version, kEffectFileVersion),
-              place(table.path(), 1), "run delta-diagnose again with --effects-out to write it anew");
+  throw Error(
+      fmt::format("the effect file is of version {}, this program reads version {}", *version, kEffectFileVersion),
+      place(table.path(), 1), "run delta-diagnose again with --effects-out to write it anew");
 }
 
 /// Place of a parameter among shapes and amplitudes.
@@ -52,7 +53,8 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
                        Slot{true, static_cast<Index>(k), effect_unit(kind.amplitudes[k].unit, joint, robot)});
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
-    slots.emplace_back(kind.shapes[k].name, Slot{false, static_cast<Index>(k), effect_unit(kind.shapes[k].unit, joint, robot)});
+    slots.emplace_back(kind.shapes[k].name,
+                       Slot{false, static_cast<Index>(k), effect_unit(kind.shapes[k].unit, joint, robot)});
   }
   return slots;
 }
@@ -62,14 +64,17 @@ struct ReadEffect {
   Effect effect;
   std::map<std::string, long, std::less<>> lines;
 
-  [[nodiscard]] double& value(const Slot& slot) { return (slot.amplitude ? effect.amplitude : effect.shape)(slot.index); }
+  [[nodiscard]] double& value(const Slot& slot) {
+    return (slot.amplitude ? effect.amplitude : effect.shape)(slot.index);
+  }
 };
 
 ReadEffect nothing_of(const EffectKind& kind, int joint) {
   ReadEffect out;
   out.effect.id = kind.id;
   out.effect.joint = joint;
-  out.effect.amplitude = out.effect.amplitude_std = Eigen::VectorXd::Constant(static_cast<Index>(kind.amplitudes.size()), kNone);
+  out.effect.amplitude = out.effect.amplitude_std =
+      Eigen::VectorXd::Constant(static_cast<Index>(kind.amplitudes.size()), kNone);
   out.effect.shape = out.effect.shape_std = Eigen::VectorXd::Constant(static_cast<Index>(kind.shapes.size()), kNone);
   return out;
 }
@@ -82,8 +87,8 @@ class EffectTable {
   [[nodiscard]] std::string here(const char* column) const { return place(rows.path(), rows.line(), column); }
 
   CsvReader rows;
-  std::size_t effect = require("effect"), joint = require("joint"), parameter = require("parameter"), value = require("value"),
-              unit = require("unit");
+  std::size_t effect = require("effect"), joint = require("joint"), parameter = require("parameter"),
+              value = require("value"), unit = require("unit");
   std::optional<std::size_t> deviation = rows.find("std");
 
  private:
@@ -123,7 +128,8 @@ void read_parameter(const EffectTable& table, const EffectKind& kind, const Robo
   }
   into.value(*slot) = table.rows.number(table.value);
   if (table.deviation && !table.text(*table.deviation).empty())
-    (slot->amplitude ? into.effect.amplitude_std : into.effect.shape_std)(slot->index) = table.rows.number(*table.deviation);
+    (slot->amplitude ? into.effect.amplitude_std : into.effect.shape_std)(slot->index) =
+        table.rows.number(*table.deviation);
 }
 
 /// Fills in what may be left out, and refuses what may not, and sizes that cannot be.
@@ -137,7 +143,8 @@ void complete(const std::string& path, const RobotDescription& robot, ReadEffect
   for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
     if (!std::isnan(read.value(slot))) continue;
     const std::string joint = effect_joint_name(effect.id, effect.joint);
-    throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, joint), place(path, read.lines.begin()->second),
+    throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, joint),
+                place(path, read.lines.begin()->second),
                 fmt::format("add a row {},{},{},VALUE,{},", kind.name, joint, name, slot.unit));
   }
   const auto where = [&](std::string_view name) {
@@ -155,8 +162,9 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
   while (table.rows.next_row()) {
     const EffectKind& kind = kind_in(table);
     const int joint = effect_joint(kind.id, table.text(table.joint), robot, table.here("joint"));
-    auto one = std::find_if(found.begin(), found.end(),
-                            [&](const ReadEffect& read) { return read.effect.id == kind.id && read.effect.joint == joint; });
+    auto one = std::find_if(found.begin(), found.end(), [&](const ReadEffect& read) {
+      return read.effect.id == kind.id && read.effect.joint == joint;
+    });
     if (one == found.end()) one = found.insert(found.end(), nothing_of(kind, joint));
     read_parameter(table, kind, robot, *one);
   }

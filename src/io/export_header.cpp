@@ -40,7 +40,8 @@ std::string identifier(const std::string& words) {
 
 constexpr int kMostEffects = 64;  // in one header; each costs time in every tick
 
-/// Moves those that a controller cannot feed forward to what is left out, with the reason that the controller itself gives.
+/// Moves those that a controller cannot feed forward to what is left out, with the reason that the controller itself
+/// gives.
 template <class R>
 void refuse_effects(const RobotDescription& robot, model_export::Parts& parts) {
   ChangedGeometry<float, R> machine(geometry_of<float, R>(robot));
@@ -73,9 +74,10 @@ struct Check {
   Eigen::VectorXd q, qd, qdd, tau;
 };
 
-/// The machine is changed where effects change it; all other effects are what the columns of the fit say, here of a robot that stays
-/// at one state.
-Eigen::VectorXd check_torque(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects, const Check& at) {
+/// The machine is changed where effects change it; all other effects are what the columns of the fit say, here of a
+/// robot that stays at one state.
+Eigen::VectorXd check_torque(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects,
+                             const Check& at) {
   ChangedMachine machine(robot.description());
   std::vector<Effect> laws;
   for (const Effect& effect : effects) {
@@ -227,16 +229,19 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
   for (int drive = 1; drive <= description.drives(); ++drive) options.rotor_inertia.push_back(drive);
   const auto full = make_robot(description, options);
   Eigen::VectorXd values(full->parameters());
-  for (int k = 0; k < full->parameters(); ++k) values(k) = parts.value(full->parameter_names()[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < full->parameters(); ++k)
+    values(k) = parts.value(full->parameter_names()[static_cast<std::size_t>(k)]);
   const Check check = check_of(*full, values, parts.effects);
   const std::string space = identifier(description.name.empty() ? description.type : description.name);
 
   std::string text = fmt::format(
-      "#pragma once\n\n// {} \"{}\", written by deltadyn: identified model for feed-forward control. SI units, angles in rad.\n",
+      "#pragma once\n\n// {} \"{}\", written by deltadyn: identified model for feed-forward control. SI units, angles "
+      "in rad.\n",
       description.type, description.name);
   text += model_export::left_out_comment(parts.left_out, "// ");
   text += fmt::format(
-      "//\n//   auto model = {0}::feed_forward<float>();\n//   if (model.from_drives(q, qd, qdd, tau) == deltadyn::Status::ok) "
+      "//\n//   auto model = {0}::feed_forward<float>();\n//   if (model.from_drives(q, qd, qdd, tau) == "
+      "deltadyn::Status::ok) "
       "...\n\n"
       "#include <deltadyn/firmware/{3}feed_forward.hpp>\n\nnamespace {0} {{\n\nusing Robot = deltadyn::{1};\n"
       "inline constexpr deltadyn::Limbs kSharing = deltadyn::Limbs::{2};\n"
@@ -256,9 +261,9 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       list(bar.p_WU), list(bar.p_BV), list(description.gravity));
   text += "inline constexpr double kParameters[] = {\n";
   for (int k = 0; k < full->parameters(); ++k) {
-    text +=
-        fmt::format("    {},  // {} [{}]\n", model_export::text(values(k)), full->parameter_names()[static_cast<std::size_t>(k)],
-                    full->parameter_units()[static_cast<std::size_t>(k)]);
+    text += fmt::format("    {},  // {} [{}]\n", model_export::text(values(k)),
+                        full->parameter_names()[static_cast<std::size_t>(k)],
+                        full->parameter_units()[static_cast<std::size_t>(k)]);
   }
   text += "};\n\n// One motion and its torque, for self_check().\n";
   const auto check_line = [&text](const char* name, const Eigen::VectorXd& v) {
@@ -272,8 +277,8 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       "\nstatic_assert(sizeof(kLimbs) / sizeof(kLimbs[0]) == Robot::kLimbs, \"one entry a limb\");\n"
       "static_assert(sizeof(kParameters) / sizeof(kParameters[0]) == Layout::kColumns,\n"
       "              \"this header was written for another version of deltadyn: convert again\");\n";
-  for (int body = 0; body < (full->parameters() - 2 * full->friction_joints() - 2 * full->drives()) / kInertialParameters;
-       ++body) {
+  for (int body = 0;
+       body < (full->parameters() - 2 * full->friction_joints() - 2 * full->drives()) / kInertialParameters; ++body) {
     const int column = kInertialParameters * body;
     if (values(column) > 0)
       text += fmt::format("static_assert(kParameters[{}] > 0, \"{} must have mass\");\n", column,

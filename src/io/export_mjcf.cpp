@@ -25,10 +25,12 @@ using Rotation = Eigen::Matrix3d;
 // The stiffest that MuJoCo takes: impedance at its upper bound, time constant two steps.
 constexpr const char* kTimestep = "0.0005";
 constexpr const char* kStiff = "0.001 1";
-// Dry friction sticks below |acceleration| / 4000 per s; twice the rate times the time step is where Runge and Kutta turn unstable.
+// Dry friction sticks below |acceleration| / 4000 per s; twice the rate times the time step is where Runge and Kutta
+// turn unstable.
 constexpr const char* kStickingRate = "-1 -4000";
 constexpr const char* kImpedance = "0.9999 0.9999 0.001 0.5 2";
-// A body that turns about an axis needs some inertia about it; this radius of gyration is far below what torque could show.
+// A body that turns about an axis needs some inertia about it; this radius of gyration is far below what torque could
+// show.
 constexpr double kSmallestGyration = 1e-5;  // [m]
 
 /// Joint angles of the home pose, from the library's own kinematics.
@@ -80,14 +82,16 @@ Rotation about(const Vec& axis, double angle) {
 
 class Mjcf {
  public:
-  Mjcf(const Robot& robot, Parts parts) : robot_(robot.description()), parts_(std::move(parts)), home_(find_home(robot)) {}
+  Mjcf(const Robot& robot, Parts parts)
+      : robot_(robot.description()), parts_(std::move(parts)), home_(find_home(robot)) {}
 
   ExportedModel run() {
     root_ = document_.NewElement("mujoco");
     document_.InsertEndChild(root_);
     root_->SetAttribute("model", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
     const std::string words = fmt::format(
-        "\n  {} written by deltadyn: identified parameters, loops closed by equality constraints.\n  SI units, angles in rad. "
+        "\n  {} written by deltadyn: identified parameters, loops closed by equality constraints.\n  SI units, angles "
+        "in rad. "
         "Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
         robot_.type, model_export::left_out_comment(parts_.left_out, "  "));
     root_->InsertNewComment(words.c_str());
@@ -113,7 +117,9 @@ class Mjcf {
 
  private:
   static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
-  static void set(XMLElement* element, const char* name, const std::string& value) { element->SetAttribute(name, value.c_str()); }
+  static void set(XMLElement* element, const char* name, const std::string& value) {
+    element->SetAttribute(name, value.c_str());
+  }
 
   void settings() {
     XMLElement* compiler = child(root_, "compiler");
@@ -163,8 +169,8 @@ class Mjcf {
     return element;
   }
 
-  static XMLElement* joint(XMLElement* parent, const std::string& name, const char* type, const Vec& axis, double reference,
-                           const Vec& place = Vec::Zero()) {
+  static XMLElement* joint(XMLElement* parent, const std::string& name, const char* type, const Vec& axis,
+                           double reference, const Vec& place = Vec::Zero()) {
     XMLElement* element = child(parent, "joint");
     set(element, "name", name);
     set(element, "type", type);
@@ -176,7 +182,8 @@ class Mjcf {
 
   void friction(XMLElement* element, const std::string& name) const {
     if (const double viscous = parts_.value(name + ".viscous"); viscous != 0) set(element, "damping", text(viscous));
-    if (const double coulomb = parts_.value(name + ".coulomb"); coulomb != 0) set(element, "frictionloss", text(coulomb));
+    if (const double coulomb = parts_.value(name + ".coulomb"); coulomb != 0)
+      set(element, "frictionloss", text(coulomb));
   }
 
   void drive(XMLElement* element, std::size_t index) {
@@ -198,8 +205,10 @@ class Mjcf {
   }
 
   /// \param gyration  radius of gyration for a body whose parameters say nothing of its inertia [m]
-  void inertial(XMLElement* element, InertialVector<double> p, const std::string& name, double gyration = kSmallestGyration) {
-    if (!(p(0) > 0)) throw Error(fmt::format("body {} has no mass", name), "", "MuJoCo needs one for every body that moves");
+  void inertial(XMLElement* element, InertialVector<double> p, const std::string& name,
+                double gyration = kSmallestGyration) {
+    if (!(p(0) > 0))
+      throw Error(fmt::format("body {} has no mass", name), "", "MuJoCo needs one for every body that moves");
     const bool point = p.tail<6>().cwiseAbs().maxCoeff() <= 0;
     const Vec c = p.segment<3>(1) / p(0);
     const auto about_origin = to_pseudo_inertia(p);
@@ -210,7 +219,8 @@ class Mjcf {
     if (solver.eigenvalues()(0) < -1e-6 * (second.trace() + p(0) * c.squaredNorm()))
       throw Error(fmt::format("the parameters of body {} are not physically consistent", name), "",
                   "take those of delta-identify; no simulator can run others");
-    second = solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() * solver.eigenvectors().transpose();
+    second =
+        solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() * solver.eigenvectors().transpose();
     const Eigen::Matrix3d I = second.trace() * Eigen::Matrix3d::Identity() - second;
     XMLElement* inertia = child(element, "inertial");
     set(inertia, "pos", text(c));
@@ -277,13 +287,15 @@ class Mjcf {
     for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
       const LimbGeometry<double>& limb = robot_.limbs[i];
       for (const bool first : {true, false}) {
-        const Vec across = (first ? 0.5 : -0.5) * limb.strut_spacing * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
+        const Vec across =
+            (first ? 0.5 : -0.5) * limb.strut_spacing * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
         site(plate, "platform_" + robot_file::strut_name(i, first), limb.p_BA + across);
       }
     }
   }
 
-  /// A robot without a tool still has a body that turns at the bar's end: a tenth of the plate's mass, which moves alike.
+  /// A robot without a tool still has a body that turns at the bar's end: a tenth of the plate's mass, which moves
+  /// alike.
   [[nodiscard]] bool tool_is_borrowed() const { return robot_.telescope && !(parts_.value("tool.m") > 0); }
   [[nodiscard]] InertialVector<double> platform_parameters() const {
     return (tool_is_borrowed() ? 0.9 : 1.0) * parts_.body("platform");
@@ -310,7 +322,8 @@ class Mjcf {
     friction(joint(lower, "telescope", "slide", -Vec::UnitZ(), home_.bar_length), "telescope");
     inertial(lower, parts_.body("telescope_lower"), "telescope_lower");
     capsule(lower, Vec::Zero(), Vec(0, 0, 0.6 * home_.bar_length), 0.012);
-    // The lower joint undoes the upper one's angles, so that the tool stands upright; the plate hangs on the tool's bearing.
+    // The lower joint undoes the upper one's angles, so that the tool stands upright; the plate hangs on the tool's
+    // bearing.
     const Vec joint_place(0, 0, bar.p_BV.z());
     XMLElement* tool = body(lower, "tool", -(R.transpose() * joint_place), R.transpose());
     joint(tool, "tool_y", "hinge", R * Vec::UnitY(), -home_.bar_b, joint_place);

@@ -43,7 +43,8 @@ Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Ef
   Parts parts;
   for (Eigen::Index k = 0; k < p.size(); ++k) {
     const std::string& name = names[static_cast<std::size_t>(k)];
-    if (!std::isfinite(p(k))) throw Error(fmt::format("parameter {} is not finite", name), "", "mend the parameter file");
+    if (!std::isfinite(p(k)))
+      throw Error(fmt::format("parameter {} is not finite", name), "", "mend the parameter file");
     parts.values[name] = p(k);
   }
   for (const Effect& effect : effects) {

@@ -19,7 +19,8 @@ struct Parts {
   std::vector<std::string> left_out;  ///< what the format does not hold, one line each
 
   [[nodiscard]] double value(const std::string& name) const;
-  /// The ten parameters of a body: of its own name ("strut2") if the set has individual limbs, else of the shared one ("strut").
+  /// The ten parameters of a body: of its own name ("strut2") if the set has individual limbs, else of the shared one
+  /// ("strut").
   [[nodiscard]] InertialVector<double> body(const std::string& shared, const std::string& own = {}) const;
 };
 

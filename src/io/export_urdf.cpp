@@ -64,7 +64,8 @@ ExportedModel export_urdf(const Robot& robot, const Eigen::VectorXd& p, const st
       parts.left_out.push_back(fmt::format("{} = {}: URDF has no constant torque", name, offset));
   }
   if (!description.parts.empty())
-    parts.left_out.emplace_back("the loops, for plain URDF readers: they are <loop> elements (URDF+), which those skip");
+    parts.left_out.emplace_back(
+        "the loops, for plain URDF readers: they are <loop> elements (URDF+), which those skip");
   std::string text = robot_to_urdf(description, parts.values);
   if (!parts.left_out.empty()) {
     const auto place = text.find("<robot");

@@ -32,7 +32,8 @@ std::optional<std::array<int, 2>> ripple_of_waves(const std::string& name) {
   return out;
 }
 
-/// 2 pi where the waves of a file are counted a metre, as the law counts them in rad; files of before count rad, too (1/rad, 1/m).
+/// 2 pi where the waves of a file are counted a metre, as the law counts them in rad; files of before count rad, too
+/// (1/rad, 1/m).
 double rad_of_waves(const std::string& unit) {
   return unit == "waves/m" ? 2 * std::numbers::pi : 1.0;
 }
@@ -51,8 +52,8 @@ Eigen::VectorXd presliding_damping_of(const ParameterTable& table, const RobotDe
     int joint = 0;
     while (joint < joints && entry.name != presliding_damping_name(robot, joint)) ++joint;
     if (joint == joints) {
-      throw Error(fmt::format("{} is not of a joint with friction of this robot", entry.name), place_of(table, entry, "name"),
-                  "remove the row, or give the parameter file of this robot");
+      throw Error(fmt::format("{} is not of a joint with friction of this robot", entry.name),
+                  place_of(table, entry, "name"), "remove the row, or give the parameter file of this robot");
     }
     if (!(entry.value >= 0)) {
       throw Error(fmt::format("the damping {} is negative", entry.value), place_of(table, entry, "value"),
@@ -69,8 +70,8 @@ std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescripti
     const auto of = ripple_of_waves(entry.name);
     if (!of) continue;
     if ((*of)[0] < 0 || (*of)[0] >= robot.drives()) {
-      throw Error(fmt::format("{} is of a drive that this robot does not have", entry.name), place_of(table, entry, "name"),
-                  "remove the row, or give the parameter file of this robot");
+      throw Error(fmt::format("{} is of a drive that this robot does not have", entry.name),
+                  place_of(table, entry, "name"), "remove the row, or give the parameter file of this robot");
     }
     if (!(entry.value > 0)) {
       throw Error(fmt::format("{} waves are none", entry.value), place_of(table, entry, "value"),
@@ -97,7 +98,8 @@ std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples, cons
   std::vector<int> count(static_cast<std::size_t>(robot.drives()), 0);
   for (const Ripple& ripple : ripples) {
     const bool turns = robot.kind_of_drive(ripple.drive) == DriveKind::revolute;
-    const std::string stem = fmt::format("drive{}.ripple{}.", ripple.drive + 1, ++count[static_cast<std::size_t>(ripple.drive)]);
+    const std::string stem =
+        fmt::format("drive{}.ripple{}.", ripple.drive + 1, ++count[static_cast<std::size_t>(ripple.drive)]);
     const auto add = [&](const char* quantity, double value, const char* unit, double std) {
       ParameterEntry entry;
       entry.name = stem + quantity;

@@ -21,7 +21,8 @@ struct Candidate {
   HeaderWords words;
 };
 
-/// Whether a unit comes to SI by a factor of its own: currents, shares of the rated torque and counts need a data sheet.
+/// Whether a unit comes to SI by a factor of its own: currents, shares of the rated torque and counts need a data
+/// sheet.
 bool is_direct(const std::string& unit) {
   const auto known = log_unit(unit);
   return known && known->dimension != Dimension::current && known->dimension != Dimension::share_of_rated &&
@@ -38,8 +39,8 @@ struct Set {
 };
 
 std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
-  static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit, nullptr,
-                                                             &MapDefaults::torque_unit};
+  static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit,
+                                                             nullptr, &MapDefaults::torque_unit};
   const auto unit = kUnitFlags[static_cast<std::size_t>(quantity)];
   return unit == nullptr ? "" : defaults.*unit;
 }
@@ -55,7 +56,8 @@ std::string unit_of(const Candidate& candidate, Quantity quantity, DriveKind kin
 std::vector<Candidate> candidates_of(const Recording& recording, Quantity quantity, const ColumnMap& map) {
   std::vector<Candidate> found;
   for (const RecordedChannel& channel : recording.channels) {
-    if (channel.clock || channel.name == map.time_source || channel.name == recording.timelines[channel.timeline].name) continue;
+    if (channel.clock || channel.name == map.time_source || channel.name == recording.timelines[channel.timeline].name)
+      continue;
     Candidate candidate{&channel, read_header_words(channel.name, channel.unit)};
     if (!channel.quantity.empty()) {
       candidate.words.quantity = quantity_of_word(channel.quantity);
@@ -66,7 +68,8 @@ std::vector<Candidate> candidates_of(const Recording& recording, Quantity quanti
   return found;
 }
 
-/// Named as in a log of these tools, q1_rad, tau1_Nm: the number is the drive, and those beyond the robot's are not used.
+/// Named as in a log of these tools, q1_rad, tau1_Nm: the number is the drive, and those beyond the robot's are not
+/// used.
 bool is_log_name(const Candidate& candidate) {
   const std::string& stem = candidate.words.stem;
   const auto digits = stem.find_first_of("0123456789");
@@ -76,7 +79,8 @@ bool is_log_name(const Candidate& candidate) {
   return known && candidate.channel->name.compare(0, stem.size() + 1, stem + "_") == 0;
 }
 
-/// Joints of one message: of many, those that are called as the drives of robot files (the passive joints are published, too).
+/// Joints of one message: of many, those that are called as the drives of robot files (the passive joints are
+/// published, too).
 std::vector<Candidate> drives_among(const std::vector<Candidate>& members, int drives) {
   std::vector<Candidate> found;
   for (int drive = 1; drive <= drives; ++drive) {
@@ -106,13 +110,14 @@ std::vector<long> places_of(const std::vector<Candidate>& members, const RobotDe
   if (why.empty()) return places;
   std::vector<std::string> taken;
   for (std::size_t k = 0; k < names.size(); ++k) taken.push_back(fmt::format("'{}' as drive {}", names[k], places[k]));
-  set.doubt = fmt::format("the joints {}: {}; check it, and where it is wrong set drive = in a column map (--map-out writes one)",
-                          fmt::join(taken, ", "), why);
+  set.doubt = fmt::format(
+      "the joints {}: {}; check it, and where it is wrong set drive = in a column map (--map-out writes one)",
+      fmt::join(taken, ", "), why);
   return places;
 }
 
-/// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six joints and four
-/// drives nobody but the user knows which are meant.
+/// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six
+/// joints and four drives nobody but the user knows which are meant.
 std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription& robot, Quantity quantity,
                           const MapDefaults& defaults) {
   const auto drives = static_cast<std::size_t>(robot.drives());
@@ -128,7 +133,8 @@ std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription
   }
   set.of_drive.resize(drives, {nullptr, {}});
   for (std::size_t k = 0; k < places.size(); ++k) {
-    if (places[k] >= 1 && places[k] <= robot.drives()) set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
+    if (places[k] >= 1 && places[k] <= robot.drives())
+      set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
   }
   set.has_unit = true;
   for (std::size_t drive = 0; drive < drives; ++drive) {
@@ -159,8 +165,9 @@ std::string key_of(const Candidate& candidate, Alike alike) {
   return "";
 }
 
-/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units), all. Where
-/// no names are alike (x axis, y axis, z axis; limb 1, limb 2, limb 3, yaw), their differences may still tell the drives.
+/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units),
+/// all. Where no names are alike (x axis, y axis, z axis; limb 1, limb 2, limb 3, yaw), their differences may still
+/// tell the drives.
 std::vector<Set> sets_of(const std::vector<Candidate>& candidates, const RobotDescription& robot, Quantity quantity,
                          const MapDefaults& defaults) {
   std::vector<Set> sets;
@@ -196,36 +203,45 @@ std::string si_unit(Quantity quantity, DriveKind kind) {
 OpenQuestion missing(const Recording& recording, const RobotDescription& robot, Quantity quantity,
                      const std::vector<Candidate>& candidates) {
   const std::string wanted = contract_name(robot, 0, quantity);
-  std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}", wanted,
-                                 word_of(quantity), list_channels(recording));
+  std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}",
+                                 wanted, word_of(quantity), list_channels(recording));
   if (!candidates.empty()) {
-    what = fmt::format("the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
-                       word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", names_of(candidates),
-                       list_channels(recording));
+    what =
+        fmt::format("the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
+                    word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", names_of(candidates),
+                    list_channels(recording));
   }
-  return {quantity, what,
-          fmt::format("write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
-                      "each drive\n{}",
-                      example(quantity, "NAME", si_unit(quantity, robot.kind_of_drive(0)), 1))};
+  return {
+      quantity, what,
+      fmt::format(
+          "write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
+          "each drive\n{}",
+          example(quantity, "NAME", si_unit(quantity, robot.kind_of_drive(0)), 1))};
 }
 
-OpenQuestion without_unit(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults) {
+OpenQuestion without_unit(const Set& set, const RobotDescription& robot, Quantity quantity,
+                          const MapDefaults& defaults) {
   int drive = 0;
-  while (!unit_of(set.of_drive[static_cast<std::size_t>(drive)], quantity, robot.kind_of_drive(drive), defaults).empty()) ++drive;
+  while (
+      !unit_of(set.of_drive[static_cast<std::size_t>(drive)], quantity, robot.kind_of_drive(drive), defaults).empty())
+    ++drive;
   const std::string& name = set.of_drive[static_cast<std::size_t>(drive)].channel->name;
   const std::string si = si_unit(quantity, robot.kind_of_drive(drive));
   std::string named = contract_name(robot, drive, quantity);
   if (quantity == Quantity::position && robot.kind_of_drive(drive) == DriveKind::revolute) {
     named += fmt::format(" or q{}_deg", drive + 1);
   }
-  return {quantity,
-          fmt::format("the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
-                      contract_name(robot, drive, quantity), name, word_of(quantity), drive + 1),
-          fmt::format("name the column {}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}",
-                      named, word_of(quantity), units_of(quantity), example(quantity, name, si, drive + 1))};
+  return {
+      quantity,
+      fmt::format("the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
+                  contract_name(robot, drive, quantity), name, word_of(quantity), drive + 1),
+      fmt::format(
+          "name the column {}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}", named,
+          word_of(quantity), units_of(quantity), example(quantity, name, si, drive + 1))};
 }
 
-/// On a robot of one drive its number is not asked for, but position and torque of one drive do not carry different ones.
+/// On a robot of one drive its number is not asked for, but position and torque of one drive do not carry different
+/// ones.
 bool contradicts(const Set& set, const ColumnMap& map, int drives) {
   const ChannelMap* position = map.find(Quantity::position, 1);
   if (drives != 1 || position == nullptr) return false;
@@ -235,7 +251,8 @@ bool contradicts(const Set& set, const ColumnMap& map, int drives) {
   return !theirs.empty() && !ours.empty() && std::ranges::none_of(ours, shared);
 }
 
-void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults, ColumnMap& map) {
+void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults,
+             ColumnMap& map) {
   for (std::size_t drive = 0; drive < set.of_drive.size(); ++drive) {
     map.channels.push_back(
         {.drive = static_cast<int>(drive) + 1,
@@ -255,8 +272,9 @@ std::string contract_name(const RobotDescription& robot, int drive, Quantity qua
 
 std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind) {
   const bool turns = kind == DriveKind::revolute;
-  static constexpr const char* kCustoms[] = {"/",          "field.",      "actual_q_",       "target_q_",       "actual_qd_",
-                                             "target_qd_", "target_qdd_", "actual_current_", "target_current_", "target_moment_"};
+  static constexpr const char* kCustoms[] = {
+      "/",          "field.",      "actual_q_",       "target_q_",       "actual_qd_",
+      "target_qd_", "target_qdd_", "actual_current_", "target_current_", "target_moment_"};
   if (std::ranges::none_of(kCustoms, [&](const char* begin) { return stem.starts_with(begin); })) return "";
   switch (quantity) {
     case Quantity::position: return turns ? "rad" : "m";
@@ -273,7 +291,8 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
   std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
   std::erase_if(sets, [&](const Set& set) { return contradicts(set, map, robot.drives()); });
   if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
-  // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a current.
+  // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a
+  // current.
   const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
   std::ranges::stable_sort(sets, std::greater(), rank);
   const Set& best = sets.front();
@@ -286,7 +305,8 @@ std::vector<OpenQuestion> guess_channels(const Recording& recording, const Robot
                                  unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
   }
   if (best.origin == Origin::commanded && quantity != Quantity::torque) {
-    return {{quantity, fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best.of_drive)),
+    return {{quantity,
+             fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best.of_drive)),
              fmt::format("record the measured one; to take the command all the same, say so in a column map\n{}",
                          example(quantity, best.of_drive[0].channel->name,
                                  unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};

@@ -15,31 +15,35 @@ struct Vocabulary {
   WordList alone, within;
   [[nodiscard]] bool holds(std::string_view word) const {
     if (std::ranges::find(alone, word) != alone.end()) return true;
-    return std::ranges::any_of(within, [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
+    return std::ranges::any_of(within,
+                               [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
   }
 };
 
 /// English and German words of drives, PLCs, ROS, UR and LinuxCNC for each quantity; pl, vl, il are Kollmorgen's loops.
 const Vocabulary kQuantityWords[] = {
-    {{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"}, {"position", "angle", "winkel", "encoder", "lageist"}},
+    {{"q", "pos", "phi", "theta", "ang", "pl", "lage", "enc", "qpos"},
+     {"position", "angle", "winkel", "encoder", "lageist"}},
     {{"qd", "dq", "vel", "omega", "vl", "qdot", "qvel", "rpm", "spd"}, {"veloc", "speed", "geschwindig", "drehzahl"}},
     {{"qdd", "ddq", "acc", "qddot"}, {"accel", "beschleun"}},
-    {{"tau", "trq", "tq", "iq", "il", "amps", "eff"}, {"torque", "moment", "effort", "current", "strom", "kraft", "force"}}};
+    {{"tau", "trq", "tq", "iq", "il", "amps", "eff"},
+     {"torque", "moment", "effort", "current", "strom", "kraft", "force"}}};
 const Vocabulary kMeasured{{"act", "fb", "fbk", "meas", "ist", "real", "present"},
                            {"actual", "feedback", "measur", "istpos", "istwert", "lageist"}};
 const Vocabulary kCommanded{{"cmd", "des", "ref", "set", "goal", "nominal", "qdes"},
                             {"command", "target", "soll", "setpoint", "demand", "desired", "refer"}};
 /// "momentum" holds "moment"; a following error is a position of no drive.
 const Vocabulary kExcluded{
-    {"err", "tcp", "max", "min", "lag", "cart", "temp", "volt", "power", "std", "var", "window", "status", "mode", "bias"},
+    {"err", "tcp", "max", "min", "lag", "cart", "temp", "volt", "power", "std", "var", "window", "status", "mode",
+     "bias"},
     {"error", "limit", "cartesian", "temperature", "voltage", "fehler", "schlepp", "following", "momentum"}};
 
 bool is_whole_number(const std::string& word) {
   return std::isdigit(static_cast<unsigned char>(word.front())) != 0;
 }
 
-/// The quantity of the words. Two of them: the unit decides, then "current position" (the present one) and like adjectives give way
-/// to the noun behind them.
+/// The quantity of the words. Two of them: the unit decides, then "current position" (the present one) and like
+/// adjectives give way to the noun behind them.
 std::optional<Quantity> quantity_of(const std::vector<std::string>& words, const std::optional<LogUnit>& unit) {
   std::vector<Quantity> said;
   for (const std::string& word : words) {
@@ -71,7 +75,8 @@ std::vector<std::string> words_of(const std::string& name) {
   Kind before = Kind::mark;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const Kind kind = kind_of(name[i]);
-    // A new word begins at a change of kind, except after the first capital ("Act"), and before the last of several ("TCPPose").
+    // A new word begins at a change of kind, except after the first capital ("Act"), and before the last of several
+    // ("TCPPose").
     bool begins = kind != before;
     if (before == Kind::capital && kind == Kind::small) begins = false;
     if (before == Kind::capital && kind == Kind::capital && i + 1 < name.size() && kind_of(name[i + 1]) == Kind::small)

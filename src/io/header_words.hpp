@@ -25,7 +25,8 @@ struct HeaderWords {
 /// \param unit  the one the recording states, may be empty
 [[nodiscard]] HeaderWords read_header_words(const std::string& column, const std::string& unit);
 
-/// Words of a name in lower case, split at marks, at digits and at capitals: "MAIN.Axis1.ActPos" -> main axis 1 act pos.
+/// Words of a name in lower case, split at marks, at digits and at capitals: "MAIN.Axis1.ActPos" -> main axis 1 act
+/// pos.
 [[nodiscard]] std::vector<std::string> words_of(const std::string& name);
 
 }  // namespace deltadyn

@@ -24,7 +24,8 @@ using Eigen::Index;
 /// More empty fields than this are no lost samples: the channel has a rate of its own.
 constexpr double kOwnRateShare = 0.2;
 
-/// The recordings as one. Each keeps its time lines; stamps since 1970 join by themselves, others count from a common zero.
+/// The recordings as one. Each keeps its time lines; stamps since 1970 join by themselves, others count from a common
+/// zero.
 Recording merged(std::vector<Recording> recordings) {
   Recording all = std::move(recordings.front());
   for (std::size_t k = 1; k < recordings.size(); ++k) {
@@ -34,11 +35,12 @@ Recording merged(std::vector<Recording> recordings) {
     for (const RecordedChannel& channel : next.channels) {
       const bool is_time = next.timelines[channel.timeline].name == channel.name;
       if (is_time || names.count(channel.name) == 0) continue;
-      throw Error(fmt::format("the column {} is in {} and in {}: these are recordings of their own, not columns of one",
-                              channel.name, all.file, next.file),
-                  next.file,
-                  "import them one after the other, and give delta-identify all the logs; if each file holds one drive of one "
-                  "motion, let the column names carry its number");
+      throw Error(
+          fmt::format("the column {} is in {} and in {}: these are recordings of their own, not columns of one",
+                      channel.name, all.file, next.file),
+          next.file,
+          "import them one after the other, and give delta-identify all the logs; if each file holds one drive of one "
+          "motion, let the column names carry its number");
     }
     const std::size_t shift = all.timelines.size();
     for (Timeline& timeline : next.timelines) all.timelines.push_back(std::move(timeline));
@@ -121,13 +123,15 @@ class Builder {
   }
 
   [[nodiscard]] std::string where(const ChannelMap& channel) const {
-    return map_.file.empty() || channel.line == 0 ? place(recording_.file, 0, channel.source) : place(map_.file, channel.line);
+    return map_.file.empty() || channel.line == 0 ? place(recording_.file, 0, channel.source)
+                                                  : place(map_.file, channel.line);
   }
 
   void prepare(const ChannelMap& map) {
     const RecordedChannel& channel = find_channel(recording_, map.source, where(map));
     if (channel.text_line > 0) {
-      throw Error(fmt::format("'{}' is not a number", channel.text), place(recording_.file, channel.text_line, channel.name),
+      throw Error(fmt::format("'{}' is not a number", channel.text),
+                  place(recording_.file, channel.text_line, channel.name),
                   "remove the row or correct the value; leave the field empty if it is not known");
     }
     Prepared one{&map, &channel, {}, false, {}};
@@ -142,17 +146,18 @@ class Builder {
     one.taken.step_s = usual_step_s(stamps);
     one.taken.rate_hz = mean_rate_hz(stamps);
     prepared_.push_back(std::move(one));
-    if (!channel.remark.empty()) remarks_.push_back(fmt::format("{}: '{}': {}", recording_.file, channel.name, channel.remark));
+    if (!channel.remark.empty())
+      remarks_.push_back(fmt::format("{}: '{}': {}", recording_.file, channel.name, channel.remark));
   }
 
   /// Stamps from the first row of the first time line on.
   [[nodiscard]] double shift_of(const Timeline& timeline) const {
-    return static_cast<double>(
-        1e-9L * (static_cast<long double>(timeline.origin_ns) - static_cast<long double>(recording_.timelines[0].origin_ns)));
+    return static_cast<double>(1e-9L * (static_cast<long double>(timeline.origin_ns) -
+                                        static_cast<long double>(recording_.timelines[0].origin_ns)));
   }
 
-  [[nodiscard]] SampledChannel series_of(const Eigen::VectorXd& values, const Timeline& timeline, const std::vector<Index>& rows,
-                                         double delay_s) const {
+  [[nodiscard]] SampledChannel series_of(const Eigen::VectorXd& values, const Timeline& timeline,
+                                         const std::vector<Index>& rows, double delay_s) const {
     const Index n = rows.empty() ? values.size() : static_cast<Index>(rows.size());
     SampledChannel series{Eigen::VectorXd(n), Eigen::VectorXd(n)};
     const double shift = shift_of(timeline) - delay_s;
@@ -204,7 +209,8 @@ class Builder {
   }
 
   [[nodiscard]] bool on_grid(const Prepared& one) const {
-    if (!one.whole || !grid_of_->whole) return !one.whole && one.series.t_s.size() == grid_s_.size() && one.series.t_s == grid_s_;
+    if (!one.whole || !grid_of_->whole)
+      return !one.whole && one.series.t_s.size() == grid_s_.size() && one.series.t_s == grid_s_;
     if (one.channel->timeline == grid_of_->channel->timeline) return true;
     // TwinCAT may write a time column for each channel; the same stamps are the same rows.
     const Timeline& timeline = recording_.timelines[one.channel->timeline];
@@ -228,11 +234,13 @@ class Builder {
       return values;
     }
     const Timeline& timeline = recording_.timelines[one.channel->timeline];
-    const SampledChannel series = one.whole ? series_of(values, timeline, {}, 0.0) : SampledChannel{one.series.t_s, values};
+    const SampledChannel series =
+        one.whole ? series_of(values, timeline, {}, 0.0) : SampledChannel{one.series.t_s, values};
     double low_pass_hz = 0;
     Eigen::VectorXd result = onto_grid(series, grid_s_, low_pass_hz);
-    one.taken.how = low_pass_hz > 0 ? fmt::format("zero-phase low pass of {:.4g} Hz, then cubic interpolation", low_pass_hz)
-                                    : "cubic interpolation";
+    one.taken.how = low_pass_hz > 0
+                        ? fmt::format("zero-phase low pass of {:.4g} Hz, then cubic interpolation", low_pass_hz)
+                        : "cubic interpolation";
     if (one.map->delay_s != 0) one.taken.how += fmt::format(", {:.4g} ms earlier", 1e3 * one.map->delay_s);
     return result;
   }
@@ -255,7 +263,8 @@ class Builder {
     }
   }
 
-  /// Rows at the ends that not every channel reaches are left out; holes inside stay, the check of the log deals with them.
+  /// Rows at the ends that not every channel reaches are left out; holes inside stay, the check of the log deals with
+  /// them.
   void cut_to_common_span(Log& log) const {
     const Index n = log.samples();
     const auto complete = [&](Index row) {
@@ -264,7 +273,8 @@ class Builder {
       }
       return true;
     };
-    const bool all_on_grid = std::ranges::all_of(prepared_, [](const Prepared& one) { return one.taken.how == "as recorded"; });
+    const bool all_on_grid =
+        std::ranges::all_of(prepared_, [](const Prepared& one) { return one.taken.how == "as recorded"; });
     Index begin = 0, end = n;
     if (!all_on_grid) {
       while (begin < end && !complete(begin)) ++begin;
@@ -276,8 +286,8 @@ class Builder {
     }
     if (begin > 0 || end < n) {
       log.notes.push_back(
-          fmt::format("{}: {} rows at the beginning and {} at the end are left out, which not every channel reaches", log.file,
-                      begin, n - end));
+          fmt::format("{}: {} rows at the beginning and {} at the end are left out, which not every channel reaches",
+                      log.file, begin, n - end));
       for (Eigen::MatrixXd* block : {&log.q, &log.qd, &log.qdd, &log.tau}) {
         if (block->size() > 0) *block = block->middleRows(begin, end - begin).eval();
       }
@@ -340,25 +350,29 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
   if (nameless) {
     open_.clear();  // the one cause of all that is open
     ask("the header line is missing: the first line holds numbers only",
-        "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins one) with the "
+        "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins "
+        "one) with the "
         "numbers of the columns as source,\n"
-        "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    quantity = "
+        "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    "
+        "quantity = "
         "\"position\"\n    source = 2\n"
         "    unit = \"rad\"",
         place(recording_.file, 1));
   }
   for (const Quantity quantity : {Quantity::position, Quantity::velocity, Quantity::acceleration, Quantity::torque}) {
     if (nameless || map_.has(quantity)) continue;
-    const bool needed =
-        quantity == Quantity::position || (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
-    for (const OpenQuestion& question : guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
+    const bool needed = quantity == Quantity::position ||
+                        (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
+    for (const OpenQuestion& question :
+         guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
       if (needed) ask(question.what, question.mend);
     }
     note_joints_beyond(quantity);
     const ChannelMap* guessed = map_.find(quantity, 1);
     if (guessed != nullptr && read_header_words(guessed->source, "").origin == Origin::commanded) {
-      recording_.notes.push_back(fmt::format("{}: '{}' is a commanded {} by its name; it is taken, as no measured one is there",
-                                             recording_.file, guessed->source, word_of(quantity)));
+      recording_.notes.push_back(
+          fmt::format("{}: '{}' is a commanded {} by its name; it is taken, as no measured one is there",
+                      recording_.file, guessed->source, word_of(quantity)));
     }
   }
   for (ChannelMap& channel : map_.channels) {
@@ -382,9 +396,10 @@ ImportedLog LogImport::log() const {
   const auto demand = [&](Quantity quantity) {
     for (int drive = 1; drive <= robot_.drives(); ++drive) {
       if (map_.find(quantity, drive) != nullptr) continue;
-      throw Error(
-          fmt::format("the map has no {} of drive {}; the file has {}", word_of(quantity), drive, list_channels(recording_)),
-          map_.file, "add it to the map:\n" + to_toml(ChannelMap{.drive = drive, .quantity = quantity, .source = "NAME"}));
+      throw Error(fmt::format("the map has no {} of drive {}; the file has {}", word_of(quantity), drive,
+                              list_channels(recording_)),
+                  map_.file,
+                  "add it to the map:\n" + to_toml(ChannelMap{.drive = drive, .quantity = quantity, .source = "NAME"}));
     }
   };
   demand(Quantity::position);

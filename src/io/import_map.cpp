@@ -29,9 +29,10 @@ std::vector<std::string> open_constants(const ChannelMap& channel, DriveKind kin
   if (unit->dimension == Dimension::share_of_rated && !channel.rated_torque)
     want("rated_torque_Nm", "of the motor [N m, data sheet]");
   if (unit->dimension == Dimension::counts && !channel.counts_per_turn) want("counts_per_turn", "of the encoder");
-  const bool of_motor =
-      unit->dimension == Dimension::angle || unit->dimension == Dimension::counts || unit->dimension == Dimension::moment;
-  if (kind == DriveKind::prismatic && of_motor && !channel.lead) want("lead_m_turn", "travel for a turn of the motor [m]");
+  const bool of_motor = unit->dimension == Dimension::angle || unit->dimension == Dimension::counts ||
+                        unit->dimension == Dimension::moment;
+  if (kind == DriveKind::prismatic && of_motor && !channel.lead)
+    want("lead_m_turn", "travel for a turn of the motor [m]");
   return lines;
 }
 
@@ -47,17 +48,18 @@ void LogImport::note_joints_beyond(Quantity quantity) {
     (is_taken(channel) ? taken : left).push_back("'" + channel.name + "'");
   }
   if (left.empty()) return;
-  recording_.notes.push_back(fmt::format("{}: the robot has {} drive{}, so as {} {} {} taken; {} {} not used", recording_.file,
-                                         robot_.drives(), robot_.drives() == 1 ? "" : "s", word_of(quantity),
-                                         fmt::join(taken, ", "), taken.size() == 1 ? "was" : "were", fmt::join(left, ", "),
-                                         left.size() == 1 ? "is" : "are"));
+  recording_.notes.push_back(fmt::format("{}: the robot has {} drive{}, so as {} {} {} taken; {} {} not used",
+                                         recording_.file, robot_.drives(), robot_.drives() == 1 ? "" : "s",
+                                         word_of(quantity), fmt::join(taken, ", "), taken.size() == 1 ? "was" : "were",
+                                         fmt::join(left, ", "), left.size() == 1 ? "is" : "are"));
 }
 
 bool LogImport::is_taken(const RecordedChannel& channel) const {
   const auto named = [&](const std::string& source) {
     return source == channel.name || std::ranges::find(channel.aliases, source) != channel.aliases.end();
   };
-  const bool time = std::ranges::any_of(recording_.timelines, [&](const Timeline& line) { return line.name == channel.name; });
+  const bool time =
+      std::ranges::any_of(recording_.timelines, [&](const Timeline& line) { return line.name == channel.name; });
   return time || named(map_.time_source) ||
          std::ranges::any_of(map_.channels, [&](const ChannelMap& one) { return named(one.source); });
 }
@@ -85,12 +87,15 @@ std::string LogImport::map_of_the_rest() const {
     if (!quantity) replace(fmt::format("\"{}\"", word_of(one.quantity)), "QUANTITY");
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
-    for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3)) lines.replace(at, 1, "\n# ");
+    for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3))
+      lines.replace(at, 1, "\n# ");
     text += "\n# " + lines + "\n" + fmt::format("{}", fmt::join(open_constants(one, kind), ""));
   }
   if (text.empty()) return text;
-  return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY (\"position\", "
-         "\"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s rpm; Nm mNm N A mA % "
+  return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY "
+         "(\"position\", "
+         "\"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s rpm; Nm mNm N A "
+         "mA % "
          "permille).\n" +
          text;
 }
@@ -100,7 +105,8 @@ std::string LogImport::open_time() const {
   const bool known = std::ranges::all_of(recording_.timelines, [](const Timeline& t) { return t.t_s.size() > 0; });
   if (known) return "";
   if (map_.time_source.empty()) {
-    return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or rate_hz = "
+    return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or "
+           "rate_hz = "
            "1000\n";
   }
   return "# unit = \"UNIT\"   # STILL OPEN: s, ms, us, ns, min or filetime; or tick_s = seconds of a tick\n";
@@ -108,11 +114,11 @@ std::string LogImport::open_time() const {
 
 std::string mend_in_map(std::string mend, const std::string& map) {
   const std::string here = fmt::format("mend {} (what is open is marked there)", map);
-  for (const auto& [from, to] :
-       {std::pair<std::string, std::string>{"write a column map (delta-log import --map-out map.toml begins one)", here},
-        {"write a column map (--map)", here + " and give it with --map"},
-        {"a column map (delta-log import --map-out map.toml begins one)", map},
-        {"in a column map (--map)", fmt::format("in {} and give that with --map", map)}}) {
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{
+                                     "write a column map (delta-log import --map-out map.toml begins one)", here},
+                                 {"write a column map (--map)", here + " and give it with --map"},
+                                 {"a column map (delta-log import --map-out map.toml begins one)", map},
+                                 {"in a column map (--map)", fmt::format("in {} and give that with --map", map)}}) {
     const auto at = mend.find(from);
     if (at == std::string::npos) continue;
     mend.replace(at, from.size(), to);
@@ -128,7 +134,8 @@ std::string LogImport::map_text() const {
     for (const std::string& line : open_constants(channel, robot_.kind_of_drive(channel.drive - 1)))
       constants.insert(line.substr(2));
   }
-  for (const std::string& constant : constants) remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
+  for (const std::string& constant : constants)
+    remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
   for (const Open& open : open_) {
     remarks.push_back("STILL OPEN: " + open.what);
     std::string mend = "  " + mend_in_map(open.mend, "this map");

@@ -93,7 +93,8 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   for (const std::string& name : reader.columns()) {
     const std::string plain = simplified(name);
     const bool begins = plain.starts_with(stem);
-    const bool other_number = plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
+    const bool other_number =
+        plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
     if (begins && !other_number) found.push_back(name);
   }
   return found;
@@ -117,9 +118,10 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   }
   std::vector<std::string> accepted;
   for (const Spelling& spelling : spellings(quantity, kind)) accepted.push_back(stem + spelling.suffix);
-  throw Error(fmt::format("the column {} is missing; the file has {}{}", wanted, fmt::join(similar, ", "), why), reader.path(),
-              why.empty() ? fmt::format("name the column {}", fmt::join(accepted, " or "))
-                          : std::string("give the robot file that fits the log, or correct the unit in the column's name"));
+  throw Error(
+      fmt::format("the column {} is missing; the file has {}{}", wanted, fmt::join(similar, ", "), why), reader.path(),
+      why.empty() ? fmt::format("name the column {}", fmt::join(accepted, " or "))
+                  : std::string("give the robot file that fits the log, or correct the unit in the column's name"));
 }
 
 /// Sources of one quantity for all drives; empty if a drive lacks it and it is not needed.
@@ -139,8 +141,8 @@ std::vector<Source> sources(const CsvReader& reader, const RobotDescription& rob
   }
   if (missing.empty()) return result;
   if (!result.empty()) {
-    notes.push_back(fmt::format("{}: {} is missing, so the {} columns of the other drives are not used", reader.path(), missing,
-                                kPrefix[static_cast<std::size_t>(quantity)]));
+    notes.push_back(fmt::format("{}: {} is missing, so the {} columns of the other drives are not used", reader.path(),
+                                missing, kPrefix[static_cast<std::size_t>(quantity)]));
   }
   return {};
 }
@@ -220,7 +222,9 @@ bool is_complete(const std::string& path, const RobotDescription& robot, const L
 /// A log of another form, with what was taken for what as its first note.
 Log read_foreign(const std::string& path, const RobotDescription& robot, const LogReadOptions& options) {
   return LogImport({path}, robot,
-                   {.map_file = options.map, .need_torque = options.need_torque, .need_derivatives = options.need_derivatives})
+                   {.map_file = options.map,
+                    .need_torque = options.need_torque,
+                    .need_derivatives = options.need_derivatives})
       .log()
       .log;
 }
@@ -241,9 +245,10 @@ Log read_contract(const std::string& path, const RobotDescription& robot, const 
       {sources(reader, robot, Quantity::torque, options.need_torque, log.notes), &log.tau},
   };
   if (const auto extra = positions_beyond(reader, robot.drives()); !extra.empty()) {
-    const std::string taken = robot.drives() == 1 ? "drive, so q1 was" : fmt::format("drives, so q1 to q{} were", robot.drives());
-    log.notes.push_back(fmt::format("{}: the robot {} has {} {} taken; {} {} not used", path, robot.type, robot.drives(), taken,
-                                    fmt::join(extra, ", "), extra.size() == 1 ? "is" : "are"));
+    const std::string taken =
+        robot.drives() == 1 ? "drive, so q1 was" : fmt::format("drives, so q1 to q{} were", robot.drives());
+    log.notes.push_back(fmt::format("{}: the robot {} has {} {} taken; {} {} not used", path, robot.type,
+                                    robot.drives(), taken, fmt::join(extra, ", "), extra.size() == 1 ? "is" : "are"));
   }
 
   std::vector<double> values;  // row after row
@@ -256,7 +261,8 @@ Log read_contract(const std::string& path, const RobotDescription& robot, const 
       for (const Source& source : block.from) values.push_back(reader.number_or_nan(source.column) * source.factor);
     }
   }
-  if (log.line.empty()) throw Error("the file holds a header but no data rows", path, "check that the recording is complete");
+  if (log.line.empty())
+    throw Error("the file holds a header but no data rows", path, "check that the recording is complete");
 
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMajor> table(values.data(), static_cast<Eigen::Index>(log.line.size()),

@@ -105,7 +105,8 @@ std::string normalised(std::string_view text) {
 }
 
 bool is_index(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+  return !text.empty() &&
+         std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
 }
 
 bool known(std::string_view unit) {
@@ -157,7 +158,8 @@ NameAndUnit split_unit(const std::string& column) {
     const auto at = column.rfind(open);
     if (at != std::string::npos && at > 0) {
       const std::string inside = column.substr(at + 1, column.size() - at - 2);
-      // Words in brackets that we do not know may still be a unit, but numbers are an index and names belong to the column.
+      // Words in brackets that we do not know may still be a unit, but numbers are an index and names belong to the
+      // column.
       if (known(inside)) return {trimmed_right(column.substr(0, at)), inside};
     }
   }

@@ -121,7 +121,8 @@ void write_table(const std::string& path, const std::string& header, const Eigen
   for (Eigen::Index row = 0; row < t_s.size(); ++row) {
     fmt::format_to(std::back_inserter(text), "{}", t_s(row));
     for (const Eigen::MatrixXd* block : blocks) {
-      for (Eigen::Index k = 0; k < block->cols(); ++k) fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, k));
+      for (Eigen::Index k = 0; k < block->cols(); ++k)
+        fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, k));
     }
     text += '\n';
     if (text.size() >= kChunk) {
@@ -140,8 +141,8 @@ void refuse_overwrite(const std::string& output, const std::vector<std::string>&
     std::error_code ignored;
     const bool same = fs::equivalent(output, input, ignored);
     if ((!ignored && same) || followed(output) == followed(input)) {
-      throw Error(fmt::format("the output would overwrite the input file {}", input), output, "give the output another name",
-                  ExitCode::usage);
+      throw Error(fmt::format("the output would overwrite the input file {}", input), output,
+                  "give the output another name", ExitCode::usage);
     }
   }
 }

@@ -41,7 +41,8 @@ bool is_presliding(const std::string& name) {
 
 /// Rows that are no parameter of the regressor and that nobody misses there (presliding_of(), extra_rows.hpp).
 bool is_extra(const std::string& name) {
-  return is_presliding(name) || name.ends_with("." + kPresliding + "_damping") || name.find(".ripple") != std::string::npos;
+  return is_presliding(name) || name.ends_with("." + kPresliding + "_damping") ||
+         name.find(".ripple") != std::string::npos;
 }
 
 /// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
@@ -68,7 +69,8 @@ std::vector<std::string> plausible_units(const std::string& name) {
   const std::string quantity = dot == std::string::npos ? name : name.substr(dot + 1);
   for (int k = 0; k < kInertialParameters; ++k)
     if (quantity == kInertialNames[k]) return {kInertialUnits[k]};
-  if (const auto id = parameter_id("drive1." + quantity)) return {parameter_unit(*id, true), parameter_unit(*id, false)};
+  if (const auto id = parameter_id("drive1." + quantity))
+    return {parameter_unit(*id, true), parameter_unit(*id, false)};
   if (quantity == kPresliding) return {"rad", "m"};
   if (quantity == kPresliding + "_damping") return {"s"};
   if (quantity == "waves") return {"waves/turn", "waves/m", "1/rad", "1/m"};
@@ -143,8 +145,8 @@ ParameterTable read_parameters(const std::string& path) {
                   "leave the field empty if it is not known");
     }
     if (entry.data_share < 0 || entry.data_share > 1) {
-      throw Error(fmt::format("the data_share of {} is outside 0 to 1", entry.name), place(path, entry.line, "data_share"),
-                  "leave the field empty if it is not known");
+      throw Error(fmt::format("the data_share of {} is outside 0 to 1", entry.name),
+                  place(path, entry.line, "data_share"), "leave the field empty if it is not known");
     }
     table.entries.push_back(std::move(entry));
   }
@@ -177,7 +179,8 @@ std::string missing_effects(const ParameterTable& table, const std::string& effe
   if (table.effects.empty() || !effects_given.empty()) return {};
   if (table.effects == kEffectsNotWritten) {
     return table.file +
-           " holds only together with effects that were not written: run delta-diagnose again with --effects-out FILE, and give "
+           " holds only together with effects that were not written: run delta-diagnose again with --effects-out FILE, "
+           "and give "
            "--effects FILE";
   }
   std::error_code ignored;
@@ -249,7 +252,8 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     const ParameterEntry& entry = *found->second;
     if (!units.empty() && !same_unit(entry.unit, units[static_cast<std::size_t>(i)])) {
       throw Error(fmt::format("the unit '{}' does not fit {} of this robot", entry.unit, name),
-                  place(table.file, entry.line, "unit"), fmt::format("give the value in {}", units[static_cast<std::size_t>(i)]));
+                  place(table.file, entry.line, "unit"),
+                  fmt::format("give the value in {}", units[static_cast<std::size_t>(i)]));
     }
     used.insert(&entry);
     match.value(i) = entry.value;
@@ -258,19 +262,20 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     match.data_share(i) = entry.data_share;
   }
   if (used.empty() && !names.empty()) {
-    throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()), table.file,
-                "check that this is the parameter file of this robot");
+    throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()),
+                table.file, "check that this is the parameter file of this robot");
   }
   const std::unordered_set<std::string> missing(match.missing.begin(), match.missing.end());
   for (const ParameterEntry& entry : table.entries) {
     if (used.count(&entry) != 0 || is_extra(entry.name)) continue;
     // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
     if (const std::string shared = shared_name(entry.name); !shared.empty() && missing.count(shared) != 0) {
-      throw Error(fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
-                  place(table.file, entry.line, "name"), "use --individual-limbs, or give the shared value");
+      throw Error(
+          fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
+          place(table.file, entry.line, "name"), "use --individual-limbs, or give the shared value");
     }
-    match.warnings.push_back(
-        fmt::format("{}: {} is not a parameter of this robot and is not used", place(table.file, entry.line), entry.name));
+    match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
+                                         place(table.file, entry.line), entry.name));
   }
   return match;
 }
@@ -301,8 +306,8 @@ Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescriptio
     int joint = 0;
     while (joint < joints && entry.name != presliding_name(robot, joint)) ++joint;
     if (joint == joints) {
-      throw Error(fmt::format("{} is not a joint with friction of this robot", entry.name), place(table.file, entry.line, "name"),
-                  "remove the row, or give the parameter file of this robot");
+      throw Error(fmt::format("{} is not a joint with friction of this robot", entry.name),
+                  place(table.file, entry.line, "name"), "remove the row, or give the parameter file of this robot");
     }
     if (!(entry.value >= 0)) {
       throw Error(fmt::format("the displacement {} is negative", entry.name), place(table.file, entry.line, "value"),

@@ -34,11 +34,13 @@ std::string without_blanks(const std::string& name) {
 int time_rank(const RecordedChannel& channel) {
   const NameAndUnit parts = split_unit(channel.name);
   const std::vector<std::string> words = words_of(parts.stem);
-  const auto has = [&](std::initializer_list<const char*> any) { return std::ranges::find_first_of(words, any) != words.end(); };
+  const auto has = [&](std::initializer_list<const char*> any) {
+    return std::ranges::find_first_of(words, any) != words.end();
+  };
   if (has({"header"}) && has({"stamp"})) return 5;  // ROS: when it was measured, not when it was written down
   if (channel.name == "t_s") return 5;
-  const bool named = has({"time", "timestamp", "stamp", "zeit", "zeitstempel", "uhrzeit", "clock", "elapsed", "datetime",
-                          "seconds", "secs", "tick", "ticks"});
+  const bool named = has({"time", "timestamp", "stamp", "zeit", "zeitstempel", "uhrzeit", "clock", "elapsed",
+                          "datetime", "seconds", "secs", "tick", "ticks"});
   const bool letter = words.size() == 1 && has({"t", "sec"});
   const bool unit = !channel.unit.empty() && !log_unit(channel.unit) && time_unit_s(channel.unit);
   if (named || letter) return unit || channel.clock ? 4 : 3;
@@ -69,7 +71,8 @@ double usual_step(const Eigen::VectorXd& values) {
 /// Seconds since 1970 are about 1.7e9 now; the same in ms, us and ns, and the ticks of 1601, have their own decades.
 std::optional<TimeUnit> unit_of_epoch(double start) {
   const double years = start / (365.25 * 86400.0);
-  for (const auto& [seconds, name] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "us"), std::pair(1e-9, "ns")}) {
+  for (const auto& [seconds, name] :
+       {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "us"), std::pair(1e-9, "ns")}) {
     if (years * seconds > 25.0 && years * seconds < 100.0) return TimeUnit{seconds, 0, name};
   }
   if (years * 1e-7 > 395.0 && years * 1e-7 < 470.0) return TimeUnit{1e-7, 0, "filetime"};
@@ -131,7 +134,8 @@ void refuse_step(const Recording& recording, const Timeline& timeline) {
   throw Error(fmt::format("by the time column '{}' [{}] the rows are {:.4g} s apart, which no recorder of a drive does",
                           timeline.name, timeline.unit, step_s),
               recording.file,
-              "name the time in seconds t_s; or give delta-log import --time-unit, or unit below [time] in a column map (--map)");
+              "name the time in seconds t_s; or give delta-log import --time-unit, or unit below [time] in a column "
+              "map (--map)");
 }
 
 /// Fills in a time line from a column with the stamps of its rows.
@@ -155,7 +159,8 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
     throw Error(fmt::format("the unit of the time column '{}' is not known; its usual step is {:.6g}", channel.name,
                             usual_step(channel.values)),
                 recording.file,
-                "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts rows; or "
+                "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts "
+                "rows; or "
                 "unit or rate_hz below [time] in a column map (--map)");
   }
   take_stamps(recording, channel, *unit, recording.timelines[channel.timeline]);
@@ -176,14 +181,15 @@ std::vector<TimeColumn> time_columns(const Recording& recording, const ColumnMap
     const RecordedChannel& channel = recording.channels[k];
     if (time_rank(channel) < 3 || channel.text_line > 0 || !goes_on(channel.values)) continue;
     if (const auto unit = unit_of(channel, map)) {
-      found.push_back({k, *unit, unit->seconds * usual_step(channel.values), (!channel.values.array().isNaN()).count()});
+      found.push_back(
+          {k, *unit, unit->seconds * usual_step(channel.values), (!channel.values.array().isNaN()).count()});
     }
   }
   return found;
 }
 
-/// Whether two time columns are those of groups with rows of their own, and not two clocks for the same rows (ROS: measured and
-/// written down): another rate, fewer stamps, or the same name with other stamps.
+/// Whether two time columns are those of groups with rows of their own, and not two clocks for the same rows (ROS:
+/// measured and written down): another rate, fewer stamps, or the same name with other stamps.
 bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColumn& b) {
   const RecordedChannel& one = recording.channels[a.index];
   const RecordedChannel& other = recording.channels[b.index];
@@ -197,8 +203,8 @@ bool are_groups(const Recording& recording, const TimeColumn& a, const TimeColum
   return other_rate || fewer || (plain(one) == plain(other) && other_stamps);
 }
 
-/// Several time columns in a text, each with a rate of its own for the columns to its right: every one becomes a time line.
-/// Returns whether there were such groups.
+/// Several time columns in a text, each with a rate of its own for the columns to its right: every one becomes a time
+/// line. Returns whether there were such groups.
 bool split_groups(Recording& recording, const ColumnMap& map) {
   if (recording.timelines.size() != 1) return false;
   const std::vector<TimeColumn> times = time_columns(recording, map);
@@ -258,8 +264,8 @@ const RecordedChannel& find_channel(const Recording& recording, const std::strin
         unique([&](const RecordedChannel& c) { return without_blanks(split_unit(c.name).stem) == plain; })}) {
     if (found != nullptr) return *found;
   }
-  throw Error(fmt::format("there is no column '{}' in {}; it has {}", source, recording.file, list_channels(recording)), where,
-              "correct source: one of these names, or the number of the column from 1");
+  throw Error(fmt::format("there is no column '{}' in {}; it has {}", source, recording.file, list_channels(recording)),
+              where, "correct source: one of these names, or the number of the column from 1");
 }
 
 void resolve_time(Recording& recording, ColumnMap& map) {
@@ -276,10 +282,12 @@ void resolve_time(Recording& recording, ColumnMap& map) {
   }
   if (open && split_groups(recording, map)) return;
   if (!map.time_source.empty()) {
-    const RecordedChannel& channel = find_channel(recording, map.time_source, map.file.empty() ? "--time-column" : map.file);
+    const RecordedChannel& channel =
+        find_channel(recording, map.time_source, map.file.empty() ? "--time-column" : map.file);
     if (channel.text_line > 0) {
       throw Error(fmt::format("'{}' is neither a number nor a date", channel.text),
-                  place(recording.file, channel.text_line, channel.name), "give another time column, or the rate with --rate-hz");
+                  place(recording.file, channel.text_line, channel.name),
+                  "give another time column, or the rate with --rate-hz");
     }
     take_column(recording, channel, map);
     return;
@@ -287,11 +295,12 @@ void resolve_time(Recording& recording, ColumnMap& map) {
   if (!open) return;
   const RecordedChannel* channel = guess_time(recording);
   if (channel == nullptr) {
-    throw Error(fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
-                            list_channels(recording)),
-                recording.file,
-                "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is "
-                "none; or source or rate_hz below [time] in a column map (--map)");
+    throw Error(
+        fmt::format("the column t_s is missing; the file has {}, and none of them is a time that goes on",
+                    list_channels(recording)),
+        recording.file,
+        "name the time column t_s; or give delta-log import --time-column, or --rate-hz of the recorder if there is "
+        "none; or source or rate_hz below [time] in a column map (--map)");
   }
   take_column(recording, *channel, map);
 }

@@ -102,7 +102,8 @@ class Reader {
 
   void require_no_offset(const Joint& j, const std::string& what) const {
     if (j.X_PJ.translation().norm() > kTolerance)
-      refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what, j.X_PJ.translation().norm()),
+      refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what,
+                         j.X_PJ.translation().norm()),
              at(j), "set the origin's xyz to 0 0 0");
   }
 
@@ -123,8 +124,8 @@ class Reader {
       std::size_t k = 0;
       while (k < drives_.size() && j.name != robot_file::drive_name(k)) ++k;
       if (k == drives_.size())
-        refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}", drives_.size(),
-                           drives_.size()),
+        refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}",
+                           drives_.size(), drives_.size()),
                at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
       drives_[k] = &j;
       if (j.mimic) refuse("a drive cannot mimic another joint", at(j), "remove the <mimic> element");
@@ -135,7 +136,8 @@ class Reader {
   double azimuth(const Joint& drive) const {
     const Eigen::Matrix3d& R = drive.X_PJ.linear();
     if (std::abs(R(2, 2) - 1) > kTolerance * kTolerance && std::hypot(R(0, 2), R(1, 2)) > kTolerance)
-      refuse("the limb frame must be turned about z of the base only", at(drive), "write the azimuth as the third number of rpy");
+      refuse("the limb frame must be turned about z of the base only", at(drive),
+             "write the azimuth as the third number of rpy");
     const double angle = std::atan2(R(1, 0), R(0, 0));
     return angle < -1e-9 ? angle + 2 * std::numbers::pi : angle;
   }
@@ -157,7 +159,8 @@ class Reader {
     for (const std::string& link : arm.links)
       if (link == arm.name + "_tip") limb.p_DE_0 = tree_.links.at(link).X_BL.translation();
     robot_.limbs.push_back(limb);
-    if (!tree_.loops.empty()) refuse("an axis has no loops", at(tree_.loops[0]), "remove the loop, or give the whole robot");
+    if (!tree_.loops.empty())
+      refuse("an axis has no loops", at(tree_.loops[0]), "remove the loop, or give the whole robot");
   }
 
   // --- Delta --------------------------------------------------------------------------------------
@@ -170,22 +173,26 @@ class Reader {
     std::size_t limbs = 0;
     while (limbs < drives_.size() && !is_telescope(*drives_[limbs])) ++limbs;
     if (drives_.size() - limbs > 1)
-      refuse("the telescope's drive must be the last one", at(*drives_[limbs]), "call the limbs' drives drive1 to drive3");
+      refuse("the telescope's drive must be the last one", at(*drives_[limbs]),
+             "call the limbs' drives drive1 to drive3");
     if (limbs != 3)
       refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
-             limbs == 4 ? "robots with four limbs (h4, i4, par4) are not supported yet"
-                        : "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
+             limbs == 4
+                 ? "robots with four limbs (h4, i4, par4) are not supported yet"
+                 : "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
     const bool telescope = limbs < drives_.size();
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
     robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
     for (std::size_t i = 0; i < limbs; ++i) {
       if (drives_[i]->prismatic != drives_[0]->prismatic)
-        refuse("the drives of the limbs are of different kinds", at(*drives_[i]), "make all of them revolute or all prismatic");
+        refuse("the drives of the limbs are of different kinds", at(*drives_[i]),
+               "make all of them revolute or all prismatic");
       robot_.limbs.push_back(limb_of(*drives_[i]));
       find_struts(*drives_[i]);
     }
     if (telescope && drives_[0]->prismatic)
-      refuse("a telescope bar with prismatic drives is not a known type", at(*drives_[limbs]), "use revolute drives (delta4)");
+      refuse("a telescope bar with prismatic drives is not a known type", at(*drives_[limbs]),
+             "use revolute drives (delta4)");
     find_plate();
     for (const Loop& loop : tree_.loops) close(loop);
     for (std::size_t i = 0; i < limbs; ++i) parallelogram(i);
@@ -201,9 +208,9 @@ class Reader {
   void find_struts(const Joint& drive) {
     const robot_file::Body& arm = body(drive.child);
     if (arm.joints.size() != 2)
-      refuse(
-          fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts", arm.joints.size()),
-          at(arm.name), kMendTree);
+      refuse(fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts",
+                         arm.joints.size()),
+             at(arm.name), kMendTree);
     std::vector<Strut> pair;
     for (const int index : arm.joints) {
       const Joint& about_y = joint(index);
@@ -242,7 +249,8 @@ class Reader {
     require_no_offset(about_y, "the plate's second joint");
     plate_ = about_y.child;
     if (!body(plate_).joints.empty())
-      refuse("a Delta's plate carries no moving joint", at(joint(body(plate_).joints[0])), "the tool hangs on the telescope bar");
+      refuse("a Delta's plate carries no moving joint", at(joint(body(plate_).joints[0])),
+             "the tool hangs on the telescope bar");
 
     // The loops say which link of the plate has its frame at the plate's centre.
     std::string frame;
@@ -259,7 +267,8 @@ class Reader {
              "add a spherical <loop> for each other strut");
     X_MB_ = tree_.links.at(frame).X_BL;
     const double angle = robot_.limbs[carrier / 2].azimuth;
-    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), at(frame), "the plate's frame");
+    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), at(frame),
+                     "the plate's frame");
     strut.closed = true;
     strut.end = about_z.X_PJ.translation();
     strut.p_BE = X_MB_.inverse().translation();
@@ -281,7 +290,8 @@ class Reader {
     if (loop.type != "spherical")
       refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), at(loop),
              "write type=\"spherical\"");
-    if (strut->closed) refuse(fmt::format("the end of {} is closed already", strut->name), at(loop), "remove one of the two");
+    if (strut->closed)
+      refuse(fmt::format("the end of {} is closed already", strut->name), at(loop), "remove one of the two");
     strut->closed = true;
     strut->end = (place.X_BL * other->X_LO).translation();
     strut->p_BE = on_plate->X_LO.translation();
@@ -296,22 +306,21 @@ class Reader {
         refuse("missing loop: the end of this strut is not joined to the plate", at(strut->name),
                fmt::format("add a spherical <loop> between {} and the plate", strut->name));
       if (strut->end.x() < kTolerance || strut->end.tail<2>().norm() > kTolerance)
-        refuse(fmt::format("the strut's end is at {}, but must lie on +x of the strut", words(strut->end)), at(strut->name),
-               "the strut's frame is at the elbow with x along the strut");
+        refuse(fmt::format("the strut's end is at {}, but must lie on +x of the strut", words(strut->end)),
+               at(strut->name), "the strut's frame is at the elbow with x along the strut");
     }
     if (std::abs(a.end.x() - b.end.x()) > kTolerance)
-      refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(), b.name,
-                         b.end.x()),
+      refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(),
+                         b.name, b.end.x()),
              at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
     const Vec at_elbow = a.elbow - b.elbow;
     const Vec y_L(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
     const Vec at_plate = a.p_BE - b.p_BE;
     if ((at_plate - at_elbow.y() * y_L).norm() > kTolerance)
-      refuse(
-          fmt::format(
-              "limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both in the base frame)",
-              index + 1, words(at_elbow.y() * y_L), words(at_plate)),
-          at(b.name), "mend the origins in its loops");
+      refuse(fmt::format("limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both "
+                         "in the base frame)",
+                         index + 1, words(at_elbow.y() * y_L), words(at_plate)),
+             at(b.name), "mend the origins in its loops");
     limb.p_DE_0 = (a.elbow + b.elbow) / 2;
     if (robot_.drive_kind == DriveKind::revolute) {
       if (limb.p_DE_0.x() < kTolerance || limb.p_DE_0.tail<2>().norm() > kTolerance)
@@ -325,8 +334,8 @@ class Reader {
   }
 
   /// Two passive joints at one point. Returns the second.
-  [[nodiscard]] const Joint& universal(const Joint& first, const Vec& first_axis, const Vec& second_axis, const std::string& name,
-                                       const std::string& rule) const {
+  [[nodiscard]] const Joint& universal(const Joint& first, const Vec& first_axis, const Vec& second_axis,
+                                       const std::string& name, const std::string& rule) const {
     require_passive(first, first_axis, name + "'s first axis");
     require_no_offset(first, name);
     const Joint& second = only_joint(first.child, rule);
@@ -338,8 +347,8 @@ class Reader {
   void find_telescope(const Joint& drive) {
     require_axis(drive, Vec::UnitZ(), false, "the telescope's drive");
     require_parallel(drive.X_PJ.linear(), at(drive), "the telescope drive's frame");
-    const Joint& y = universal(only_joint(drive.child, "the drive carries the joint about x"), Vec::UnitX(), Vec::UnitY(),
-                               "the upper universal joint", "the joint about x carries the one about y");
+    const Joint& y = universal(only_joint(drive.child, "the drive carries the joint about x"), Vec::UnitX(),
+                               Vec::UnitY(), "the upper universal joint", "the joint about x carries the one about y");
     const Joint& slide = only_joint(y.child, "the upper part of the bar carries the lower part");
     require_axis(slide, slide.axis.z() > 0 ? Vec(Vec::UnitZ()) : Vec(-Vec::UnitZ()), true, "the telescope joint");
     require_parallel(slide.X_PJ.linear(), at(slide), "the lower part of the bar");
@@ -357,7 +366,8 @@ class Reader {
       if (tree_.links.at(candidate.other->link).body != x2.child)
         refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), at(*candidate.loop),
                "let the loop join the plate with a strut or the tool");
-      if (closure != nullptr) refuse("the tool is joined to the plate twice", at(*candidate.loop), "remove one of the two");
+      if (closure != nullptr)
+        refuse("the tool is joined to the plate twice", at(*candidate.loop), "remove one of the two");
       closure = &candidate;
     }
     if (closure == nullptr)
@@ -368,8 +378,8 @@ class Reader {
       refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), at(loop),
              "write type=\"revolute\"");
     if (std::abs(std::abs(loop.axis.z()) - 1) > kTolerance)
-      refuse(fmt::format("wrong axis: the tool turns about {} of the plate, but must turn about z", words(loop.axis)), at(loop),
-             "write <axis xyz=\"0 0 1\"/>");
+      refuse(fmt::format("wrong axis: the tool turns about {} of the plate, but must turn about z", words(loop.axis)),
+             at(loop), "write <axis xyz=\"0 0 1\"/>");
     const Pose& X_MT = tree_.links.at(closure->other->link).X_BL;
     require_parallel(X_MT.linear(), at(closure->other->link), "the tool's frame");
     const Vec p_TV = X_MT.inverse().translation();
@@ -389,7 +399,8 @@ class Reader {
       const robot_file::LinkPlace& place = tree_.links.at(name);
       if (place.body == 0) continue;  // the base may weigh what it likes, and so may the rotor that rests on it
       if (robot_.telescope && place.body == drives_.back()->child) continue;
-      plausibility::require_body(robot_, role_of(place.body), inertial.in_frame(place.X_BL), "link " + name, tree_.where);
+      plausibility::require_body(robot_, role_of(place.body), inertial.in_frame(place.X_BL), "link " + name,
+                                 tree_.where);
     }
   }
 
@@ -405,13 +416,15 @@ class Reader {
   // --- extension ------------------------------------------------------------------------------------
   void extension() {
     if (!tree_.declared_type.empty() && tree_.declared_type != robot_.type)
-      refuse(fmt::format("<deltadyn> says type {}, but the joints and loops make a {}", tree_.declared_type, robot_.type),
-             fmt::format("{}, line {}", tree_.where, tree_.extension_line), "mend the type or the tree");
+      refuse(
+          fmt::format("<deltadyn> says type {}, but the joints and loops make a {}", tree_.declared_type, robot_.type),
+          fmt::format("{}, line {}", tree_.where, tree_.extension_line), "mend the type or the tree");
     for (const robot_file::DriveNote& note : tree_.drives) {
       const std::string where = fmt::format("{}, line {}, <drive> of <deltadyn>", tree_.where, note.line);
       const auto drive = std::ranges::find(drives_, note.joint, &Joint::name);
       const auto index = static_cast<std::size_t>(drive - drives_.begin());
-      if (index == drives_.size()) refuse("it names no drive of this robot", where, "write joint=\"drive1\" or another drive");
+      if (index == drives_.size())
+        refuse("it names no drive of this robot", where, "write joint=\"drive1\" or another drive");
       const char* acceleration = robot_file::acceleration_attribute((*drive)->prismatic);
       for (const auto& [key, value] : note.attributes) {
         const double number = robot_file::parse_number(value, where, key);

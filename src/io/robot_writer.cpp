@@ -44,7 +44,8 @@ class Writer {
     document_.InsertEndChild(root_);
     root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
     const std::string words = fmt::format(
-        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ", robot_.type);
+        " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ",
+        robot_.type);
     root_->InsertNewComment(words.c_str());
     base();
     if (robot_.parts.empty()) {
@@ -76,8 +77,8 @@ class Writer {
 
   XMLElement* link(const std::string& name) { return child(root_, "link", {{"name", name}}); }
 
-  XMLElement* joint(const std::string& name, const char* type, const std::string& parent, const std::string& to, const Vec& xyz,
-                    const Vec& rpy = Vec::Zero()) {
+  XMLElement* joint(const std::string& name, const char* type, const std::string& parent, const std::string& to,
+                    const Vec& xyz, const Vec& rpy = Vec::Zero()) {
     XMLElement* element = child(root_, "joint", {{"name", name}, {"type", type}});
     child(element, "parent", {{"link", parent}});
     child(element, "child", {{"link", to}});
@@ -89,8 +90,9 @@ class Writer {
 
   static void limit_of(XMLElement* element, const DriveLimits& limits, bool with_range) {
     const auto text = [](double limit) { return number_text(finite(limit)); };
-    XMLElement* limit = with_range ? child(element, "limit", {{"lower", text(limits.lower)}, {"upper", text(limits.upper)}})
-                                   : child(element, "limit");
+    XMLElement* limit = with_range
+                            ? child(element, "limit", {{"lower", text(limits.lower)}, {"upper", text(limits.upper)}})
+                            : child(element, "limit");
     limit->SetAttribute("effort", text(limits.effort).c_str());
     limit->SetAttribute("velocity", text(limits.velocity).c_str());
   }
@@ -109,7 +111,8 @@ class Writer {
     return element;
   }
 
-  void drive(std::size_t index, const std::string& to, DriveKind kind, const Vec& axis, const Vec& xyz, const Vec& rpy) {
+  void drive(std::size_t index, const std::string& to, DriveKind kind, const Vec& axis, const Vec& xyz,
+             const Vec& rpy) {
     const DriveLimits& limits = robot_.limits[index];
     const bool unlimited = std::isinf(limits.lower) && std::isinf(limits.upper);
     const bool continuous = kind == DriveKind::revolute && unlimited;
@@ -149,7 +152,8 @@ class Writer {
     child(child(element, "geometry"), "cylinder", {{"radius", number_text(radius)}, {"length", number_text(length)}});
   }
 
-  /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or empty)
+  /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or
+  /// empty)
   void inertial(XMLElement* body, const std::string& shared, const std::string& own = {}) {
     std::array<double, kInertialParameters> p{};
     bool given = false;
@@ -160,12 +164,14 @@ class Writer {
       given = true;
       p[k] = found->second;
       if (!std::isfinite(p[k]))
-        throw Error(fmt::format("parameter {}.{} is not finite", shared, kInertialNames[k]), "", "mend the parameter file");
+        throw Error(fmt::format("parameter {}.{} is not finite", shared, kInertialNames[k]), "",
+                    "mend the parameter file");
     }
     if (!given) return;
     if (!(p[0] > 0))
-      throw Error(fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]),
-                  "", "give the body a positive mass, or leave its parameters out");
+      throw Error(
+          fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]),
+          "", "give the body a positive mass, or leave its parameters out");
     set_inertial(body, p);
   }
 
@@ -243,7 +249,8 @@ class Writer {
     passive("platform_y", "platform_knuckle", "platform_mount", Vec::UnitY(), Vec::Zero());
     link("platform_mount");
     const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
-    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)), Vec(0, 0, -limb.azimuth));
+    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)),
+          Vec(0, 0, -limb.azimuth));
     XMLElement* body = link("platform");
     double radius = 0.02;
     for (const auto& other : robot_.limbs) radius = std::max(radius, other.p_BA.head<2>().norm());
@@ -308,7 +315,8 @@ class Writer {
         loop(name + "_end", "spherical", name, Vec(robot_.limbs[i].strut, 0, 0), "platform", strut_end(i, first));
       }
     if (robot_.telescope) {
-      // The bar's lower joint sits on the tool's axis; where that axis meets the plate is the loop's place on the plate.
+      // The bar's lower joint sits on the tool's axis; where that axis meets the plate is the loop's place on the
+      // plate.
       const Vec place(robot_.telescope->p_BV.x(), robot_.telescope->p_BV.y(), 0);
       axis_of(loop("tool_axis", "revolute", "platform", place, "tool", Vec::Zero()), Vec::UnitZ());
     }
@@ -319,10 +327,12 @@ class Writer {
     child(element, "gravity", {{"xyz_m_s2", number_text(robot_.gravity)}});
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
       XMLElement* entry = child(element, "drive", {{"joint", robot_file::drive_name(i)}});
-      if (i < robot_.limbs.size() && !robot_.parts.empty()) entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
+      if (i < robot_.limbs.size() && !robot_.parts.empty())
+        entry->SetAttribute("elbow", robot_.limbs[i].elbow > 0 ? "+1" : "-1");
       if (std::isfinite(robot_.limits[i].acceleration))
-        entry->SetAttribute(robot_file::acceleration_attribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic),
-                            number_text(robot_.limits[i].acceleration).c_str());
+        entry->SetAttribute(
+            robot_file::acceleration_attribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic),
+            number_text(robot_.limits[i].acceleration).c_str());
     }
   }
 

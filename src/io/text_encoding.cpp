@@ -54,14 +54,16 @@ bool is_utf8(std::string_view text) {
 
 /// Windows-1252 is Latin-1 with other characters in the place of its second control codes; unused codes stay controls.
 std::string from_windows_1252(std::string_view bytes) {
-  static constexpr char16_t kUpper[32] = {0x20AC, 0x81,   0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021, 0x2C6,  0x2030, 0x160,
-                                          0x2039, 0x152,  0x8D,   0x17D,  0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
-                                          0x2013, 0x2014, 0x2DC,  0x2122, 0x161,  0x203A, 0x153,  0x9D,   0x17E,  0x178};
+  static constexpr char16_t kUpper[32] = {0x20AC, 0x81,   0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021,
+                                          0x2C6,  0x2030, 0x160,  0x2039, 0x152,  0x8D,   0x17D,  0x8F,
+                                          0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
+                                          0x2DC,  0x2122, 0x161,  0x203A, 0x153,  0x9D,   0x17E,  0x178};
   std::string text;
   text.reserve(bytes.size() + bytes.size() / 64);
   for (const char c : bytes) {
     const auto code = static_cast<unsigned char>(c);
-    append_utf8(text, code >= 0x80 && code < 0xA0 ? static_cast<char32_t>(kUpper[code - 0x80]) : static_cast<char32_t>(code));
+    append_utf8(text,
+                code >= 0x80 && code < 0xA0 ? static_cast<char32_t>(kUpper[code - 0x80]) : static_cast<char32_t>(code));
   }
   return text;
 }
@@ -75,8 +77,8 @@ std::size_t utf8_length(std::string_view text) {
   const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xC0u) != 0x80u) return 0;
-  const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
-                   (first == 0xF4 && second > 0x8F);
+  const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+                   (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
   return bad ? 0 : length;
 }
 

@@ -40,8 +40,8 @@ Eigen::VectorXd read_times(const CsvTable& table) {
 }
 
 /// Rates from positions, and accelerations with them, where the file does not hold them.
-void fill_derivatives(const std::string& path, const Eigen::VectorXd& t_s, const Eigen::MatrixXd& x, Eigen::MatrixXd& xd,
-                      Eigen::MatrixXd& xdd) {
+void fill_derivatives(const std::string& path, const Eigen::VectorXd& t_s, const Eigen::MatrixXd& x,
+                      Eigen::MatrixXd& xd, Eigen::MatrixXd& xdd) {
   if (xd.size() > 0 && xdd.size() > 0) return;
   if (t_s.size() < kStencil)
     throw Error(fmt::format("{} rows are too few to compute the missing rates and accelerations", t_s.size()), path,
@@ -63,15 +63,16 @@ bool has_drive_columns(const CsvTable& table) {
 }
 
 void require_finite(const TrajectorySamples& samples, const Log& log, const RobotDescription& robot) {
-  for (const auto& [block, column] :
-       {std::pair{&samples.q, &DriveColumns::q}, {&samples.qd, &DriveColumns::qd}, {&samples.qdd, &DriveColumns::qdd}}) {
+  for (const auto& [block, column] : {std::pair{&samples.q, &DriveColumns::q},
+                                      {&samples.qd, &DriveColumns::qd},
+                                      {&samples.qdd, &DriveColumns::qdd}}) {
     for (Eigen::Index row = 0; row < block->rows(); ++row) {
       for (Eigen::Index drive = 0; drive < block->cols(); ++drive) {
         if (std::isfinite((*block)(row, drive))) continue;
-        throw Error(
-            "the number is missing or not finite",
-            place(samples.file, log.line[static_cast<std::size_t>(row)], drive_columns(robot, static_cast<int>(drive)).*column),
-            "fill in the number or remove the column");
+        throw Error("the number is missing or not finite",
+                    place(samples.file, log.line[static_cast<std::size_t>(row)],
+                          drive_columns(robot, static_cast<int>(drive)).*column),
+                    "fill in the number or remove the column");
       }
     }
   }
@@ -92,8 +93,8 @@ TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
     zd.push_back(column.zd);
     zdd.push_back(column.zdd);
   }
-  const bool has_task =
-      !description.parts.empty() && std::ranges::all_of(z, [&](const std::string& name) { return table.find(name).has_value(); });
+  const bool has_task = !description.parts.empty() &&
+                        std::ranges::all_of(z, [&](const std::string& name) { return table.find(name).has_value(); });
   const bool has_drives = has_drive_columns(table);
   if (!has_task && !has_drives) {
     const std::string wanted = description.parts.empty() ? z.front() : fmt::format("{}", fmt::join(z, ", "));

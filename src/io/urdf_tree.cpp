@@ -31,7 +31,8 @@ std::string at(const std::string& where, const XMLElement* element) {
 std::string attribute(const XMLElement* element, const char* name, const std::string& place) {
   const char* value = element->Attribute(name);
   if (value == nullptr || *value == '\0')
-    refuse(fmt::format("<{}> has no attribute '{}'", element->Name(), name), place, fmt::format("write {}=\"...\"", name));
+    refuse(fmt::format("<{}> has no attribute '{}'", element->Name(), name), place,
+           fmt::format("write {}=\"...\"", name));
   return value;
 }
 
@@ -52,7 +53,8 @@ Eigen::Vector3d parse_vector(const std::string& text, const std::string& where, 
     v(count) = parse_number(word, where, name);
   }
   if (count != 3 || words >> word)
-    refuse(fmt::format("attribute {} is '{}', but must be three numbers", name, text), where, "separate them by blanks");
+    refuse(fmt::format("attribute {} is '{}', but must be three numbers", name, text), where,
+           "separate them by blanks");
   return v;
 }
 
@@ -94,7 +96,8 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
       refuse(fmt::format("there is a link of this name on line {} already", other->second), at(where, link),
              "rename one of them");
   }
-  if (facts.link_lines.empty()) refuse("the robot has no link", where, "give a URDF robot file, e.g. one of delta-model create");
+  if (facts.link_lines.empty())
+    refuse("the robot has no link", where, "give a URDF robot file, e.g. one of delta-model create");
   std::map<std::string, std::string> parent_joint;
   for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr; joint = joint->NextSiblingElement("joint")) {
     const std::string place = at(where, joint);
@@ -118,7 +121,8 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
 }
 
 /// Links that hang below each link, itself included.
-int size_below(const std::string& link, const std::map<std::string, std::vector<std::string>>& children, int depth = 0) {
+int size_below(const std::string& link, const std::map<std::string, std::vector<std::string>>& children,
+               int depth = 0) {
   int size = 1;
   const auto found = children.find(link);
   if (found == children.end() || depth > 1000) return size;
@@ -189,7 +193,8 @@ urdf::ModelInterfaceSharedPtr parse_model(const std::string& text, const std::st
     thrown = e.what();
   }
   if (!model || !model->getRoot())
-    refuse("not a valid URDF tree: " + (messages.text().empty() ? thrown : messages.text()), where, "mend the named element");
+    refuse("not a valid URDF tree: " + (messages.text().empty() ? thrown : messages.text()), where,
+           "mend the named element");
   return model;
 }
 
@@ -258,11 +263,12 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
                          .mimic = joint->mimic != nullptr,
                          .floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR,
                          .limits = limits_of(*joint)};
-      if (!(moving.floating && dialect == UrdfDialect::cad) && !moving.prismatic && joint->type != urdf::Joint::REVOLUTE &&
-          joint->type != urdf::Joint::CONTINUOUS)
+      if (!(moving.floating && dialect == UrdfDialect::cad) && !moving.prismatic &&
+          joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS)
         refuse("the joint is neither revolute, continuous, prismatic nor fixed", tree.at(moving),
                "a Delta's tree has no other joints");
-      if (!moving.floating && !(axis.norm() > 1e-9)) refuse("the axis has no direction", tree.at(moving), "write a unit vector");
+      if (!moving.floating && !(axis.norm() > 1e-9))
+        refuse("the axis has no direction", tree.at(moving), "write a unit vector");
       tree.bodies[static_cast<std::size_t>(here.body)].joints.push_back(static_cast<int>(tree.joints.size()));
       tree.joints.push_back(moving);
       tree.bodies.push_back({child->name, {}, {child->name}});
@@ -284,7 +290,8 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
     const std::string there = at(tree.where, gravity);
     tree.gravity = parse_vector(attribute(gravity, "xyz_m_s2", there), there, "xyz_m_s2");
   }
-  for (auto* drive = extension->FirstChildElement("drive"); drive != nullptr; drive = drive->NextSiblingElement("drive")) {
+  for (auto* drive = extension->FirstChildElement("drive"); drive != nullptr;
+       drive = drive->NextSiblingElement("drive")) {
     DriveNote& note = tree.drives.emplace_back();
     note.line = drive->GetLineNum();
     for (auto* entry = drive->FirstAttribute(); entry != nullptr; entry = entry->Next())
@@ -293,7 +300,8 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
 }
 
 void read_loops(const XMLElement* robot, UrdfDialect dialect, UrdfTree& tree) {
-  for (auto* element = robot->FirstChildElement("loop"); element != nullptr; element = element->NextSiblingElement("loop")) {
+  for (auto* element = robot->FirstChildElement("loop"); element != nullptr;
+       element = element->NextSiblingElement("loop")) {
     const std::string place = at(tree.where, element);
     Loop& loop = tree.loops.emplace_back();
     loop.name = attribute(element, "name", place);
@@ -353,15 +361,19 @@ void require_metres(const UrdfTree& tree) {
     try {
       plausibility::require(plausibility::kOffset, origin.norm(), "its distance from the link's origin", place);
     } catch (const Error& e) {
-      refuse(e.problem(), place,
-             fmt::format("{}; a file in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o robot.urdf",
-                         e.mend(), tree.where));
+      refuse(
+          e.problem(), place,
+          fmt::format(
+              "{}; a file in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o robot.urdf",
+              e.mend(), tree.where));
     }
   };
   for (const Joint& joint : tree.joints)
-    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), "joint", joint.name, joint.line);
+    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), "joint", joint.name,
+          joint.line);
   for (const Loop& loop : tree.loops)
-    for (const LoopEnd* end : {&loop.predecessor, &loop.successor}) check(end->X_LO.translation(), "loop", loop.name, loop.line);
+    for (const LoopEnd* end : {&loop.predecessor, &loop.successor})
+      check(end->X_LO.translation(), "loop", loop.name, loop.line);
 }
 
 UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, UrdfDialect dialect) {
@@ -370,11 +382,13 @@ UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, Urdf
     refuse("the file is empty", where, "give a URDF robot file, e.g. one of delta-model create");
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     refuse(fmt::format("not well-formed XML ({})", document.ErrorName()),
-           fmt::format("{}, line {}", where, document.ErrorLineNum()), "give a URDF robot file, e.g. one of delta-model create");
+           fmt::format("{}, line {}", where, document.ErrorLineNum()),
+           "give a URDF robot file, e.g. one of delta-model create");
   XMLElement* robot = document.RootElement();
   if (robot == nullptr || std::string(robot->Name()) != "robot")
-    refuse(fmt::format("the root element is <{}>, but a URDF starts with <robot>", robot == nullptr ? "" : robot->Name()), where,
-           "give a URDF robot file, e.g. one of delta-model create");
+    refuse(
+        fmt::format("the root element is <{}>, but a URDF starts with <robot>", robot == nullptr ? "" : robot->Name()),
+        where, "give a URDF robot file, e.g. one of delta-model create");
   XmlFacts facts = check_xml(robot, where);
   const bool cad = dialect == UrdfDialect::cad;
   const urdf::ModelInterfaceSharedPtr model = parse_model(cad ? completed(document, robot, facts) : text, where);

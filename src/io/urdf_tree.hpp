@@ -19,11 +19,12 @@ using Pose = Eigen::Isometry3d;
 struct Joint {
   std::string name;
   int line = 0;
-  std::string parent_link;       ///< as written; one of the links of `parent`
-  bool prismatic = false;        ///< else revolute or continuous
-  int parent = -1;               ///< body
-  int child = -1;                ///< body
-  Pose X_PJ = Pose::Identity();  ///< joint frame in the parent body's frame, at joint position 0 also the child body's frame
+  std::string parent_link;  ///< as written; one of the links of `parent`
+  bool prismatic = false;   ///< else revolute or continuous
+  int parent = -1;          ///< body
+  int child = -1;           ///< body
+  /// Joint frame in the parent body's frame, at joint position 0 also the child body's frame
+  Pose X_PJ = Pose::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the joint frame
   bool mimic = false;
   bool floating = false;  ///< six (or, planar, three) degrees of freedom: holds nothing; CAD trees only
@@ -94,22 +95,24 @@ struct UrdfTree {
 [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend,
                          ExitCode code = ExitCode::bad_input);
 
-/// robot_file: what the tools take. cad: any tree of a CAD program; joints may float or lack limits, and there may be several trees,
-/// whose roots are then joined to the largest one by floating joints, in the place that the file's origin gives them.
+/// robot_file: what the tools take. cad: any tree of a CAD program; joints may float or lack limits, and there may be
+/// several trees, whose roots are then joined to the largest one by floating joints, in the place that the file's
+/// origin gives them.
 enum class UrdfDialect { robot_file, cad };
 
 /// Throws deltadyn::Error with the line if the file is not well-formed URDF or URDF+.
 [[nodiscard]] UrdfTree parse_urdf_tree(const std::string& text, const std::string& where,
                                        UrdfDialect dialect = UrdfDialect::robot_file);
 
-/// Throws deltadyn::Error with the joint or loop that lies farther from its link than any robot is large: before the rules of
-/// mechanisms are looked at, which a file that is partly in millimetres breaks in ways that do not name the reason.
+/// Throws deltadyn::Error with the joint or loop that lies farther from its link than any robot is large: before the
+/// rules of mechanisms are looked at, which a file that is partly in millimetres breaks in ways that do not name the
+/// reason.
 void require_metres(const UrdfTree& tree);
 
-/// Turns the tree from the frame of its root link to that of the robot's base W: gravity and the places of the drives. A base that
-/// hangs, leans or is turned is a link that fixed joints hold against the root ("world"). W is the frame of the last link that
-/// carries all drives and against which the limbs are turned about z only; if there is none (drives on brackets of their own below
-/// a turned base), W is made from the frames of the drives.
+/// Turns the tree from the frame of its root link to that of the robot's base W: gravity and the places of the drives.
+/// A base that hangs, leans or is turned is a link that fixed joints hold against the root ("world"). W is the frame of
+/// the last link that carries all drives and against which the limbs are turned about z only; if there is none (drives
+/// on brackets of their own below a turned base), W is made from the frames of the drives.
 void place_base(UrdfTree& tree);
 
 /// A finite number, or throws deltadyn::Error that names the attribute.

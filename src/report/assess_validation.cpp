@@ -24,7 +24,8 @@ Assessment assess_validation(const Robot& robot, const Validation& validation) {
   for (const ValidatedDrive& drive : validation.drives) {
     const auto all = static_cast<double>(drive.rows + drive.reversal_rows);
     drives.push_back({drive.rms_residual, drive.rms_torque, reversal_ratio(drive),
-                      all > 0 ? static_cast<double>(drive.reversal_rows) / all : 0.0, drive.torque_noise, drive.bristles});
+                      all > 0 ? static_cast<double>(drive.reversal_rows) / all : 0.0, drive.torque_noise,
+                      drive.bristles});
     rows_everywhere = rows_everywhere && drive.rows > 0;
   }
   Assessment out;

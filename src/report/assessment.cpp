@@ -74,7 +74,8 @@ bool is_measured(const ConsistentFitSummary& fit, Visibility visibility, Eigen::
   return decided_by(fit, visibility, i) == DecidedBy::data && fit.std(i) <= kWellSeen * std::abs(fit.p(i));
 }
 
-std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base, const Eigen::VectorXd& effect) {
+std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BaseParameters& base,
+                                 const Eigen::VectorXd& effect) {
   const std::vector<Visibility> visibility = parameter_visibility(base);
   std::vector<PriorGap> gaps;
   struct Missing {
@@ -106,7 +107,8 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     if (gaps[k].by_motion) continue;
     if (gaps[k].negligible) {
-      gaps[k].advice = fmt::format("nothing: it makes less than {} of any drive's torque", format_percent(kNegligibleEffect, 1));
+      gaps[k].advice =
+          fmt::format("nothing: it makes less than {} of any drive's torque", format_percent(kNegligibleEffect, 1));
       continue;
     }
     const Missing& what = missing[k];
@@ -121,13 +123,16 @@ std::vector<PriorGap> prior_gaps(const ConsistentFitSummary& fit, const BasePara
   return gaps;
 }
 
-IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification, const Validation& training) {
+IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification,
+                                       const Validation& training) {
   IdentificationEvidence evidence;
   evidence.structure = structure_left(training);
   for (const ValidatedDrive& drive : training.drives) evidence.torque_noise.push_back(drive.torque_noise);
   const BaseEstimate& estimate = identification.base_estimate;
-  evidence.on_logs = torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
-  evidence.in_workspace = torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
+  evidence.on_logs =
+      torque_uncertainty_on_logs(robot, identification.base, estimate.covariance, identification.fit.p, training);
+  evidence.in_workspace =
+      torque_uncertainty_in_workspace(robot, identification.base, estimate.covariance, identification.fit.p);
   evidence.parameter_effect = parameter_effect(robot, identification.fit.p);
   return evidence;
 }
@@ -151,12 +156,14 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
   const double relative = drives.empty() ? 0.0 : drives[worst].relative();
   const auto drive = static_cast<int>(worst);
   Check check{"Size of the residual", "", grade_residual(relative), ""};
-  check.figure = fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
+  check.figure =
+      fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
   const double noise = drives.empty() ? 0.0 : drives[worst].torque_noise;
   if (check.verdict == Verdict::bad && drives[worst].rms < kNoiseOfRecord * noise) {
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
-        "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust parameters as "
+        "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust "
+        "parameters as "
         "far as their intervals say, and record the torque faster or through a low pass.",
         format_number(noise, torque_unit_of(robot, drive), 3));
     return check;
@@ -165,12 +172,14 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::good: check.meaning = "Small: as feed-forward the model leaves little to the feedback loop."; break;
     case Verdict::caution:
       check.meaning =
-          "Usable as feed-forward, but not for forces estimated from the drive currents. The report shows what the residual "
+          "Usable as feed-forward, but not for forces estimated from the drive currents. The report shows what the "
+          "residual "
           "follows.";
       break;
     case Verdict::bad:
       check.meaning =
-          "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, the gear "
+          "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, "
+          "the gear "
           "ratios, and that position and torque belong to the same instant.";
       break;
   }
@@ -178,8 +187,9 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
 }
 
 std::string worst_dependence(const ResidualStructure& structure, DependenceOnMotion& found) {
-  const std::pair<const char*, const DependenceOnMotion*> all[] = {
-      {"velocity", &structure.on_velocity}, {"position", &structure.on_position}, {"acceleration", &structure.on_acceleration}};
+  const std::pair<const char*, const DependenceOnMotion*> all[] = {{"velocity", &structure.on_velocity},
+                                                                   {"position", &structure.on_position},
+                                                                   {"acceleration", &structure.on_acceleration}};
   std::string name;
   for (const auto& [coordinate, dependence] : all) {
     if (dependence->p_value > kRareByChance || dependence->share < kNotableShare) continue;
@@ -194,7 +204,8 @@ std::string worst_dependence(const ResidualStructure& structure, DependenceOnMot
 std::string meaning_of_dependence(const std::string& coordinate) {
   if (coordinate == "velocity")
     return "friction there is more than Coulomb and viscous (Stribeck, a load-dependent part, a gear)";
-  if (coordinate == "position") return "a spring, a cable, an unbalance or a wrong length acts there, or the gear has a ripple";
+  if (coordinate == "position")
+    return "a spring, a cable, an unbalance or a wrong length acts there, or the gear has a ripple";
   if (coordinate == "time")
     return "other drives, the temperature, the pose of the plate or a slow sensor may be behind it; see its spectrum";
   return "inertia is missing there (a rotor), or torque and position are not of the same instant (a lag)";
@@ -205,11 +216,11 @@ bool worth_acting_on(const StructureLeft& structure) {
 }
 
 std::string structure_in_words(const StructureLeft& structure) {
-  const std::string what =
-      structure.coordinate == "time" ? "slow waves that follow none of its coordinates" : "following its " + structure.coordinate;
-  std::string text =
-      fmt::format("structure is left in the residual of {} ({}), {}: {} of the torque in this log", drive_name(structure.drive),
-                  short_name(structure.file), what, format_percent(structure.of_torque, 2));
+  const std::string what = structure.coordinate == "time" ? "slow waves that follow none of its coordinates"
+                                                          : "following its " + structure.coordinate;
+  std::string text = fmt::format("structure is left in the residual of {} ({}), {}: {} of the torque in this log",
+                                 drive_name(structure.drive), short_name(structure.file), what,
+                                 format_percent(structure.of_torque, 2));
   if (structure.of_torque_there > 0) {
     text += fmt::format(", at speeds of {} to {} (SI) {} of the torque there", format_number(structure.speed_low, 2),
                         format_number(structure.speed_high, 2), format_percent(structure.of_torque_there, 2));
@@ -221,7 +232,8 @@ std::string structure_in_words(const StructureLeft& structure) {
 Check check_residual_shape(const std::optional<StructureLeft>& structure) {
   Check check{"Shape of the residual", "like noise", Verdict::good, ""};
   if (!structure) {
-    check.meaning = "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
+    check.meaning =
+        "It follows neither position, velocity nor acceleration: the model lacks nothing that these logs could show.";
     return check;
   }
   const std::string drive = drive_name(structure->drive), log = short_name(structure->file);
@@ -256,7 +268,8 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
   if (!worse.empty()) {
     check.figure = larger(worse);
     check.meaning =
-        "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in the first "
+        "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in "
+        "the first "
         "instants after a reversal the model's torque is off by that much more.";
   } else if (!used.empty()) {
     check.figure = larger(used);
@@ -264,7 +277,8 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
         "These rows are used all the same (--reversals keep) and pull at the friction: compare with --reversals auto.";
   } else if (masked >= kNoMatterMasked) {
     check.figure = fmt::format("left out, at most {} of a drive's rows", format_percent(masked, 2));
-    check.meaning = "The sign of the velocity is uncertain there. The model predicts these rows about as well as the others.";
+    check.meaning =
+        "The sign of the velocity is uncertain there. The model predicts these rows about as well as the others.";
   } else if (bristles) {
     check.figure = "rows there are used";
     check.meaning = "The model holds how friction builds up after a reversal.";
@@ -272,7 +286,8 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
   if (masked > kFewMasked) {
     check.verdict = Verdict::caution;
     if (!worse.empty()) check.figure += fmt::format("; {} of a drive's rows are left out", format_percent(masked, 2));
-    check.meaning += " The logs reverse so often that they say little about slow motion: record one with longer strokes.";
+    check.meaning +=
+        " The logs reverse so often that they say little about slow motion: record one with longer strokes.";
   }
   return check;
 }
@@ -293,13 +308,14 @@ void conclude(const Headlines& headlines, Assessment& out) {
   out.verdict = worst.verdict;
   std::string subject = worst.subject;
   subject[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(subject[0])));
-  out.headline =
-      out.verdict == Verdict::good
-          ? headlines.good
-          : fmt::format("{}: {} ({}).", out.verdict == Verdict::bad ? headlines.bad : headlines.caution, subject, worst.figure);
+  out.headline = out.verdict == Verdict::good
+                     ? headlines.good
+                     : fmt::format("{}: {} ({}).", out.verdict == Verdict::bad ? headlines.bad : headlines.caution,
+                                   subject, worst.figure);
   for (const Verdict level : {Verdict::bad, Verdict::caution}) {
     for (const Check& check : out.checks) {
-      if (check.verdict == level) out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
+      if (check.verdict == level)
+        out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
     }
   }
 }

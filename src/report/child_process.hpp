@@ -13,7 +13,8 @@ struct ProcessResult {
   std::string errors;
 };
 
-/// Runs a program found in PATH with these arguments, without a shell: feeds \p input to it and collects what it writes.
+/// Runs a program found in PATH with these arguments, without a shell: feeds \p input to it and collects what it
+/// writes.
 ProcessResult run_process(const std::vector<std::string>& arguments, std::string_view input);
 
 }  // namespace deltadyn

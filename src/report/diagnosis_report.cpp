@@ -42,7 +42,8 @@ BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
   for (const DiagnosisTrace& trace : d.traces) {
     if (trace.holdout != holdout) continue;
     for (Index k = 0; k < trace.t_s.size(); ++k) {
-      if (trace.usable(k, drive)) points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
+      if (trace.usable(k, drive))
+        points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
     }
   }
   std::ranges::sort(points);
@@ -99,9 +100,12 @@ VectorXd thinned(const VectorXd& x, Index step) {
 void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
-      "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model fitted to "
-      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the motion were "
-      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does there. All "
+      "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model "
+      "fitted to "
+      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the "
+      "motion were "
+      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does "
+      "there. All "
       "that follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
                {"parameters as given"},
@@ -128,7 +132,8 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
-      "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is right, two "
+      "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is "
+      "right, two "
       "of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
     const std::string name = "drive " + std::to_string(j + 1), unit = position_unit_of(robot, j);
@@ -146,14 +151,14 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
   std::vector<const ConsideredEffect*> order;
   for (const ConsideredEffect& one : d.considered) order.push_back(&one);
   std::ranges::sort(order, std::greater(), &ConsideredEffect::gain_alone);
-  report.paragraph(
-      fmt::format("{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
-                  "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
-                  d.considered.size(), d.null_runs));
+  report.paragraph(fmt::format(
+      "{} effects at their places were tried. Each counts by what a re-fit of all parameters cannot absorb, with the "
+      "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
+      d.considered.size(), d.null_runs));
   const auto fill = [](Table& table, const ConsideredEffect& one) {
     const Tone tone = one.ruling == "found" ? Tone::strong : (one.ruling == "no evidence" ? Tone::muted : Tone::plain);
-    table.row({one.name, one.joint, one.effect_class, format_number(one.gain_alone, 4), p_text(one.p_alone), p_text(one.p_left),
-               one.ruling},
+    table.row({one.name, one.joint, one.effect_class, format_number(one.gain_alone, 4), p_text(one.p_alone),
+               p_text(one.p_left), one.ruling},
               tone);
   };
   const std::vector<TableColumn> columns = {{"effect", Align::left}, {"at", Align::left}, {"class", Align::left},
@@ -167,21 +172,27 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
     for (const ConsideredEffect* one : order) fill(all, *one);
     inner.table(all);
   });
-  report.details(
-      "What these logs can show and tell apart (from the motion, before any torque is looked at)", [&](HtmlReport& inner) {
-        inner.paragraph(
-            "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. Smallest size: the "
-            "amplitude that would be named at the noise of these logs. Hardly told from: effects whose torques are alike in "
-            "these motions, with the cosine between them.");
-        Table table(
-            {{"effect", Align::left}, {"at", Align::left}, {"visible"}, {"smallest size"}, {"hardly told from", Align::left}});
-        for (const ConsideredEffect& one : d.considered) {
-          table.row({one.name, one.joint, format_percent(one.kept, 2), format_number(one.detectable, pretty_unit(one.unit), 3),
-                     fmt::format("{}", fmt::join(one.like, "; "))},
-                    one.kept < 0.002 ? Tone::muted : Tone::plain);
-        }
-        inner.table(table);
-      });
+  report.details("What these logs can show and tell apart (from the motion, before any torque is looked at)",
+                 [&](HtmlReport& inner) {
+                   inner.paragraph(
+                       "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. "
+                       "Smallest size: the "
+                       "amplitude that would be named at the noise of these logs. Hardly told from: effects whose "
+                       "torques are alike in "
+                       "these motions, with the cosine between them.");
+                   Table table({{"effect", Align::left},
+                                {"at", Align::left},
+                                {"visible"},
+                                {"smallest size"},
+                                {"hardly told from", Align::left}});
+                   for (const ConsideredEffect& one : d.considered) {
+                     table.row({one.name, one.joint, format_percent(one.kept, 2),
+                                format_number(one.detectable, pretty_unit(one.unit), 3),
+                                fmt::format("{}", fmt::join(one.like, "; "))},
+                               one.kept < 0.002 ? Tone::muted : Tone::plain);
+                   }
+                   inner.table(table);
+                 });
 }
 
 void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
@@ -206,7 +217,8 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
       const std::string unit = pretty_unit(effect_unit(kind.shapes[k].unit, one.effect.joint, robot.description()));
       const auto at = static_cast<Index>(k);
-      const double value = one.effect.shape(at), std = one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan("");
+      const double value = one.effect.shape(at),
+                   std = one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan("");
       if (std::isfinite(std)) {
         table.row({std::string(kind.shapes[k].name), format_with_uncertainty(value, std, unit),
                    format_interval(value - 1.96 * std, value + 1.96 * std, unit)});
@@ -216,18 +228,21 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     }
     report.table(table);
     report.note(
-        "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a standard "
-        "deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the load, 15 % for the "
+        "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a "
+        "standard "
+        "deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the load, 15 "
+        "% for the "
         "spring in a drive.");
-    report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.", p_text(one.p_value),
-                            format_percent(one.explained_share)));
+    report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.",
+                            p_text(one.p_value), format_percent(one.explained_share)));
     if (!one.why.empty()) {
       report.paragraph("Not added to the model: " + one.why + ".");
     } else if (one.confusable.empty()) {
       report.paragraph("Nothing else in the catalogue explains it as well.");
     } else {
       std::vector<std::string> items;
-      for (const EffectCandidate& other : one.confusable) items.push_back(other.name + " at " + other.joint + ": " + other.why);
+      for (const EffectCandidate& other : one.confusable)
+        items.push_back(other.name + " at " + other.joint + ": " + other.why);
       report.paragraph("It could also be:");
       report.list(items);
     }
@@ -245,12 +260,13 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     Table table({{"effect", Align::left}, {"residual before"}, {"after"}, {"floor"}});
     for (const NamedEffect& one : d.named) {
       const char* unit = torque_unit_of(robot, one.drives.empty() ? 0 : one.drives.front());
-      table.row({one.name + " at " + one.joint, format_number(one.rms_before, unit, 3), format_number(one.rms_after, unit, 3),
-                 format_number(one.rms_floor, unit, 3)});
+      table.row({one.name + " at " + one.joint, format_number(one.rms_before, unit, 3),
+                 format_number(one.rms_after, unit, 3), format_number(one.rms_floor, unit, 3)});
     }
     report.table(table, "Root mean square residual of the drives that the effect reaches, on " + held->file + ".");
-    report.paragraph(fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
-                                 100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
+    report.paragraph(
+        fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
+                    100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
   } else {
     Table table({{"drive", Align::left}, {"residual"}, {"floor"}});
     for (std::size_t j = 0; j < d.drives.size(); ++j) {
@@ -272,7 +288,8 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
                       .x_label = "time [s]",
                       .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
                       .height = 240};
-    const auto add = [&t, step](PlotSpec& plot, const char* label, const VectorXd& y, PlotColor color, bool dashed = false) {
+    const auto add = [&t, step](PlotSpec& plot, const char* label, const VectorXd& y, PlotColor color,
+                                bool dashed = false) {
       plot.series.push_back({label, t, thinned(y, step), SeriesStyle::line, {}, color, dashed});
     };
     add(torque, "measured", held->torque.col(j), PlotColor::grey);
@@ -317,7 +334,8 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   report.list(d.next);
   if (!d.notes.empty()) report.list(d.notes);
   report.heading("How this was done");
-  std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
+  std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file},
+                                                            {"model", context.parameter_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("training log", file);
   for (const DiagnosisTrace& trace : d.traces) {
     if (trace.holdout) facts.emplace_back("hold-out log", trace.file);

@@ -49,8 +49,8 @@ Rows shown_rows(const Validation& validation, const ValidatedLog& log) {
   if (all <= length + length / 4) return {0, all};
   Eigen::VectorXd square = Eigen::VectorXd::Zero(all);
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
-    const Eigen::ArrayXd e =
-        masked_residual(p, static_cast<int>(j), true, false).array() / std::max(validation.drives[j].rms_residual, 1e-300);
+    const Eigen::ArrayXd e = masked_residual(p, static_cast<int>(j), true, false).array() /
+                             std::max(validation.drives[j].rms_residual, 1e-300);
     square += e.isNaN().select(0.0, e.square()).matrix();
   }
   double sum = square.head(length).sum(), best = sum;
@@ -87,7 +87,8 @@ std::vector<std::vector<int>> drives_of_like_kind(const Robot& robot) {
 }
 
 std::string name_of_group(const std::vector<int>& drives) {
-  return drives.size() == 1 ? drive_name(drives.front()) : fmt::format("drives {} to {}", drives.front() + 1, drives.back() + 1);
+  return drives.size() == 1 ? drive_name(drives.front())
+                            : fmt::format("drives {} to {}", drives.front() + 1, drives.back() + 1);
 }
 
 /// Means over intervals of equally many rows, with the interval that holds them at 95 %.
@@ -133,13 +134,15 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
     std::vector<PlotSpec> panels;
     bool grey = false, cut_off = false;
     for (int j = 0; j < robot.drives(); ++j) {
-      panels.push_back({.title = fmt::format("Drive {}", j + 1),
-                        .x_label = "time [s]",
-                        .y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j)),
-                        .series = {{"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue},
-                                   {"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true}},
-                        .height = 210});
-      PlotSpec rest{.x_label = "time [s]", .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)), .height = 150};
+      panels.push_back(
+          {.title = fmt::format("Drive {}", j + 1),
+           .x_label = "time [s]",
+           .y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j)),
+           .series = {{"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue},
+                      {"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true}},
+           .height = 210});
+      PlotSpec rest{
+          .x_label = "time [s]", .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)), .height = 150};
       const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)),
                             reversal = piece(masked_residual(p, j, false, true));
       if (reversal.array().isFinite().any()) {
@@ -154,18 +157,21 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
       cut_off = cut_off || largest_finite(reversal) > rest.y_range->high;
       panels.push_back(std::move(rest));
     }
-    std::string caption = fmt::format("{}: measured and model {} with the residual below (measured minus model, filtered alike).",
-                                      short_name(log.file), effort_of(robot, 0));
+    std::string caption =
+        fmt::format("{}: measured and model {} with the residual below (measured minus model, filtered alike).",
+                    short_name(log.file), effort_of(robot, 0));
     if (grey)
-      caption += fmt::format(" Grey: near velocity reversals{}.", cut_off ? ", where spikes are cut off at the edge" : "");
+      caption +=
+          fmt::format(" Grey: near velocity reversals{}.", cut_off ? ", where spikes are cut off at the edge" : "");
     if (rows.count < p.rows()) {
-      caption += fmt::format(" Shown are the {} with the largest residual of {}.", format_duration(t(t.size() - 1) - t(0)),
-                             format_duration(p.t_s(p.rows() - 1) - p.t_s(0)));
+      caption += fmt::format(" Shown are the {} with the largest residual of {}.",
+                             format_duration(t(t.size() - 1) - t(0)), format_duration(p.t_s(p.rows() - 1) - p.t_s(0)));
     }
     report.plot(panels, caption);
   }
   if (shown < validation.logs.size()) {
-    report.note(fmt::format("The first {} of {} logs are drawn; the figures count all of them.", shown, validation.logs.size()));
+    report.note(fmt::format("The first {} of {} logs are drawn; the figures count all of them.", shown,
+                            validation.logs.size()));
   }
 }
 
@@ -184,9 +190,9 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
       try {
         const PowerSpectrum spectrum = welch_spectrum(residual, log.row_rate_hz);
         // The first bin has lost its mean; beyond the low pass there is nothing left to see.
-        const double end = validation.processing.filter
-                               ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio * validation.processing.cutoff_hz
-                               : std::numeric_limits<double>::infinity();
+        const double end = validation.processing.filter ? kEndOfSpectrum * validation.processing.torque_cutoff_ratio *
+                                                              validation.processing.cutoff_hz
+                                                        : std::numeric_limits<double>::infinity();
         const Index bins = std::max<Index>(2, (spectrum.frequency_hz.array() <= end).count() - 1);
         spec.series.push_back({.label = validation.logs.size() > 1 ? short_name(log.file) : "",
                                .x = spectrum.frequency_hz.segment(1, bins),
@@ -206,7 +212,8 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
     return;
   }
   report.plot(panels,
-              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low pass; "
+              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the "
+              "low pass; "
               "what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
 }
 
@@ -228,7 +235,8 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
       if (x.empty()) continue;
       const Eigen::VectorXd X = Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
       const Eigen::VectorXd E = Eigen::Map<Eigen::VectorXd>(e.data(), static_cast<Index>(e.size()));
-      const Index step = std::max<Index>(1, (X.size() + kPointsShown - 1) / kPointsShown), points = (X.size() + step - 1) / step;
+      const Index step = std::max<Index>(1, (X.size() + kPointsShown - 1) / kPointsShown),
+                  points = (X.size() + step - 1) / step;
       const auto shown = Eigen::seqN(0, points, step);
       panels.push_back({.title = fmt::format("Drive {}", j + 1),
                         .x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
@@ -240,17 +248,22 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
                         .height = 180});
     }
     if (panels.empty()) continue;
-    report.plot(panels,
-                fmt::format("Residual over {}, {}; without the rows that are left out near velocity reversals. {}",
-                            velocity ? "velocity" : "position", name_of_group(group),
-                            velocity ? "Means that leave zero show friction that Coulomb and viscous friction do not describe."
-                                     : "Means that leave zero show springs, cables, unbalance, gear ripple or wrong lengths."));
+    report.plot(
+        panels,
+        fmt::format("Residual over {}, {}; without the rows that are left out near velocity reversals. {}",
+                    velocity ? "velocity" : "position", name_of_group(group),
+                    velocity ? "Means that leave zero show friction that Coulomb and viscous friction do not describe."
+                             : "Means that leave zero show springs, cables, unbalance, gear ripple or wrong lengths."));
   }
 }
 
 void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure>& residual) {
-  Table table(
-      {{"drive", Align::left}, {"velocity"}, {"position"}, {"acceleration"}, {"memory [rows]"}, {"reading", Align::left}});
+  Table table({{"drive", Align::left},
+               {"velocity"},
+               {"position"},
+               {"acceleration"},
+               {"memory [rows]"},
+               {"reading", Align::left}});
   const auto cell = [](const DependenceOnMotion& d) {
     return d.p_value > kRareByChance ? std::string("by chance") : fmt::format("{:.0f} %", 100 * d.share);
   };
@@ -266,9 +279,10 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
                fmt::format("{:.1f}", r.correlation), reading},
               coordinate.empty() && !memory ? Tone::plain : Tone::caution);
   }
-  report.table(table,
-               "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
-               "rows that tell as much as one of white noise.");
+  report.table(
+      table,
+      "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
+      "rows that tell as much as one of white noise.");
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
@@ -313,15 +327,17 @@ std::vector<std::pair<std::string, std::string>> processing_facts(const Validati
   if (!options.filter) {
     facts.emplace_back("Filter", "none: torque, positions, velocities and accelerations as in the log");
   } else {
-    facts.emplace_back("Cut-off of the motion", fmt::format("{} (zero phase, -3 dB)", format_number(options.cutoff_hz, "Hz", 3)));
+    facts.emplace_back("Cut-off of the motion",
+                       fmt::format("{} (zero phase, -3 dB)", format_number(options.cutoff_hz, "Hz", 3)));
     facts.emplace_back("Cut-off of torque and regressor",
                        fmt::format("{} (the same linear-phase low pass, -6 dB)",
                                    format_number(options.torque_cutoff_ratio * options.cutoff_hz, "Hz", 3)));
   }
   for (const ValidatedLog& log : validation.logs) {
-    facts.emplace_back(short_name(log.file), fmt::format("{} samples at {}, {} rows at {}", format_count(log.samples),
-                                                         format_number(log.rate_hz, "Hz", 4), format_count(log.prediction.rows()),
-                                                         format_number(log.row_rate_hz, "Hz", 3)));
+    facts.emplace_back(
+        short_name(log.file),
+        fmt::format("{} samples at {}, {} rows at {}", format_count(log.samples), format_number(log.rate_hz, "Hz", 4),
+                    format_count(log.prediction.rows()), format_number(log.row_rate_hz, "Hz", 3)));
   }
   return facts;
 }

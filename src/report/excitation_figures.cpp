@@ -26,7 +26,8 @@ MatrixX3d outline(const Region& region) {
   std::vector<Eigen::Vector3d> points;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto gap = [&] { points.emplace_back(nan, nan, nan); };
-  const auto circle = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& u, const Eigen::Vector3d& v, double turns) {
+  const auto circle = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
+                          double turns) {
     for (int k = 0; k <= kOutlinePoints; ++k) {
       const double a = turns * 2 * std::numbers::pi * k / kOutlinePoints;
       points.emplace_back(centre + std::cos(a) * u + std::sin(a) * v);
@@ -108,9 +109,10 @@ MatrixX3d rows_of(const ExcitationReportInput& input, int segment, bool periodic
   for (Index i = 0; i < path.rows(); ++i) {
     const double t = input.samples.t_s(i);
     const PlanPart& part = part_at(input.plan, t);
-    const bool one_period = t - part.start_s <= input.segments[static_cast<std::size_t>(part.segment)].series.period_s() + 1e-3;
-    const bool shown =
-        periodic ? part.kind == PartKind::periodic && part.segment == segment && one_period : part.kind != PartKind::periodic;
+    const bool one_period =
+        t - part.start_s <= input.segments[static_cast<std::size_t>(part.segment)].series.period_s() + 1e-3;
+    const bool shown = periodic ? part.kind == PartKind::periodic && part.segment == segment && one_period
+                                : part.kind != PartKind::periodic;
     if (!shown) path.row(i).setConstant(nan);
   }
   return path;
@@ -121,7 +123,8 @@ MatrixX3d rows_of(const ExcitationReportInput& input, int segment, bool periodic
 void add_path_figures(HtmlReport& report, const ExcitationReportInput& input) {
   if (input.robot.description().parts.empty() || !input.segments.front().limits.region) return;
   const MatrixX3d border = outline(*input.segments.front().limits.region);
-  const double ca = std::cos(kSeenFrom), sa = std::sin(kSeenFrom), ce = std::cos(kSeenFromAbove), se = std::sin(kSeenFromAbove);
+  const double ca = std::cos(kSeenFrom), sa = std::sin(kSeenFrom), ce = std::cos(kSeenFromAbove),
+               se = std::sin(kSeenFromAbove);
   const View views[] = {
       {"Path of the plate in space, seen at an angle", "to the right [m]", "upwards in the picture [m]",
        Eigen::Vector3d(-sa, ca, 0), Eigen::Vector3d(-se * ca, -se * sa, ce)},
@@ -131,8 +134,11 @@ void add_path_figures(HtmlReport& report, const ExcitationReportInput& input) {
   };
   constexpr PlotColor kColors[] = {PlotColor::blue, PlotColor::vermillion, PlotColor::green, PlotColor::purple};
   for (const View& view : views) {
-    PlotSpec spec{
-        .title = view.title, .x_label = view.x_label, .y_label = view.y_label, .width = kPathWidth, .height = kPathHeight};
+    PlotSpec spec{.title = view.title,
+                  .x_label = view.x_label,
+                  .y_label = view.y_label,
+                  .width = kPathWidth,
+                  .height = kPathHeight};
     const auto add = [&](const std::string& label, const MatrixX3d& points, PlotColor color, bool dashed) {
       spec.series.push_back({label, points * view.right, points * view.up, SeriesStyle::line, {}, color, dashed});
     };
@@ -142,10 +148,12 @@ void add_path_figures(HtmlReport& report, const ExcitationReportInput& input) {
       add(label, rows_of(input, static_cast<int>(k), true), kColors[k % std::size(kColors)], false);
     }
     if (input.plan.parts.size() > 1) add("run-in, run-out", rows_of(input, 0, false), PlotColor::orange, true);
-    const VectorXd path_x = input.samples.z.leftCols<3>() * view.right, path_y = input.samples.z.leftCols<3>() * view.up;
+    const VectorXd path_x = input.samples.z.leftCols<3>() * view.right,
+                   path_y = input.samples.z.leftCols<3>() * view.up;
     PlotRange x = range_of(spec.series.front().x, path_x, 0.06), y = range_of(spec.series.front().y, path_y, 0.06);
     // The same scale on both axes, so that a circle is round.
-    const double width = x.high - x.low, height = y.high - y.low, across = std::max(width, height * kPathWidth / kPathHeight);
+    const double width = x.high - x.low, height = y.high - y.low,
+                 across = std::max(width, height * kPathWidth / kPathHeight);
     const double tall = across * kPathHeight / kPathWidth;
     x = {(x.low + x.high - across) / 2, (x.low + x.high + across) / 2};
     y = {(y.low + y.high - tall) / 2, (y.low + y.high + tall) / 2};
@@ -183,7 +191,8 @@ void add_limit_figures(HtmlReport& report, const ExcitationReportInput& input) {
         state.x.resize(3 * n);
         state.drives.resize(3 * n);
         state.tau = VectorXd::Zero(n);
-        state.x << input.samples.z.row(i).transpose(), input.samples.zd.row(i).transpose(), input.samples.zdd.row(i).transpose();
+        state.x << input.samples.z.row(i).transpose(), input.samples.zd.row(i).transpose(),
+            input.samples.zdd.row(i).transpose();
         state.drives << input.samples.q.row(i).transpose(), input.samples.qd.row(i).transpose(),
             input.samples.qdd.row(i).transpose();
         if (quantity == LimitedQuantity::tau && limits.parameters.size() > 0 &&

@@ -17,7 +17,8 @@
 namespace deltadyn {
 namespace {
 
-// Standard deviations, as shares of the expected size, from which a base parameter counts as known, and beyond which as not identified.
+// Standard deviations, as shares of the expected size, from which a base parameter counts as known, and beyond which as
+// not identified.
 constexpr double kWell = 0.05, kNot = 0.5;
 constexpr double kGoodEfficiency = 0.6, kFairEfficiency = 0.4;
 constexpr double kBinding = 0.99;
@@ -43,9 +44,11 @@ VisibilityCounts counts(const ExcitationReportInput& input) {
 Check check_efficiency(const ExcitationReportInput& input) {
   const double efficiency = input.excitation.d_efficiency;
   Check check{"Information", fmt::format("D-efficiency {}", format_percent(efficiency, 3)), Verdict::good, ""};
-  // The bound may be out of reach for any motion: what the motion will leave unknown decides whether little information is too little.
+  // The bound may be out of reach for any motion: what the motion will leave unknown decides whether little information
+  // is too little.
   const bool blind = counts(input).not_at_all > kFewBlind * static_cast<double>(input.base.count());
-  if (efficiency < kGoodEfficiency) check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
+  if (efficiency < kGoodEfficiency)
+    check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
   check.meaning = "That share of the information which any states inside these limits could give.";
   if (check.verdict != Verdict::good)
     check.meaning += " More time (--time-limit-s), a larger workspace or a wider --base-frequency-hz may give more.";
@@ -67,7 +70,8 @@ Check check_reversals(const ExcitationReportInput& input) {
   if (share < input.least_away - kRounding) {
     check.verdict = Verdict::caution;
     check.meaning += fmt::format(
-        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a wider workspace.",
+        " Less than the {} asked for: give more --time-limit-s, a lower upper end of --base-frequency-hz, or a wider "
+        "workspace.",
         format_percent(input.least_away, 2));
   }
   return check;
@@ -81,19 +85,21 @@ void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
        e.d_efficiency >= kGoodEfficiency ? Tone::good : Tone::caution},
       {"margin to the limits", format_percent(input.check.margin(), 2), input.check.tightest().limit.name, Tone::plain},
       {"condition number", format_number(e.condition_number, 4), "columns scaled", Tone::plain},
-      {"length", format_number(input.plan.duration_s, "s", 4), fmt::format("{} samples", format_count(input.samples.samples())),
+      {"length", format_number(input.plan.duration_s, "s", 4),
+       fmt::format("{} samples", format_count(input.samples.samples())), Tone::plain},
+      {"base parameters", fmt::format("{} of {}", input.base.count(), input.robot.parameters()), "columns",
        Tone::plain},
-      {"base parameters", fmt::format("{} of {}", input.base.count(), input.robot.parameters()), "columns", Tone::plain},
-      {"search", format_duration(e.total_time_s), fmt::format("first motion after {}", format_duration(e.first_feasible_time_s)),
-       Tone::plain},
+      {"search", format_duration(e.total_time_s),
+       fmt::format("first motion after {}", format_duration(e.first_feasible_time_s)), Tone::plain},
   });
 }
 
 void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
   Table table({{"limit", Align::left}, {"lower"}, {"upper"}, {"reached"}, {"unit", Align::left}, {"used"}, {"at [s]"}});
   for (const LimitUse& use : input.check.uses) {
-    table.row({use.limit.name, format_number(use.limit.lower, 4), format_number(use.limit.upper, 4), format_number(use.value, 4),
-               pretty_unit(use.limit.unit), format_percent(use.load, 4), format_number(use.time_s, 4)},
+    table.row({use.limit.name, format_number(use.limit.lower, 4), format_number(use.limit.upper, 4),
+               format_number(use.value, 4), pretty_unit(use.limit.unit), format_percent(use.load, 4),
+               format_number(use.time_s, 4)},
               use.load > kBinding ? Tone::strong : Tone::plain);
   }
   report.table(table, "Limits in bold type bind: wider ones would allow a better motion.");
@@ -102,24 +108,27 @@ void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
 void add_identification_table(HtmlReport& report, const ExcitationReportInput& input) {
   std::string noise;
   for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
-    noise += (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
+    noise +=
+        (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
   }
   report.paragraph(fmt::format(
-      "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. Expected values "
-      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination may have.",
+      "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. "
+      "Expected values "
+      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination "
+      "may have.",
       noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::ranges::stable_sort(order,
-                           [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  std::ranges::stable_sort(
+      order, [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
   const auto fill = [&](Table& table, bool only_hidden) {
     for (const Eigen::Index k : order) {
       const double relative = relative_std(input, k);
       if (only_hidden && relative <= kNot) continue;
       const auto at = static_cast<std::size_t>(k);
       const std::string unit(pretty_unit(input.base.units[at]));
-      table.row({input.base.expressions[at], format_number(input.base_values(k), 4), format_number(input.predicted_std(k), 3),
-                 unit, relative > 10 ? "–" : format_percent(relative, 2),
+      table.row({input.base.expressions[at], format_number(input.base_values(k), 4),
+                 format_number(input.predicted_std(k), 3), unit, relative > 10 ? "–" : format_percent(relative, 2),
                  relative <= kWell ? "well" : (relative <= kNot ? "roughly" : "hardly")},
                 relative <= kWell ? Tone::plain : (relative <= kNot ? Tone::caution : Tone::bad));
     }
@@ -137,7 +146,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     report.paragraph("Nothing: every combination will be known to half of its size or better.");
   } else {
     report.table(hidden,
-                 "Their effect on the torque is small in every motion inside these limits, or of this length; more periods lower "
+                 "Their effect on the torque is small in every motion inside these limits, or of this length; more "
+                 "periods lower "
                  "the standard deviation with the root of their number.");
   }
   report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
@@ -151,29 +161,32 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
     if (input.base.B.col(k).cwiseAbs().maxCoeff() <= 0)
       none.push_back(input.robot.parameter_names()[static_cast<std::size_t>(k)]);
   }
-  if (!none.empty()) report.note(fmt::format("No motion of the drives shows these parameters: {}.", fmt::join(none, ", ")));
+  if (!none.empty())
+    report.note(fmt::format("No motion of the drives shows these parameters: {}.", fmt::join(none, ", ")));
 }
 
 void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
   const Excitation& e = input.excitation;
   std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
   if (!context.parameter_file.empty()) facts.emplace_back("Model", context.parameter_file);
-  if (input.segments.front().limits.region) facts.emplace_back("Workspace", input.segments.front().limits.region->text());
+  if (input.segments.front().limits.region)
+    facts.emplace_back("Workspace", input.segments.front().limits.region->text());
   for (std::size_t k = 0; k < input.segments.size(); ++k) {
     const FourierSeries& series = input.segments[k].series;
-    facts.emplace_back(
-        fmt::format("Segment {}", k + 1),
-        fmt::format("{} harmonics of {}, {} periods of {}", series.harmonics(), format_number(series.base_frequency_hz, "Hz", 5),
-                    input.segments[k].periods, format_number(series.period_s(), "s", 5)));
+    facts.emplace_back(fmt::format("Segment {}", k + 1),
+                       fmt::format("{} harmonics of {}, {} periods of {}", series.harmonics(),
+                                   format_number(series.base_frequency_hz, "Hz", 5), input.segments[k].periods,
+                                   format_number(series.period_s(), "s", 5)));
   }
   facts.emplace_back(
-      "Search", fmt::format("{} of {} starts and polishing runs, {} evaluations with gradient, {}", e.finished_starts, e.starts,
-                            format_count(e.evaluations), format_duration(e.total_time_s)));
+      "Search", fmt::format("{} of {} starts and polishing runs, {} evaluations with gradient, {}", e.finished_starts,
+                            e.starts, format_count(e.evaluations), format_duration(e.total_time_s)));
   facts.emplace_back(
       "Upper bound",
-      fmt::format("approximate D-optimal design over {} random admissible states, {} of them with a share, certified to {}",
-                  format_count(input.bound.shares.size()), input.bound.support,
-                  format_percent(input.bound.gap(input.base.count()), 2)));
+      fmt::format(
+          "approximate D-optimal design over {} random admissible states, {} of them with a share, certified to {}",
+          format_count(input.bound.shares.size()), input.bound.support,
+          format_percent(input.bound.gap(input.base.count()), 2)));
   report.facts(facts);
 }
 
@@ -189,14 +202,16 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
   out.headline = out.verdict == Verdict::good      ? "A good excitation"
                  : out.verdict == Verdict::caution ? "A usable excitation: " + worst.figure
                                                    : "A weak excitation: " + worst.figure;
-  out.lines.push_back(
-      fmt::format("The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} to spare.",
-                  input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
+  out.lines.push_back(fmt::format(
+      "The machine can run it: every limit is kept, between the samples too; the tightest one ({}) with {} to spare.",
+      input.check.tightest().limit.name, format_percent(input.check.margin(), 2)));
   for (const Check& check : out.checks)
     out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
-  out.lines.push_back(fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
-                                  input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
-  if (e.out_of_time) out.lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
+  out.lines.push_back(
+      fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
+                  input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
+  if (e.out_of_time)
+    out.lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
   if (e.interrupted) out.lines.emplace_back("The search was interrupted; more time may find a better motion.");
   return out;
 }

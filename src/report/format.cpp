@@ -39,7 +39,8 @@ std::string fixed(double value, int decimals) {
 std::string times_ten_to(int exponent) {
   static constexpr std::array<const char*, 10> kSuperscript{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string result = " × 10";
-  for (const char c : std::to_string(exponent)) result += c == '-' ? "⁻" : kSuperscript[static_cast<std::size_t>(c - '0')];
+  for (const char c : std::to_string(exponent))
+    result += c == '-' ? "⁻" : kSuperscript[static_cast<std::size_t>(c - '0')];
   return result;
 }
 
@@ -75,12 +76,14 @@ std::string format_number(double value, std::string_view unit, int significant_d
 }
 
 std::string format_with_uncertainty(double value, double uncertainty, std::string_view unit) {
-  if (!std::isfinite(value) || std::isnan(uncertainty) || uncertainty < 0.0) return with_unit(format_number(value, 4), unit);
+  if (!std::isfinite(value) || std::isnan(uncertainty) || uncertainty < 0.0)
+    return with_unit(format_number(value, 4), unit);
   if (std::isinf(uncertainty)) return with_unit(format_number(value, 4) + " ± ∞", unit);
   if (uncertainty == 0.0) return with_unit(fmt::format("{:.6g}", value), unit);
   const int last_digit = exponent_of(uncertainty, 2) - 1;
   const int exponent = std::max(exponent_of(value, 2), last_digit + 1);
-  // A value of 1.2 with an uncertainty of 3e-8 needs its eight decimals; a power of ten helps only where the first digit is far.
+  // A value of 1.2 with an uncertainty of 3e-8 needs its eight decimals; a power of ten helps only where the first
+  // digit is far.
   if (plain(exponent) && last_digit < 3)
     return with_unit(fixed(value, -last_digit) + " ± " + fixed(uncertainty, -last_digit), unit);
   const int decimals = exponent - last_digit;
@@ -98,14 +101,15 @@ std::string format_estimate(double value, double uncertainty, std::string_view u
 
 std::string format_interval(double low, double high, std::string_view unit) {
   const double length = high - low;
-  if (!std::isfinite(length) || length <= 0.0) return with_unit(format_number(low, 4) + " … " + format_number(high, 4), unit);
+  if (!std::isfinite(length) || length <= 0.0)
+    return with_unit(format_number(low, 4) + " … " + format_number(high, 4), unit);
   const double largest = std::max(std::abs(low), std::abs(high));
   const int exponent = exponent_of(largest, 3);
   const int last_digit = exponent_of(length, 1) - 2;
   if (plain(exponent)) return with_unit(fixed(low, -last_digit) + " … " + fixed(high, -last_digit), unit);
   const int decimals = std::max(exponent - last_digit, 0);
-  return with_unit(fmt::format("({} … {}){}", fixed(scaled(low, exponent), decimals), fixed(scaled(high, exponent), decimals),
-                               times_ten_to(exponent)),
+  return with_unit(fmt::format("({} … {}){}", fixed(scaled(low, exponent), decimals),
+                               fixed(scaled(high, exponent), decimals), times_ten_to(exponent)),
                    unit);
 }
 
@@ -154,9 +158,13 @@ std::string pretty_unit(std::string_view unit) {
     if (unit == plain_name) return text;
 
   std::string result(unit);
-  for (const auto& [from, to] :
-       {std::pair<std::string_view, std::string_view>{"*", " "}, {"^2", "²"}, {"^3", "³"}, {"^-1", "⁻¹"}, {"^-2", "⁻²"}}) {
-    for (auto at = result.find(from); at != std::string::npos; at = result.find(from)) result.replace(at, from.size(), to);
+  for (const auto& [from, to] : {std::pair<std::string_view, std::string_view>{"*", " "},
+                                 {"^2", "²"},
+                                 {"^3", "³"},
+                                 {"^-1", "⁻¹"},
+                                 {"^-2", "⁻²"}}) {
+    for (auto at = result.find(from); at != std::string::npos; at = result.find(from))
+      result.replace(at, from.size(), to);
   }
   return result;
 }

@@ -25,9 +25,10 @@ constexpr std::array<const char*, 8> kHexOfColor{"#0072B2", "#D55E00", "#009E73"
 constexpr std::array<PlotColor, 8> kOrder{PlotColor::blue,  PlotColor::vermillion, PlotColor::green, PlotColor::purple,
                                           PlotColor::black, PlotColor::orange,     PlotColor::sky,   PlotColor::grey};
 
-/// A string for gnuplot in which nothing can end the string, run a command (`...`) or expand: every character that is no
-/// letter or space is written as its octal number. Single quotes would be shorter, but gnuplot reads a doubled quote at the start
-/// of a string as an empty string. Digits are written so, too, because gnuplot would add them to a number in front of them.
+/// A string for gnuplot in which nothing can end the string, run a command (`...`) or expand: every character that is
+/// no letter or space is written as its octal number. Single quotes would be shorter, but gnuplot reads a doubled quote
+/// at the start of a string as an empty string. Digits are written so, too, because gnuplot would add them to a number
+/// in front of them.
 std::string quote(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -60,23 +61,28 @@ std::string where(const PlotSpec& spec) {
 
 void check_range(const PlotSpec& spec, const std::optional<PlotRange>& range, bool log, char axis) {
   if (!range) return;
-  if (!std::isfinite(range->low) || !std::isfinite(range->high) || range->low >= range->high || (log && range->low <= 0.0)) {
-    throw Error(fmt::format("the {} range {} to {} is {}", axis, range->low, range->high,
-                            log ? "not an increasing range of positive values, as a logarithmic axis needs" : "not increasing"),
-                where(spec), "give a lower end below the upper end", ExitCode::usage);
+  if (!std::isfinite(range->low) || !std::isfinite(range->high) || range->low >= range->high ||
+      (log && range->low <= 0.0)) {
+    throw Error(
+        fmt::format("the {} range {} to {} is {}", axis, range->low, range->high,
+                    log ? "not an increasing range of positive values, as a logarithmic axis needs" : "not increasing"),
+        where(spec), "give a lower end below the upper end", ExitCode::usage);
   }
 }
 
 void check(const PlotSpec& spec) {
   for (const Series& series : spec.series) {
     if (series.x.size() != series.y.size()) {
-      throw Error(fmt::format("series \"{}\" has {} x values and {} y values", series.label, series.x.size(), series.y.size()),
-                  where(spec), "give one y for each x", ExitCode::usage);
+      throw Error(
+          fmt::format("series \"{}\" has {} x values and {} y values", series.label, series.x.size(), series.y.size()),
+          where(spec), "give one y for each x", ExitCode::usage);
     }
     const bool bars = series.style == SeriesStyle::errorbars;
     if (series.y_error.size() != (bars ? series.y.size() : 0)) {
-      throw Error(fmt::format("series \"{}\" has {} y values and {} bars", series.label, series.y.size(), series.y_error.size()),
-                  where(spec), "give one bar for each y with the style errorbars, and none with the others", ExitCode::usage);
+      throw Error(fmt::format("series \"{}\" has {} y values and {} bars", series.label, series.y.size(),
+                              series.y_error.size()),
+                  where(spec), "give one bar for each y with the style errorbars, and none with the others",
+                  ExitCode::usage);
     }
   }
   check_range(spec, spec.x_range, spec.log_x, 'x');
@@ -101,7 +107,8 @@ class Extent {
       return {low_ / factor, high_ * factor};
     }
     const double length = high_ - low_;
-    if (length > 1e-12 * std::max(std::abs(low_), std::abs(high_))) return {low_ - margin * length, high_ + margin * length};
+    if (length > 1e-12 * std::max(std::abs(low_), std::abs(high_)))
+      return {low_ - margin * length, high_ + margin * length};
     const double half = std::max(1e-3 * std::abs(high_), high_ == 0.0 ? 1.0 : 1e-300);
     return {low_ - half, high_ + half};
   }
@@ -170,9 +177,10 @@ Foot foot_of(const PlotSpec& last, int area_width) {
 
 /// True if one legend serves both panels.
 bool same_legend(const PlotSpec& a, const PlotSpec& b) {
-  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(), [](const Series& x, const Series& y) {
-    return x.label == y.label && x.style == y.style && x.color == y.color && x.dashed == y.dashed;
-  });
+  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(),
+                    [](const Series& x, const Series& y) {
+                      return x.label == y.label && x.style == y.style && x.color == y.color && x.dashed == y.dashed;
+                    });
 }
 
 /// Rows of text above the area: title and legend side by side if they fit.
@@ -207,7 +215,8 @@ Head head_of(const PlotSpec& spec, int area_width, bool with_legend) {
 
 /// 0 at the left end of the axis, 1 at the right.
 double fraction_of(double value, const PlotRange& range, bool log) {
-  return log ? std::log(value / range.low) / std::log(range.high / range.low) : (value - range.low) / (range.high - range.low);
+  return log ? std::log(value / range.low) / std::log(range.high / range.low)
+             : (value - range.low) / (range.high - range.low);
 }
 
 const char* number_format(const PlotRange& range, bool log) {
@@ -244,8 +253,8 @@ class ScriptWriter {
       heads.push_back(head_of(spec, area_width, first || !same_legend(panels_.front(), spec)));
       script_.height += spec.height - (&spec == &panels_.back() ? 0 : foot_.height - kBetweenPanels);
       if (area_width < kMinArea || spec.height - heads.back().height() - foot_.height < kMinArea) {
-        throw Error(fmt::format("{} x {} pixels leave no room for the axes", panels_.back().width, spec.height), where(spec),
-                    "make the plot larger", ExitCode::usage);
+        throw Error(fmt::format("{} x {} pixels leave no room for the axes", panels_.back().width, spec.height),
+                    where(spec), "make the plot larger", ExitCode::usage);
       }
     }
     line("set multiplot");
@@ -275,29 +284,32 @@ class ScriptWriter {
   [[nodiscard]] double screen_y(double pixel_from_top) const { return 1.0 - pixel_from_top / script_.height; }
   [[nodiscard]] double screen_x(double pixel) const { return pixel / script_.width; }
 
-  void panel(const PlotSpec& spec, std::size_t number, const Head& head, int top, int area_top, int area_bottom, bool last) {
+  void panel(const PlotSpec& spec, std::size_t number, const Head& head, int top, int area_top, int area_bottom,
+             bool last) {
     const int right = script_.width - kRight;
     const PlotRange y = y_range(spec, x_range_);
     line("unset label\nunset arrow\nunset logscale");
     line(fmt::format("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}", screen_x(kLeft), screen_x(right)));
-    line(fmt::format("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}", screen_y(area_top), screen_y(area_bottom)));
+    line(fmt::format("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}", screen_y(area_top),
+                     screen_y(area_bottom)));
     if (spec.log_x) line("set logscale x");
     if (spec.log_y) line("set logscale y");
-    line(fmt::format("set xrange [{:.12g}:{:.12g}] noextend\nset yrange [{:.12g}:{:.12g}] noextend", x_range_.low, x_range_.high,
-                     y.low, y.high));
+    line(fmt::format("set xrange [{:.12g}:{:.12g}] noextend\nset yrange [{:.12g}:{:.12g}] noextend", x_range_.low,
+                     x_range_.high, y.low, y.high));
     x_tics(spec, last);
     line(fmt::format("set format y '{}'", number_format(y, spec.log_y)));
     line("set ylabel " + quote(spec.y_label) + " noenhanced textcolor rgb '#222222'");
     if (head.title) {
-      line(fmt::format("set label {} at screen {:.6f}, screen {:.6f} left noenhanced font title_font textcolor rgb '#111111'",
-                       quote(spec.title), screen_x(kLeft), screen_y(top + 16)));
+      line(fmt::format(
+          "set label {} at screen {:.6f}, screen {:.6f} left noenhanced font title_font textcolor rgb '#111111'",
+          quote(spec.title), screen_x(kLeft), screen_y(top + 16)));
     }
     if (head.legend_rows > 0) {
       const int key_top = top + (head.title && !head.beside ? kTextRow : 0) + 4;
-      line(
-          fmt::format("set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen 1.8 width 1 "
-                      "maxrows {} textcolor rgb '#222222'",
-                      screen_x(right + 4), screen_y(key_top), head.legend_rows));
+      line(fmt::format(
+          "set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen 1.8 width 1 "
+          "maxrows {} textcolor rgb '#222222'",
+          screen_x(right + 4), screen_y(key_top), head.legend_rows));
     } else {
       line("unset key");
     }
@@ -321,7 +333,8 @@ class ScriptWriter {
   void markers(const PlotSpec& spec, const PlotRange& y) {
     const auto text = [&](const std::string& label, const std::string& place) {
       if (!label.empty())
-        line(fmt::format("set label {} at {} noenhanced front font small_font textcolor rgb '#444444'", quote(label), place));
+        line(fmt::format("set label {} at {} noenhanced front font small_font textcolor rgb '#444444'", quote(label),
+                         place));
     };
     constexpr const char* kStyle = "nohead front dashtype 4 linewidth 1 linecolor rgb '#444444'";
     for (const PlotMarker& marker : spec.horizontal_markers) {
@@ -333,8 +346,8 @@ class ScriptWriter {
       if (!(marker.at >= x_range_.low && marker.at <= x_range_.high)) continue;
       line(fmt::format("set arrow from first {0:.12g}, graph 0 to first {0:.12g}, graph 1 {1}", marker.at, kStyle));
       const double place = fraction_of(marker.at, x_range_, spec.log_x);
-      text(marker.label,
-           fmt::format("first {:.12g}, graph 0.95 {}", marker.at, place > 0.75 ? "right offset -0.6, 0" : "left offset 0.6, 0"));
+      text(marker.label, fmt::format("first {:.12g}, graph 0.95 {}", marker.at,
+                                     place > 0.75 ? "right offset -0.6, 0" : "left offset 0.6, 0"));
     }
   }
 
@@ -382,8 +395,8 @@ GnuplotScript gnuplot_script(const std::vector<PlotSpec>& panels) {
   for (const PlotSpec& spec : panels) {
     check(spec);
     if (spec.log_x != panels.back().log_x) {
-      throw Error("panels that share the x axis mix logarithmic and linear x", where(spec), "give all panels the same log_x",
-                  ExitCode::usage);
+      throw Error("panels that share the x axis mix logarithmic and linear x", where(spec),
+                  "give all panels the same log_x", ExitCode::usage);
     }
   }
   GnuplotScript script;

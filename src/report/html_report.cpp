@@ -72,7 +72,8 @@ Table& Table::row(std::vector<std::string> cells, Tone tone) {
   return *this;
 }
 
-HtmlReport::HtmlReport(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+HtmlReport::HtmlReport(std::string title, std::string subtitle)
+    : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 HtmlReport& HtmlReport::element(std::string_view name, std::string_view attributes, std::string_view text) {
   body_ += fmt::format("<{0}{1}>{2}</{0}>\n", name, attributes, escape_html(text));
@@ -81,8 +82,8 @@ HtmlReport& HtmlReport::element(std::string_view name, std::string_view attribut
 
 HtmlReport& HtmlReport::verdict(Verdict verdict, const std::string& headline, const std::vector<std::string>& lines) {
   const auto [box, mark] = look_of(verdict);
-  body_ += fmt::format("<section class=\"verdict {}\"><p class=\"headline\"><span class=\"mark\">{}</span>{}</p>\n", box, mark,
-                       escape_html(headline));
+  body_ += fmt::format("<section class=\"verdict {}\"><p class=\"headline\"><span class=\"mark\">{}</span>{}</p>\n",
+                       box, mark, escape_html(headline));
   if (!lines.empty()) list(lines);
   body_ += "</section>\n";
   return *this;
@@ -93,7 +94,8 @@ HtmlReport& HtmlReport::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "<div class=\"figures\">\n";
   for (const KeyFigure& figure : figures) {
     body_ += fmt::format(
-        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div><div class=\"small\">{}</div></div>\n",
+        "<div class=\"key {}\"><div class=\"label\">{}</div><div class=\"value\">{}</div><div "
+        "class=\"small\">{}</div></div>\n",
         name_of(figure.tone), escape_html(figure.label), escape_html(figure.value), escape_html(figure.note));
   }
   body_ += "</div>\n";
@@ -125,7 +127,8 @@ HtmlReport& HtmlReport::list(const std::vector<std::string>& items) {
 
 HtmlReport& HtmlReport::table(const Table& table, const std::string& caption) {
   body_ += "<div class=\"table\"><table>\n";
-  if (!caption.empty()) body_ += fmt::format("<caption><b>Table {}.</b> {}</caption>\n", ++tables_, escape_html(caption));
+  if (!caption.empty())
+    body_ += fmt::format("<caption><b>Table {}.</b> {}</caption>\n", ++tables_, escape_html(caption));
   body_ += "<thead><tr>";
   for (const TableColumn& column : table.columns_)
     body_ += fmt::format("<th scope=\"col\" class=\"{}\">{}</th>", name_of(column.align), escape_html(column.title));
@@ -137,7 +140,8 @@ HtmlReport& HtmlReport::table(const Table& table, const std::string& caption) {
     body_ += "</tr>\n";
   }
   if (table.rows_.empty() && !table.columns_.empty())
-    body_ += fmt::format("<tr class=\"muted\"><td class=\"left\" colspan=\"{}\">none</td></tr>\n", table.columns_.size());
+    body_ +=
+        fmt::format("<tr class=\"muted\"><td class=\"left\" colspan=\"{}\">none</td></tr>\n", table.columns_.size());
   body_ += "</tbody></table></div>\n";
   return *this;
 }
@@ -159,7 +163,8 @@ HtmlReport& HtmlReport::plot(const std::vector<PlotSpec>& panels, const std::str
   const std::string svg = render_svg(panels, fmt::format("plot{}-", plots_ + 1));
   ++plots_;
   body_ += "<figure>" + svg;
-  if (!caption.empty()) body_ += fmt::format("\n<figcaption><b>Figure {}.</b> {}</figcaption>", plots_, escape_html(caption));
+  if (!caption.empty())
+    body_ += fmt::format("\n<figcaption><b>Figure {}.</b> {}</figcaption>", plots_, escape_html(caption));
   body_ += "</figure>\n";
   return *this;
 }
@@ -184,7 +189,8 @@ HtmlReport& HtmlReport::footer(const std::string& text) {
 std::string HtmlReport::str() const {
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\" />\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>{0}</title>\n<style>\n{1}</style>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" "
+      "/>\n<title>{0}</title>\n<style>\n{1}</style>\n"
       "</head>\n<body>\n<main>\n<header><h1>{0}</h1>\n",
       escape_html(title_), kHtmlStyle);
   if (!subtitle_.empty()) page += fmt::format("<p class=\"subtitle\">{}</p>\n", escape_html(subtitle_));

@@ -2,12 +2,15 @@
 
 namespace deltadyn {
 
-/// The look of a report: dark on white, fonts of the system, fit for paper. It must not contain '<', '&' or '>': the page is XML, too.
+/// The look of a report: dark on white, fonts of the system, fit for paper. It must not contain '<', '&' or '>': the
+/// page is XML, too.
 inline constexpr const char* kHtmlStyle = R"css(
 :root { color-scheme: light; --ink: #1c2430; --soft: #5b6675; --line: #dde2e8; --pale: #f5f7f9;
-  --good: #1a7f4b; --good-pale: #edf7f1; --caution: #9a6200; --caution-pale: #fdf6e7; --bad: #b3261e; --bad-pale: #fcf0ef; }
+  --good: #1a7f4b; --good-pale: #edf7f1;
+  --caution: #9a6200; --caution-pale: #fdf6e7; --bad: #b3261e; --bad-pale: #fcf0ef; }
 * { box-sizing: border-box; }
-body { margin: 0; background: #fff; color: var(--ink); font: 15px/1.5 system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif; }
+body { margin: 0; background: #fff; color: var(--ink);
+  font: 15px/1.5 system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif; }
 main { max-width: 960px; margin: 0 auto; padding: 28px 24px 40px; }
 header { border-bottom: 2px solid var(--ink); margin-bottom: 14px; padding-bottom: 8px; }
 h1 { font-size: 25px; line-height: 1.25; margin: 0; letter-spacing: -0.01em; }
@@ -23,7 +26,8 @@ nav a { color: #00558c; text-decoration: none; margin-right: 16px; white-space: 
 nav a:hover { text-decoration: underline; }
 .verdict { border: 1px solid; border-left-width: 6px; border-radius: 4px; padding: 10px 16px; margin: 0 0 16px; }
 .verdict .headline { font-size: 17px; font-weight: 600; margin: 0; max-width: none; }
-.verdict .mark { display: inline-block; width: 22px; height: 22px; margin-right: 10px; border-radius: 50%; color: #fff; font-size: 14px; line-height: 22px; text-align: center; font-weight: 700; }
+.verdict .mark { display: inline-block; width: 22px; height: 22px; margin-right: 10px;
+  border-radius: 50%; color: #fff; font-size: 14px; line-height: 22px; text-align: center; font-weight: 700; }
 .verdict ul { margin: 6px 0 0; padding-left: 50px; max-width: none; }
 .verdict.good { border-color: var(--good); background: var(--good-pale); }
 .verdict.caution { border-color: var(--caution); background: var(--caution-pale); }
@@ -34,7 +38,8 @@ nav a:hover { text-decoration: underline; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 10px; margin: 0 0 16px; }
 .key { border: 1px solid var(--line); border-radius: 4px; padding: 8px 12px; background: var(--pale); }
 .key .label { font-size: 12.5px; color: var(--soft); }
-.key .value { font-size: 20px; font-weight: 600; line-height: 1.35; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.key .value { font-size: 20px; font-weight: 600; line-height: 1.35;
+  font-variant-numeric: tabular-nums; white-space: nowrap; }
 .key .small { font-size: 12.5px; color: var(--soft); }
 .key.good { border-left: 4px solid var(--good); }
 .key.caution { border-left: 4px solid var(--caution); }

@@ -16,7 +16,8 @@
 namespace deltadyn {
 namespace {
 
-std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& identification, const MassMatrixSurvey& survey) {
+std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& identification,
+                                   const MassMatrixSurvey& survey) {
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
@@ -35,19 +36,21 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
   figures.push_back({"base parameters", fmt::format("{} of {}", identification.base.count(), robot.parameters()),
                      fmt::format("condition {}", format_number(identification.base_estimate.condition_number, 3)),
                      identification.base_estimate.condition_number > kHighCondition ? Tone::caution : Tone::plain});
-  figures.push_back({"left to the prior", fmt::format("{} of {}", from_prior, fitted), "fitted parameters", Tone::plain});
   figures.push_back(
-      {robot.description().parts.empty() ? "moving inertia" : "min. eigenvalue of M", format_number(survey.min_eigenvalue, 3),
-       robot.description().parts.empty() ? inertia_unit_of(robot)
-                                         : fmt::format("{}, {} poses", inertia_unit_of(robot), format_count(survey.states)),
-       survey.positive_definite() ? Tone::good : Tone::bad});
+      {"left to the prior", fmt::format("{} of {}", from_prior, fitted), "fitted parameters", Tone::plain});
+  figures.push_back({robot.description().parts.empty() ? "moving inertia" : "min. eigenvalue of M",
+                     format_number(survey.min_eigenvalue, 3),
+                     robot.description().parts.empty()
+                         ? inertia_unit_of(robot)
+                         : fmt::format("{}, {} poses", inertia_unit_of(robot), format_count(survey.states)),
+                     survey.positive_definite() ? Tone::good : Tone::bad});
   figures.push_back({"time to identify", format_duration(identification.total_time_s),
                      fmt::format("{} samples", format_count(identification.samples)), Tone::plain});
   return figures;
 }
 
-void add_settings(HtmlReport& report, const Robot& robot, const Identification& identification, const Validation& training,
-                  const ReportContext& context) {
+void add_settings(HtmlReport& report, const Robot& robot, const Identification& identification,
+                  const Validation& training, const ReportContext& context) {
   std::vector<std::pair<std::string, std::string>> facts = {
       {"Robot file", context.robot_file},
       {"Prior", context.parameter_file.empty() ? "nominal values of simple shapes" : context.parameter_file}};
@@ -55,19 +58,22 @@ void add_settings(HtmlReport& report, const Robot& robot, const Identification& 
   const auto processing = processing_facts(training);
   facts.insert(facts.end(), processing.begin(), processing.end());
   const ConsistentFitSummary& fit = identification.fit;
-  facts.emplace_back("Free variables of the fit", fmt::format("{} of {} parameters", fit.variables, robot.parameters()));
+  facts.emplace_back("Free variables of the fit",
+                     fmt::format("{} of {} parameters", fit.variables, robot.parameters()));
   facts.emplace_back("Weight of the prior λ", fmt::format("{}, {}", format_number(fit.lambda, 3),
                                                           fit.lambda_from_data ? "chosen from the data" : "as given"));
   facts.emplace_back("Solver", fmt::format("{} interior-point and {} Ceres steps, {}", fit.interior_point_iterations,
                                            fit.iterations, format_duration(fit.solve_time_s)));
   if (fit.certificate.available) {
-    facts.emplace_back("Certificate",
-                       fmt::format("duality gap {} in χ² ({}), smallest dual eigenvalue {} ({})",
-                                   format_number(fit.certificate.gap, 2), fit.certificate.passed ? "passed" : "not passed",
-                                   format_number(fit.certificate.min_dual_eigenvalue, 2), fit.certificate.min_dual_name));
+    facts.emplace_back(
+        "Certificate",
+        fmt::format("duality gap {} in χ² ({}), smallest dual eigenvalue {} ({})",
+                    format_number(fit.certificate.gap, 2), fit.certificate.passed ? "passed" : "not passed",
+                    format_number(fit.certificate.min_dual_eigenvalue, 2), fit.certificate.min_dual_name));
   }
-  facts.emplace_back("Time", fmt::format("{} in all, {} of it to fold the logs", format_duration(identification.total_time_s),
-                                         format_duration(identification.fold_time_s)));
+  facts.emplace_back("Time",
+                     fmt::format("{} in all, {} of it to fold the logs", format_duration(identification.total_time_s),
+                                 format_duration(identification.fold_time_s)));
   report.facts(facts);
   std::vector<std::string> notes = identification.notes;
   notes.insert(notes.end(), fit.notes.begin(), fit.notes.end());

@@ -12,7 +12,8 @@ namespace deltadyn {
 void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification);
 /// Prior, estimate with interval and data share of each parameter; those not fitted folded away.
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification);
-/// What the model holds beside these: how friction builds up after a reversal, waves of the torque; nothing if there is nothing.
+/// What the model holds beside these: how friction builds up after a reversal, waves of the torque; nothing if there is
+/// nothing.
 void add_extras_table(HtmlReport& report, const Robot& robot, const Identification& identification);
 /// What is left to the prior, and what would replace it.
 void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps);

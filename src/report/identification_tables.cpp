@@ -45,12 +45,14 @@ void add_fit_table(HtmlReport& report, const Robot& robot, const Identification&
     const DriveReport& drive = identification.drives[j];
     const char* unit = torque_unit_of(robot, static_cast<int>(j));
     table.row({drive_name(static_cast<int>(j)), format_number(drive.rms, unit, 3),
-               drive.rms_torque > 0 ? format_percent(drive.rms / drive.rms_torque) : "–", format_number(drive.rms_base, unit, 3),
-               format_count(drive.rows), format_count(drive.masked_rows), fmt::format("{:.2f}", drive.reversal_ratio)});
+               drive.rms_torque > 0 ? format_percent(drive.rms / drive.rms_torque) : "–",
+               format_number(drive.rms_base, unit, 3), format_count(drive.rows), format_count(drive.masked_rows),
+               fmt::format("{:.2f}", drive.reversal_ratio)});
   }
-  report.table(table,
-               "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing "
-               "can undercut.");
+  report.table(
+      table,
+      "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing "
+      "can undercut.");
 }
 
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
@@ -63,7 +65,8 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
                {"data share"},
                {"decided by", Align::left},
                {"shows in the torque", Align::left}});
-  Table others({{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
+  Table others(
+      {{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
   bool any_neither = false;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const auto k = static_cast<Index>(i);
@@ -77,21 +80,25 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
     const DecidedBy decided = decided_by(fit, visibility[i], k);
     const bool neither = decided == DecidedBy::neither;
     any_neither |= neither;
-    table.row({parameter_name(fit.parameters[i]), unit, format_number(fit.prior(k)),
-               neither ? format_number(fit.p(k), 2) + " (?)" : format_estimate(fit.p(k), kInterval95 * fit.std(k)),
-               fmt::format("{:.0f} %", 100 * fit.data_share(k)), words_for(decided), unbroken(words_for(visibility[i]))},
-              source != Source::prior               ? Tone::plain
-              : visibility[i] == Visibility::hidden ? Tone::muted
-                                                    : Tone::caution);
+    table.row(
+        {parameter_name(fit.parameters[i]), unit, format_number(fit.prior(k)),
+         neither ? format_number(fit.p(k), 2) + " (?)" : format_estimate(fit.p(k), kInterval95 * fit.std(k)),
+         fmt::format("{:.0f} %", 100 * fit.data_share(k)), words_for(decided), unbroken(words_for(visibility[i]))},
+        source != Source::prior               ? Tone::plain
+        : visibility[i] == Visibility::hidden ? Tone::muted
+                                              : Tone::caution);
   }
   report.table(
-      table, fmt::format("Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
-                         "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
-                         "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
-                         100 * kPriorDecides));
+      table,
+      fmt::format(
+          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
+          "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
+          "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
+          100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
-      "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by its whole "
+      "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by "
+      "its whole "
       "interval. It matters if you use the body on its own.");
   if (any_neither) {
     report.note(
@@ -101,7 +108,8 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
   if (!others.empty()) {
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
-          "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the drives do "
+          "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the "
+          "drives do "
           "not feel follow the prior.");
       inside.table(others);
     });
@@ -116,9 +124,11 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     const auto at = static_cast<int>(joint);
     const std::string name = at < robot.drives() ? drive_name(at) : "telescope";
     const char* unit = at < robot.drives() ? position_unit_of(robot, at) : "m";
-    table.row({name, "friction builds up after a reversal over", format_with_uncertainty(found.displacement, found.std, unit)});
+    table.row({name, "friction builds up after a reversal over",
+               format_with_uncertainty(found.displacement, found.std, unit)});
     if (found.damping_s > 0)
-      table.row({"", "bristles damped by", format_with_uncertainty(1e3 * found.damping_s, 1e3 * found.damping_std_s, "ms")});
+      table.row(
+          {"", "bristles damped by", format_with_uncertainty(1e3 * found.damping_s, 1e3 * found.damping_std_s, "ms")});
   }
   for (const Ripple& ripple : identification.processing.ripples) {
     const bool turning = turns(robot, ripple.drive);
@@ -126,10 +136,12 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     table.row({drive_name(ripple.drive), "wave of the torque over the position (cogging, tooth meshing)",
                format_with_uncertainty(std::hypot(ripple.cosine, ripple.sine), ripple.amplitude_std,
                                        torque_unit_of(robot, ripple.drive))});
-    table.row({"", "its waves", format_with_uncertainty(n * ripple.n, n * ripple.n_std, turning ? "a turn" : "a metre")});
+    table.row(
+        {"", "its waves", format_with_uncertainty(n * ripple.n, n * ripple.n_std, turning ? "a turn" : "a metre")});
   }
   if (table.empty()) return;
-  report.table(table, "Found beside the parameters and part of the model: delta-validate takes them from the parameter file.");
+  report.table(table,
+               "Found beside the parameters and part of the model: delta-validate takes them from the parameter file.");
 }
 
 void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
@@ -137,8 +149,9 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
     report.paragraph("Nothing: the data decided every fitted parameter at least in part.");
     return;
   }
-  Table table(
-      {{"body or joint", Align::left}, {"from the prior (data share)", Align::left}, {"what would replace it", Align::left}});
+  Table table({{"body or joint", Align::left},
+               {"from the prior (data share)", Align::left},
+               {"what would replace it", Align::left}});
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion) continue;
@@ -147,10 +160,11 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
                                                                                                       : Tone::plain);
     }
   }
-  report.table(
-      table,
-      "What is left to the prior. Marked rows would show in another motion of the drives. The others never show on their own: "
-      "one value measured off the machine and entered in the prior with a small std sharpens the rest of its sum, too.");
+  report.table(table,
+               "What is left to the prior. Marked rows would show in another motion of the drives. The others never "
+               "show on their own: "
+               "one value measured off the machine and entered in the prior with a small std sharpens the rest of its "
+               "sum, too.");
 }
 
 void add_base_parameters(HtmlReport& report, const Identification& identification) {
@@ -175,26 +189,30 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
     const bool hardly = relative > kPoorlySeen;
     poor += hardly ? 1 : 0;
     far += std::abs(deviation(k)) > kRemarkableDeviation ? 1 : 0;
-    table.row({fmt::format("{}", k + 1), base.expressions[i], pretty_unit(base.units[i]),
-               format_with_uncertainty(estimate.value(k), std(k)), relative < 10 ? format_percent(relative, 2) : "> 1000 %",
-               format_number(identification.base_from_fit(k)), fmt::format("{:+.2f}", deviation(k))},
-              hardly ? Tone::caution : Tone::plain);
+    table.row(
+        {fmt::format("{}", k + 1), base.expressions[i], pretty_unit(base.units[i]),
+         format_with_uncertainty(estimate.value(k), std(k)), relative < 10 ? format_percent(relative, 2) : "> 1000 %",
+         format_number(identification.base_from_fit(k)), fmt::format("{:+.2f}", deviation(k))},
+        hardly ? Tone::caution : Tone::plain);
   }
-  report.paragraph(fmt::format(
-      "{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen (relative std above "
-      "{:.0f} %, marked); condition number {}.",
-      count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen, format_number(estimate.condition_number, 3)));
-  report.plot({.x_label = "base parameter (number in the table)",
-               .y_label = "deviation [std]",
-               .series = {{"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue},
-                          {"", index, deviation, SeriesStyle::points, {}, PlotColor::blue}},
-               .horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}},
-               .x_range = PlotRange{0.0, static_cast<double>(count + 1)},
-               .height = 220},
-              fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
-                          far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
-                                   : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.",
-                                                 far, far == 1 ? "differs" : "differ", kRemarkableDeviation)));
+  report.paragraph(
+      fmt::format("{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen "
+                  "(relative std above "
+                  "{:.0f} %, marked); condition number {}.",
+                  count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen,
+                  format_number(estimate.condition_number, 3)));
+  report.plot(
+      {.x_label = "base parameter (number in the table)",
+       .y_label = "deviation [std]",
+       .series = {{"", index, deviation, SeriesStyle::impulses, {}, PlotColor::blue},
+                  {"", index, deviation, SeriesStyle::points, {}, PlotColor::blue}},
+       .horizontal_markers = {{2.0, "+2 std"}, {-2.0, "-2 std"}},
+       .x_range = PlotRange{0.0, static_cast<double>(count + 1)},
+       .height = 220},
+      fmt::format("Consistent fit minus least squares, in standard deviations of the least squares. {}",
+                  far == 0 ? "Physical consistency and prior leave the base parameters within their noise."
+                           : fmt::format("{} {} by more than {:.0f}: there prior or consistency pull against the data.",
+                                         far, far == 1 ? "differs" : "differ", kRemarkableDeviation)));
   report.details(fmt::format("The {} base parameters", count), [&](HtmlReport& inside) {
     inside.table(table, "Base parameters. Rows are marked where the data hardly tell the value from zero.");
   });

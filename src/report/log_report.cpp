@@ -30,14 +30,20 @@ std::string figure_of(const LogFinding& f) {
   const bool in_ms = f.unit == "s" && std::isfinite(f.std);
   const double factor = in_ms ? 1e3 : 1.0;
   const std::string unit = in_ms ? "ms" : f.unit;
-  return std::isfinite(f.std) ? format_with_uncertainty(factor * f.value, factor * f.std, unit) : format_number(f.value, unit, 4);
+  return std::isfinite(f.std) ? format_with_uncertainty(factor * f.value, factor * f.std, unit)
+                              : format_number(f.value, unit, 4);
 }
 
 /// The findings that are more than a measured property in order; nothing if there are none.
 void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
-  Table table(
-      {{"", Align::left}, {"finding", Align::left}, {"figure"}, {"drive"}, {"log", Align::left}, {"what to do", Align::left}});
-  for (const FindingLevel level : {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
+  Table table({{"", Align::left},
+               {"finding", Align::left},
+               {"figure"},
+               {"drive"},
+               {"log", Align::left},
+               {"what to do", Align::left}});
+  for (const FindingLevel level :
+       {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
     if (level == FindingLevel::fine && !with_fine) continue;
     for (const LogFinding& f : findings) {
       if (f.level != level) continue;
@@ -62,10 +68,12 @@ Verdict verdict_of(const std::vector<LogFinding>& findings) {
 
 std::string check_verdict_in_words(const std::vector<LogFinding>& findings) {
   const auto count = [&](FindingLevel level) { return std::ranges::count(findings, level, &LogFinding::level); };
-  const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning), mended = count(FindingLevel::mended);
+  const auto faults = count(FindingLevel::fault), warnings = count(FindingLevel::warning),
+             mended = count(FindingLevel::mended);
   const std::string rest = (warnings == 0 ? "" : ", " + counted(warnings, "warning")) +
                            (mended == 0 ? "" : ", " + counted(mended, "finding") + " mended");
-  if (faults > 0) return fmt::format("a model from these logs is not to be trusted: {}{}", counted(faults, "fault"), rest);
+  if (faults > 0)
+    return fmt::format("a model from these logs is not to be trusted: {}{}", counted(faults, "fault"), rest);
   if (warnings > 0) return "these logs can be used with care: no fault was found" + rest;
   return "no fault was found" + rest;
 }

@@ -17,12 +17,13 @@ constexpr std::array<const char*, 8> kHead = {"drive",       "travel",       "po
                                               "torque step", "torque noise", "position fresh", "moving"};
 
 /// Where the figure of a finding goes.
-constexpr std::pair<const char*, double ChannelFigures::*> kFigures[] = {{"travel", &ChannelFigures::travel},
-                                                                         {"step", &ChannelFigures::step},
-                                                                         {"noise", &ChannelFigures::noise},
-                                                                         {"torque_step", &ChannelFigures::torque_step},
-                                                                         {"torque_noise", &ChannelFigures::torque_noise},
-                                                                         {"stale", &ChannelFigures::fresh_every}};
+constexpr std::pair<const char*, double ChannelFigures::*> kFigures[] = {
+    {"travel", &ChannelFigures::travel},
+    {"step", &ChannelFigures::step},
+    {"noise", &ChannelFigures::noise},
+    {"torque_step", &ChannelFigures::torque_step},
+    {"torque_noise", &ChannelFigures::torque_noise},
+    {"stale", &ChannelFigures::fresh_every}};
 
 void take(const LogFinding& f, LogFigures& log) {
   if (f.key == "rate_hz") log.rate_hz = f.value;
@@ -61,7 +62,9 @@ std::string rows_in_words(double every) {
 std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, Writer write) {
   const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
   const std::string length = turns ? "rad" : "m", effort = turns ? "N m" : "N";
-  const auto step = [&](double value, const std::string& unit) { return value == 0 ? "not visible" : write(value, unit, 2); };
+  const auto step = [&](double value, const std::string& unit) {
+    return value == 0 ? "not visible" : write(value, unit, 2);
+  };
   return {std::to_string(j + 1),
           write(drive.travel, length, 3),
           step(drive.step, length),
@@ -93,12 +96,13 @@ std::vector<LogFigures> log_figures(const std::vector<Log>& logs) {
 
 std::string timing_in_words(const LogFigures& log) {
   const auto count = [](double rows, const char* what) {
-    return rows > 0 ? fmt::format("{:.0f} {} {}", rows, rows == 1 ? "row" : "rows", what) : fmt::format("no row {}", what);
+    return rows > 0 ? fmt::format("{:.0f} {} {}", rows, rows == 1 ? "row" : "rows", what)
+                    : fmt::format("no row {}", what);
   };
-  return fmt::format(
-      "recorded at {:.6g} Hz, time stamps {}, {}, {}", log.rate_hz,
-      log.jitter <= kEven ? std::string("even") : fmt::format("even to {:.2g} % of the time between rows", 100 * log.jitter),
-      count(log.lost_rows, "lost"), count(log.held_rows, "repeated"));
+  return fmt::format("recorded at {:.6g} Hz, time stamps {}, {}, {}", log.rate_hz,
+                     log.jitter <= kEven ? std::string("even")
+                                         : fmt::format("even to {:.2g} % of the time between rows", 100 * log.jitter),
+                     count(log.lost_rows, "lost"), count(log.held_rows, "repeated"));
 }
 
 std::vector<std::string> channel_lines(const RobotDescription& robot, const LogFigures& log) {

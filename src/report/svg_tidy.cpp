@@ -62,8 +62,8 @@ void tidy(XMLElement& element, const std::string& prefix) {
 std::string tidy_svg(const std::string& svg, std::string_view id_prefix, const std::string& name) {
   tinyxml2::XMLDocument document;
   if (document.Parse(svg.data(), svg.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) {
-    throw Error("gnuplot wrote a picture that cannot be read: " + std::string(document.ErrorStr()), "plot \"" + name + "\"",
-                "install gnuplot-nox 5.4 or later", ExitCode::bad_input);
+    throw Error("gnuplot wrote a picture that cannot be read: " + std::string(document.ErrorStr()),
+                "plot \"" + name + "\"", "install gnuplot-nox 5.4 or later", ExitCode::bad_input);
   }
   XMLElement& root = *document.RootElement();
   tidy(root, std::string(id_prefix));

@@ -18,7 +18,8 @@ constexpr std::size_t kMaxPoints = 1500;      // an SVG point takes about 80 byt
 constexpr std::size_t kMaxPathPoints = 6000;  // a vertex of a line about 13
 
 double fraction(double value, const PlotRange& range, bool log) {
-  return log ? std::log(value / range.low) / std::log(range.high / range.low) : (value - range.low) / (range.high - range.low);
+  return log ? std::log(value / range.low) / std::log(range.high / range.low)
+             : (value - range.low) / (range.high - range.low);
 }
 
 /// Positions in pixels; NaN where the sample cannot be drawn.
@@ -132,7 +133,8 @@ std::vector<Index> one_a_cell(const Series& series, const Pixels& pixels, const 
   std::map<std::int64_t, std::array<Index, 2>> extremes;
   std::vector<Index> kept;
   const auto reach = [&](Index i, double sign) {
-    return sign * series.y(i) + (series.y_error.size() > 0 && std::isfinite(series.y_error(i)) ? series.y_error(i) : 0.0);
+    return sign * series.y(i) +
+           (series.y_error.size() > 0 && std::isfinite(series.y_error(i)) ? series.y_error(i) : 0.0);
   };
   for (Index i = 0; i < pixels.x.size(); ++i) {
     if (!pixels.drawable(i) || pixels.x(i) < 0.0 || pixels.x(i) > frame.columns) continue;
@@ -163,7 +165,8 @@ Series thin(const Series& series, const PlotFrame& frame) {
   } else if (x_never_decreases(pixels)) {
     if (n > 2 * static_cast<std::size_t>(frame.columns)) kept = column_extremes(pixels, frame);
   } else {
-    for (double step = 1.0; kept.size() > kMaxPathPoints && step < frame.columns; step *= 1.5) kept = moved_by(pixels, step);
+    for (double step = 1.0; kept.size() > kMaxPathPoints && step < frame.columns; step *= 1.5)
+      kept = moved_by(pixels, step);
   }
   return pick(series, pixels, kept);
 }

@@ -26,10 +26,11 @@ void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& v
     const ValidatedDrive& drive = validation.drives[j];
     const char* unit = torque_unit_of(robot, static_cast<int>(j));
     const Verdict verdict = grade_residual(drive.relative_residual);
-    table.row({drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3),
-               format_percent(drive.relative_residual), format_number(drive.max_residual, unit, 3),
-               format_number(drive.rms_with_reversals, unit, 3), format_count(drive.rows), format_count(drive.reversal_rows)},
-              verdict == Verdict::good ? Tone::plain : tone_of(verdict));
+    table.row(
+        {drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3),
+         format_percent(drive.relative_residual), format_number(drive.max_residual, unit, 3),
+         format_number(drive.rms_with_reversals, unit, 3), format_count(drive.rows), format_count(drive.reversal_rows)},
+        verdict == Verdict::good ? Tone::plain : tone_of(verdict));
   }
   report.table(table, "Residual of each drive over all logs.");
   if (validation.logs.size() < 2) return;
@@ -61,8 +62,9 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   Assessment assessment = assess_validation(robot, validation);
   weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
-  HtmlReport report("Validation of " + description.name, fmt::format("{}, {} drives, {}", description.type, description.drives(),
-                                                                     counted(std::ssize(validation.logs), "log")));
+  HtmlReport report("Validation of " + description.name,
+                    fmt::format("{}, {} drives, {}", description.type, description.drives(),
+                                counted(std::ssize(validation.logs), "log")));
   report.verdict(assessment.verdict, assessment.headline, assessment.told());
   add_log_check(report, context.findings);
   std::vector<KeyFigure> figures;

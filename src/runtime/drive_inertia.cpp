@@ -17,8 +17,9 @@ Eigen::VectorXd drive_inertia(const Robot& robot, const Eigen::VectorXd& p) {
   }
   Eigen::MatrixXd M(n, n);
   if (robot.mass_matrix(q, p, M) != Status::ok && robot.mass_matrix(Eigen::VectorXd::Zero(n), p, M) != Status::ok) {
-    throw Error("the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
-                description.name, "mend the limits of the drives in the robot file");
+    throw Error(
+        "the inertia of the drives cannot be had: neither the middle of the limits nor 0 is a pose of this robot",
+        description.name, "mend the limits of the drives in the robot file");
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     if (M(j, j) > 0) continue;

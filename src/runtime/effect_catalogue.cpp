@@ -17,7 +17,8 @@ std::vector<EffectKind> kinds_of(EffectList<Effects...>) {
   return kinds;
 }
 
-[[noreturn]] void refuse_joint(const EffectKind& kind, std::string_view name, const std::string& where, const std::string& mend) {
+[[noreturn]] void refuse_joint(const EffectKind& kind, std::string_view name, const std::string& where,
+                               const std::string& mend) {
   throw Error(fmt::format("the effect {} cannot act at '{}'", kind.name, name), where, mend);
 }
 
@@ -35,13 +36,15 @@ const EffectKind& effect_kind(EffectId id) {
 EffectId effect_with(Role role) {
   const auto& all = effect_catalogue();
   const auto found = std::find_if(all.begin(), all.end(), [role](const EffectKind& kind) { return kind.role == role; });
-  if (found == all.end()) throw Error("no effect of the list stands for this term of the model", "", "", ExitCode::usage);
+  if (found == all.end())
+    throw Error("no effect of the list stands for this term of the model", "", "", ExitCode::usage);
   return found->id;
 }
 
 bool of_one_log(EffectId id) {
   const auto& shapes = effect_kind(id).shapes;
-  return std::any_of(shapes.begin(), shapes.end(), [](const ShapeTraits& one) { return one.scale == ShapeScale::logs; });
+  return std::any_of(shapes.begin(), shapes.end(),
+                     [](const ShapeTraits& one) { return one.scale == ShapeScale::logs; });
 }
 
 std::vector<double> start_values(const ShapeTraits& shape) {
@@ -87,8 +90,8 @@ void check_sizes(const Effect& effect, const std::function<std::string(std::stri
     const AmplitudeTraits& one = kind.amplitudes[k];
     const double value = amplitude[k];
     if (one.positive() && value < 0)
-      throw Error(fmt::format("{} of {} cannot be negative", one.name, kind.name), where(one.name), "give a positive number",
-                  code);
+      throw Error(fmt::format("{} of {} cannot be negative", one.name, kind.name), where(one.name),
+                  "give a positive number", code);
     if (std::abs(value) > one.largest)
       throw Error(fmt::format("{} of {} is {}, beyond its largest size", one.name, kind.name, value), where(one.name),
                   fmt::format("give a number up to {}", one.largest), code);
@@ -166,14 +169,16 @@ int effect_joint(EffectId id, std::string_view name, const RobotDescription& rob
     if (name == text || (joint >= 0 && name == std::to_string(joint + 1))) return joint;
     choice += (choice.empty() ? "" : ", ") + text;
   }
-  refuse_joint(effect_kind(id), name, where, choice.empty() ? "this robot has no such part" : "give one of these: " + choice);
+  refuse_joint(effect_kind(id), name, where,
+               choice.empty() ? "this robot has no such part" : "give one of these: " + choice);
 }
 
 std::string effect_unit(std::string_view unit, int joint, const RobotDescription& robot) {
   const bool turns = robot.kind_of_drive(std::max(joint, 0)) == DriveKind::revolute;
   std::string text(unit);
   const auto replace = [&text](const std::string& mark, const std::string& word) {
-    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark)) text.replace(at, mark.size(), word);
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark))
+      text.replace(at, mark.size(), word);
   };
   replace("{F}", turns ? "N*m" : "N");
   replace("{x}", turns ? "rad" : "m");
@@ -186,7 +191,8 @@ std::string effect_unit(std::string_view unit, int joint, const RobotDescription
 std::string effect_shape_text(const Effect& effect, const RobotDescription& robot) {
   const EffectKind& kind = effect_kind(effect.id);
   std::string text;
-  for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size() && static_cast<Eigen::Index>(k) < effect.shape.size(); ++k) {
+  for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size() && static_cast<Eigen::Index>(k) < effect.shape.size();
+       ++k) {
     const std::string unit = effect_unit(kind.shapes[k].unit, effect.joint, robot);
     text += fmt::format("{}{}={:.4g}{}", text.empty() ? "" : "; ", kind.shapes[k].name,
                         effect.shape(static_cast<Eigen::Index>(k)), unit.empty() ? "" : " " + unit);

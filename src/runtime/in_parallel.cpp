@@ -11,7 +11,8 @@ namespace deltadyn::detail {
 
 namespace {
 
-constexpr std::size_t kPortionsPerThread = 64;  // few enough to hand out cheaply, many enough for all threads to end together
+// Few enough to hand out cheaply, many enough for all threads to end together
+constexpr std::size_t kPortionsPerThread = 64;
 
 /// The exception of the lowest pass. An exception must not leave an OpenMP region, which would end the program.
 class FirstFailure {

@@ -13,8 +13,8 @@ namespace {
 using Ten = InertialVector<double>;
 using Vec = Vector3<double>;
 
-// Lengths of the paper's robot, the reference of all scaling. The arm's 0.525 m (0.500 m of it carbon) and the plate's radius are
-// assumed, the strut's length is given.
+// Lengths of the paper's robot, the reference of all scaling. The arm's 0.525 m (0.500 m of it carbon) and the plate's
+// radius are assumed, the strut's length is given.
 constexpr double kPaperArm = 0.525;
 constexpr double kPaperStrut = 1.106;
 constexpr double kPaperPlate = 0.05;
@@ -25,12 +25,14 @@ constexpr double kPaperPlate = 0.05;
 
 void require_positive(double value, const char* what) {
   if (!(std::isfinite(value) && value > 0))
-    refuse(fmt::format("{} is {}, but must be positive", what, value), "give a value above 0, or leave it to the default");
+    refuse(fmt::format("{} is {}, but must be positive", what, value),
+           "give a value above 0, or leave it to the default");
 }
 
 void require_not_negative(double value, const char* what) {
   if (!(std::isfinite(value) && value >= 0))
-    refuse(fmt::format("{} is {}, but must not be negative", what, value), "give 0 or more, or leave it to the default");
+    refuse(fmt::format("{} is {}, but must not be negative", what, value),
+           "give 0 or more, or leave it to the default");
 }
 
 double arm_length(const RobotDescription& robot) {
@@ -38,7 +40,8 @@ double arm_length(const RobotDescription& robot) {
   return length > 0 ? length : 0.1;  // an axis without an arm: a short stub
 }
 
-/// A part that is thicker than it is long is a length in another unit: half its length, and 5 cm for parts that are short.
+/// A part that is thicker than it is long is a length in another unit: half its length, and 5 cm for parts that are
+/// short.
 void require_thin(double thickness, double length, const std::string& what) {
   plausibility::require(plausibility::kDiameter, thickness, what, "", ExitCode::usage);
   const double most = 0.5 * length + 0.05;
@@ -52,7 +55,8 @@ Ten tube(double density, double diameter, double wall, const Vec& from, const Ve
   require_positive(density, fmt::format("the density of the {}", what).c_str());
   require_positive(diameter, fmt::format("the diameter of the {}", what).c_str());
   require_positive(wall, fmt::format("the wall of the {}", what).c_str());
-  plausibility::require(plausibility::kDensity, density, fmt::format("the density of the {}", what), "", ExitCode::usage);
+  plausibility::require(plausibility::kDensity, density, fmt::format("the density of the {}", what), "",
+                        ExitCode::usage);
   require_thin(diameter, (to - from).norm(), fmt::format("the diameter of the {}", what));
   const double outer = diameter / 2;
   if (wall > outer)
@@ -82,8 +86,8 @@ Ten upper_arm(const RobotDescription& robot, const PartShapes& s) {
     const Vec half = 0.5 * s.carriage_length * limb.axis_L;
     return round(s.carriage_mass, s.carriage_diameter, 0, -half, half, "carriage");
   }
-  Ten p = tube(s.upper_arm_density, s.upper_arm_outer_diameter, s.upper_arm_wall, Vec::Zero(), Vec(arm_length(robot), 0, 0),
-               "upper arm");
+  Ten p = tube(s.upper_arm_density, s.upper_arm_outer_diameter, s.upper_arm_wall, Vec::Zero(),
+               Vec(arm_length(robot), 0, 0), "upper arm");
   require_not_negative(s.upper_arm_hub_mass, "the mass of the upper arm's hub");
   if (s.upper_arm_hub_mass > 0) {
     const Vec half(0, s.upper_arm_hub_width / 2, 0);
@@ -120,12 +124,14 @@ Ten body_of(Body body, const RobotDescription& robot, const PartShapes& s) {
     return round(s.telescope_mass * s.telescope_upper_share, s.telescope_upper_diameter, 0, Vec::Zero(),
                  Vec(0, 0, -s.telescope_upper_length), "telescope's upper part");
   return round(s.telescope_mass * (1 - s.telescope_upper_share), s.telescope_lower_outer_diameter,
-               s.telescope_lower_inner_diameter, Vec::Zero(), Vec(0, 0, s.telescope_lower_length), "telescope's lower part");
+               s.telescope_lower_inner_diameter, Vec::Zero(), Vec(0, 0, s.telescope_lower_length),
+               "telescope's lower part");
 }
 
 double friction_of(int drive, bool viscous, const RobotDescription& robot, const PartShapes& s) {
   if (drive == 0) return viscous ? s.telescope_viscous : s.telescope_coulomb;
-  if (robot.telescope && drive == robot.drives()) return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
+  if (robot.telescope && drive == robot.drives())
+    return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
   return viscous ? s.drive_viscous : s.drive_coulomb;
 }
 
@@ -200,7 +206,8 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
     if (id.kind == ParameterKind::inertial) {  // a body's ten parameters stand together, the mass first
       const Ten p = body_of(id.body, robot.description(), shapes);
       if (!is_physically_consistent<double>(p))
-        refuse(fmt::format("the shapes of {} make no physically consistent body", owner_name(id)), "give every part a thickness");
+        refuse(fmt::format("the shapes of {} make no physically consistent body", owner_name(id)),
+               "give every part a thickness");
       plausibility::require_body(robot.description(), id.body, p, owner_name(id), "", ExitCode::usage);
       nominal.value.segment<kInertialParameters>(column) = p.array() + 0.0;  // no -0 in a file that people read
       nominal.std.segment<kInertialParameters>(column) = inertial_std(p, shapes.body_std);

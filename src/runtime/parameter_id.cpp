@@ -12,12 +12,14 @@ constexpr const char* kQuantities[] = {"", "viscous", "coulomb", "rotor_inertia"
 
 bool ParameterId::same_owner(const ParameterId& other) const {
   const bool inertial = kind == ParameterKind::inertial;
-  return inertial == (other.kind == ParameterKind::inertial) && number == other.number && (!inertial || body == other.body);
+  return inertial == (other.kind == ParameterKind::inertial) && number == other.number &&
+         (!inertial || body == other.body);
 }
 
 std::string owner_name(const ParameterId& id) {
   const char* joint = id.number > 0 ? "drive" : "telescope";
-  return (id.kind == ParameterKind::inertial ? name(id.body) : joint) + (id.number > 0 ? std::to_string(id.number) : "");
+  return (id.kind == ParameterKind::inertial ? name(id.body) : joint) +
+         (id.number > 0 ? std::to_string(id.number) : "");
 }
 
 std::string quantity_name(const ParameterId& id) {

@@ -15,13 +15,15 @@ constexpr OtherUnit kDegrees{"degrees", kPi / 180};
 constexpr OtherUnit kGrams{"grams", 1e-3};
 constexpr OtherUnit kNone{};
 
-// Limits of drives. A gear of 10 or more between a motor of 6000 rpm and an arm, or a torque motor without a gear, gives 60 rad/s;
-// a small arm may turn faster, as long as its elbow stays slow. The fastest Deltas move their plate at 10 m/s.
+// Limits of drives. A gear of 10 or more between a motor of 6000 rpm and an arm, or a torque motor without a gear,
+// gives 60 rad/s; a small arm may turn faster, as long as its elbow stays slow. The fastest Deltas move their plate at
+// 10 m/s.
 constexpr double kArmRate = 60;      // [rad/s]
 constexpr double kSmallElbow = 6;    // [m/s], an elbow this slow may turn at any rate
 constexpr double kElbowSpeed = 15;   // [m/s]
 constexpr double kElbowRise = 1200;  // [m/s^2]; the record is 100 g at the plate (R4, Montpellier)
-constexpr Rule kArmAngle{-2 * kPi, 2 * kPi, "rad", kDegrees, "an arm that carries struts cannot turn further than once round"};
+constexpr Rule kArmAngle{-2 * kPi, 2 * kPi, "rad", kDegrees,
+                         "an arm that carries struts cannot turn further than once round"};
 constexpr Rule kManyTurns{-100, 100, "rad", kDegrees,
                           "more than 16 turns are no range: leave the limit out if the drive turns without end"};
 constexpr Rule kMotorRate{0, 1100, "rad/s", kDegrees, "no servo motor turns faster than 10500 rpm"};
@@ -34,7 +36,8 @@ constexpr Rule kAnyTorque{0, 1e5, "N m", {"N mm", 1e-3}, "no single drive has th
 constexpr Rule kSlideForce{0, 1e5, "N", {"mN", 1e-3}, "no linear drive of such a robot has that much"};
 
 // Joint parameters: wide, for they differ by orders of magnitude between a needle bearing and a gear that is cold.
-constexpr Rule kViscous{0, 1e5, "N m s/rad or N s/m", {"N mm s/rad", 1e-3}, "friction is not negative, and not that large"};
+constexpr Rule kViscous{
+    0, 1e5, "N m s/rad or N s/m", {"N mm s/rad", 1e-3}, "friction is not negative, and not that large"};
 constexpr Rule kCoulomb{0, 1e4, "N m or N", {"N mm", 1e-3}, "friction is not negative, and not that large"};
 constexpr Rule kRotor{-1e4, 1e4, "kg m^2 or kg", {"kg mm^2", 1e-6}, "no rotor is that heavy behind its gear"};
 constexpr Rule kTorqueOffset{-1e4, 1e4, "N m or N", {"N mm", 1e-3}, "no amplifier is off by that much"};
@@ -45,8 +48,8 @@ constexpr double kAlike = 20;        // the same length in two limbs; calibratio
 constexpr double kReachShare = 3;    // base and plate against arm and strut; to close they need 1
 constexpr double kSpacingShare = 2;  // distance of the two struts against their length
 
-// How far mass lies from the frame's origin, against the robot's size: moments in kg mm are a thousand times as large. A motor
-// behind a gear that is not modelled on its own may stand in the arm's inertia, so there is room.
+// How far mass lies from the frame's origin, against the robot's size: moments in kg mm are a thousand times as large.
+// A motor behind a gear that is not modelled on its own may stand in the arm's inertia, so there is room.
 constexpr double kLever = 10;
 
 [[noreturn]] void refuse(const Rule& rule, double value, const std::string& what, const std::string& why,
@@ -86,7 +89,8 @@ double size_of(const RobotDescription& robot) {
 
 /// Largest and smallest of one length of all limbs.
 template <class Length>
-void require_alike(const RobotDescription& robot, Length length, const char* what, const std::string& where, ExitCode code) {
+void require_alike(const RobotDescription& robot, Length length, const char* what, const std::string& where,
+                   ExitCode code) {
   std::size_t least = 0, most = 0;
   for (std::size_t i = 1; i < robot.limbs.size(); ++i) {
     if (length(robot.limbs[i]) < length(robot.limbs[least])) least = i;
@@ -94,8 +98,8 @@ void require_alike(const RobotDescription& robot, Length length, const char* wha
   }
   const double small = length(robot.limbs[least]), large = length(robot.limbs[most]);
   if (large <= kAlike * small) return;
-  throw Error(fmt::format("{} of limb {} is {:.6g} m, but that of limb {} is {:.6g} m: one of them is in another unit", what,
-                          most + 1, large, least + 1, small),
+  throw Error(fmt::format("{} of limb {} is {:.6g} m, but that of limb {} is {:.6g} m: one of them is in another unit",
+                          what, most + 1, large, least + 1, small),
               where, "give all lengths in metres", code);
 }
 
@@ -104,7 +108,8 @@ void require_rate(const Rule& rule, double value, const std::string& what, const
 }
 
 /// Velocity and acceleration of a drive with an arm, by what they do to the elbow.
-void require_arm_rates(double arm, const DriveLimits& limits, const std::string& name, const std::string& where, ExitCode code) {
+void require_arm_rates(double arm, const DriveLimits& limits, const std::string& name, const std::string& where,
+                       ExitCode code) {
   const double fastest = std::min(kElbowSpeed / arm, std::max(kArmRate, kSmallElbow / arm));
   if (std::isfinite(limits.velocity) && limits.velocity > fastest)
     refuse({0, fastest, "rad/s", kDegrees, ""}, limits.velocity, name + ": the velocity limit",
@@ -114,8 +119,9 @@ void require_arm_rates(double arm, const DriveLimits& limits, const std::string&
   const double rise = kElbowRise / arm;
   if (std::isfinite(limits.acceleration) && limits.acceleration > rise)
     refuse({0, rise, "rad/s^2", kDegrees, ""}, limits.acceleration, name + ": the acceleration limit",
-           fmt::format("it would accelerate the elbow at {:.3g} m/s^2, and no arm of {:.3g} m does more than {:.3g} rad/s^2",
-                       limits.acceleration * arm, arm, rise),
+           fmt::format(
+               "it would accelerate the elbow at {:.3g} m/s^2, and no arm of {:.3g} m does more than {:.3g} rad/s^2",
+               limits.acceleration * arm, arm, rise),
            where, code);
 }
 
@@ -125,9 +131,9 @@ void require_range(const Rule& rule, const DriveLimits& limits, const std::strin
     if (!std::isinf(end)) require(rule, end, name + ": a position limit", where, code);
 }
 
-/// Largest mass [kg] of a body of a robot of this size. Each is a part of solid steel of the thickest shape that still makes a
-/// moving part, and a constant for hubs, sockets and grippers that do not shrink with the robot; a gram taken for a kilogram is
-/// beyond it for robots of all sizes.
+/// Largest mass [kg] of a body of a robot of this size. Each is a part of solid steel of the thickest shape that still
+/// makes a moving part, and a constant for hubs, sockets and grippers that do not shrink with the robot; a gram taken
+/// for a kilogram is beyond it for robots of all sizes.
 double heaviest(const RobotDescription& robot, Body body) {
   if (robot.parts.empty()) return kMass.highest;  // what a single drive moves may be anything
   const double strut = longest_strut(robot), arm = longest_arm(robot), size = 1.3 * strut + arm;
@@ -148,7 +154,8 @@ double heaviest(const RobotDescription& robot, Body body) {
 const Rule kLength{1e-4, 10, "m", kMillimetres, "a length of a moving robot is between 0.1 mm and 10 m"};
 const Rule kOffset{-10, 10, "m", kMillimetres, "no Delta robot is that large"};
 const Rule kDiameter{1e-5, 2, "m", kMillimetres, "no part of a moving robot is that thick or that thin"};
-const Rule kDensity{20, 25000, "kg/m^3", {"g/cm^3", 1000}, "the lightest foam has 20 and the densest metal 22600 kg/m^3"};
+const Rule kDensity{
+    20, 25000, "kg/m^3", {"g/cm^3", 1000}, "the lightest foam has 20 and the densest metal 22600 kg/m^3"};
 const Rule kMass{0, 5000, "kg", kGrams, "no part of a moving robot is that heavy, and none is lighter than nothing"};
 // On Earth 9.76 to 9.84; people write 9.8 and 10.
 const Rule kGravity{9.5, 10.1, "m/s^2", {"mm/s^2", 1e-3}, "gravity on Earth is 9.76 to 9.84 m/s^2"};
@@ -158,7 +165,8 @@ const Rule kYawVelocity{0, 150, "rad/s", kDegrees, "no Delta turns its tool fast
 const Rule kYawAcceleration{0, 3000, "rad/s^2", kDegrees, "no Delta turns its tool that suddenly"};
 const Rule kTilt{-kPi, kPi, "rad", kDegrees, "a tilt is half a turn at most"};
 const Rule kShare{1e-6, 10, "times the value", {"per cent", 0.01}, "that says nothing about the value"};
-const Rule kYaw{-100, 100, "rad", kDegrees, "more than 16 turns are no range: leave the limit out if the tool turns without end"};
+const Rule kYaw{-100, 100, "rad", kDegrees,
+                "more than 16 turns are no range: leave the limit out if the tool turns without end"};
 
 void require(const Rule& rule, double value, const std::string& what, const std::string& where, ExitCode code) {
   if (value >= rule.lowest && value <= rule.highest) return;  // false for NaN
@@ -196,28 +204,34 @@ void require_geometry(const RobotDescription& robot, const std::string& where, E
     const auto beside = [&](const char* what, double value, double largest, const char* other) {
       if (value <= largest) return;
       throw Error(
-          fmt::format("limb {}: the {} is {:.6g} m, which does not go with {} of {:.6g} m: one of them is in another unit", i + 1,
-                      what, value, other, reach),
+          fmt::format(
+              "limb {}: the {} is {:.6g} m, which does not go with {} of {:.6g} m: one of them is in another unit",
+              i + 1, what, value, other, reach),
           where, "give all lengths in metres", code);
     };
     if (arms && (limb.strut > kStrutToArm * arm || arm > kStrutToArm * limb.strut))
-      throw Error(fmt::format("limb {}: an upper arm of {:.6g} m does not go with struts of {:.6g} m: one of them is in another "
-                              "unit",
-                              i + 1, arm, limb.strut),
-                  where, "give all lengths in metres", code);
+      throw Error(
+          fmt::format(
+              "limb {}: an upper arm of {:.6g} m does not go with struts of {:.6g} m: one of them is in another "
+              "unit",
+              i + 1, arm, limb.strut),
+          where, "give all lengths in metres", code);
     beside("distance of the two struts", limb.strut_spacing, kSpacingShare * limb.strut, "arm and strut");
-    beside("distance of the attachment from the plate's centre", limb.p_BA.norm(), kReachShare * reach, "arm and strut");
+    beside("distance of the attachment from the plate's centre", limb.p_BA.norm(), kReachShare * reach,
+           "arm and strut");
     // A rail may be long, and its zero anywhere on it.
-    if (arms) beside("distance of the drive from the base's origin", limb.p_WD.norm(), kReachShare * reach, "arm and strut");
+    if (arms)
+      beside("distance of the drive from the base's origin", limb.p_WD.norm(), kReachShare * reach, "arm and strut");
   }
   if (!robot.telescope) return;
   const double reach = kReachShare * size_of(robot);
   for (const auto& [what, place] : {std::pair{"upper", robot.telescope->p_WU}, {"lower", robot.telescope->p_BV}})
     if (place.norm() > reach)
-      throw Error(fmt::format("telescope: the {} joint lies {:.6g} m from the origin, which does not go with arm and strut of "
-                              "{:.6g} m: one of them is in another unit",
-                              what, place.norm(), size_of(robot)),
-                  where, "give all lengths in metres", code);
+      throw Error(
+          fmt::format("telescope: the {} joint lies {:.6g} m from the origin, which does not go with arm and strut of "
+                      "{:.6g} m: one of them is in another unit",
+                      what, place.norm(), size_of(robot)),
+          where, "give all lengths in metres", code);
 }
 
 void require_limits(const RobotDescription& robot, int drive, const DriveLimits& limits, const std::string& where,
@@ -242,15 +256,16 @@ void require_limits(const RobotDescription& robot, int drive, const DriveLimits&
   const double arm = robot.limbs[static_cast<std::size_t>(drive)].p_DE_0.norm();
   require_range(alone ? kManyTurns : kArmAngle, limits, name, where, code);
   if (!alone && limits.upper - limits.lower > kArmAngle.highest + 1e-3 && std::isfinite(limits.upper - limits.lower))
-    refuse({0, kArmAngle.highest, "rad", kDegrees, ""}, limits.upper - limits.lower, name + ": the width of the position range",
-           kArmAngle.reason, where, code);
+    refuse({0, kArmAngle.highest, "rad", kDegrees, ""}, limits.upper - limits.lower,
+           name + ": the width of the position range", kArmAngle.reason, where, code);
   if (arm > 0) require_arm_rates(arm, limits, name, where, code);
   const Rule any_acceleration{0, 1e6, "rad/s^2", kDegrees, "no motor does that"};
   rates(kMotorRate, any_acceleration, alone ? kAnyTorque : kArmTorque);
 }
 
-std::string compare_limits(const RobotDescription& robot, int drive, const DriveLimits& asked, const std::string& where) {
-  constexpr double kByFar = 1.5;          // times the file's rate: a file on the safe side is a matter of tens of per cent
+std::string compare_limits(const RobotDescription& robot, int drive, const DriveLimits& asked,
+                           const std::string& where) {
+  constexpr double kByFar = 1.5;  // times the file's rate: a file on the safe side is a matter of tens of per cent
   constexpr double kByFarOfRange = 0.25;  // of the file's range, beyond either of its ends
   const DriveLimits& file = robot.limits[static_cast<std::size_t>(drive)];
   const std::string unit = turns(robot, drive) ? "rad" : "m", name = fmt::format("drive {}", drive + 1);
@@ -258,10 +273,11 @@ std::string compare_limits(const RobotDescription& robot, int drive, const Drive
   const auto exceeded = [&](const std::string& what, double value, double limit, const std::string& of, bool by_far) {
     if (by_far)
       throw Error(
-          fmt::format("{}: the {} limit asked for is {:.6g} {}, but the robot file allows {:.6g} {}", name, what, value, of,
-                      limit, of),
+          fmt::format("{}: the {} limit asked for is {:.6g} {}, but the robot file allows {:.6g} {}", name, what, value,
+                      of, limit, of),
           where,
-          fmt::format("ask for {:.6g} {} or less, or mend the limit in the robot file if the machine can do more", limit, of),
+          fmt::format("ask for {:.6g} {} or less, or mend the limit in the robot file if the machine can do more",
+                      limit, of),
           ExitCode::usage);
     told += fmt::format("{}{}: the {} limit asked for, {:.6g} {}, is beyond the {:.6g} {} of the robot file",
                         told.empty() ? "" : "; ", name, what, value, of, limit, of);
@@ -287,15 +303,16 @@ void require_body(const RobotDescription& robot, Body body, const InertialVector
   const double most = heaviest(robot, body);
   const double mass = p(kM);
   const Rule rule{0, most, "kg", kGrams, "no part weighs that"};
-  if (mass < 0) throw Error(fmt::format("{}: the mass {:.6g} kg is negative", what, mass), where, "give a mass above 0 kg", code);
+  if (mass < 0)
+    throw Error(fmt::format("{}: the mass {:.6g} kg is negative", what, mass), where, "give a mass above 0 kg", code);
   if (!std::isfinite(mass)) require(rule, mass, what + ": the mass", where, code);
   if (mass > most)
-    refuse(rule, mass, what + ": the mass", fmt::format("this part of a robot of this size weighs {:.3g} kg at most", most),
-           where, code);
+    refuse(rule, mass, what + ": the mass",
+           fmt::format("this part of a robot of this size weighs {:.3g} kg at most", most), where, code);
   for (int k = kIxx; k <= kIzz; ++k)
     if (!(p(k) >= 0))
-      refuse({0, 1e6, "kg m^2", kNone, ""}, p(k), what + ": the inertia", "an inertia about an axis is not negative", where,
-             code);
+      refuse({0, 1e6, "kg m^2", kNone, ""}, p(k), what + ": the inertia", "an inertia about an axis is not negative",
+             where, code);
   if (robot.parts.empty() || !(mass > 0)) return;  // what a single drive moves may have any inertia
   const double lever = kLever * size_of(robot);
   const double first = p.segment<3>(kMcx).norm();
@@ -308,7 +325,8 @@ void require_body(const RobotDescription& robot, Body body, const InertialVector
            fmt::format("it puts {:.3g} kg {:.3g} m from the axis", mass, std::sqrt(inertia / mass)), where, code);
 }
 
-void require_joint_parameter(ParameterKind kind, double value, const std::string& what, const std::string& where, ExitCode code) {
+void require_joint_parameter(ParameterKind kind, double value, const std::string& what, const std::string& where,
+                             ExitCode code) {
   switch (kind) {
     case ParameterKind::inertial: return;
     case ParameterKind::viscous: return require(kViscous, value, what, where, code);

@@ -62,7 +62,8 @@ Eigen::Vector3d bound(const RobotDescription& robot, const Eigen::Vector3d& home
 
 Reach find_reach(const Robot& robot, const ReachOptions& options) {
   const RobotDescription& description = robot.description();
-  if (description.parts.empty()) throw Error("an axis has no plate and so no workspace", description.name, "give a Delta");
+  if (description.parts.empty())
+    throw Error("an axis has no plate and so no workspace", description.name, "give a Delta");
   if (options.cells < 5 || options.cells > 400)
     throw Error(fmt::format("{} cells for the workspace grid", options.cells), "", "give 5 to 400", ExitCode::usage);
   if (!(options.largest_condition > 1))
@@ -74,7 +75,9 @@ Reach find_reach(const Robot& robot, const ReachOptions& options) {
   const int n = options.cells;
   reach.cell = 2 * size(0) / n;
   const Eigen::Vector3d corner = Eigen::Vector3d::Constant(-size(0));
-  const auto index = [n](const Eigen::Vector3i& c) { return static_cast<std::size_t>((c.x() * n + c.y()) * n + c.z()); };
+  const auto index = [n](const Eigen::Vector3i& c) {
+    return static_cast<std::size_t>((c.x() * n + c.y()) * n + c.z());
+  };
   const auto centre = [&](const Eigen::Vector3i& c) -> Eigen::Vector3d {
     return corner + reach.cell * (c.cast<double>().array() + 0.5).matrix();
   };

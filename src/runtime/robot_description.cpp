@@ -19,8 +19,10 @@ struct TypeRule {
   bool plate, telescope;
 };
 
-constexpr TypeRule kRules[] = {
-    {"delta3", 3, true, false}, {"linear-delta3", 3, true, false}, {"delta4", 3, true, true}, {"axis", 1, false, false}};
+constexpr TypeRule kRules[] = {{"delta3", 3, true, false},
+                               {"linear-delta3", 3, true, false},
+                               {"delta4", 3, true, true},
+                               {"axis", 1, false, false}};
 
 [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
   throw Error(what, where, mend);
@@ -44,7 +46,8 @@ void require_positive(double value, const std::string& what, const std::string& 
     refuse(fmt::format("{} is {} m, but must be positive", what, value), where, "give a positive length in metres");
 }
 
-void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind, const std::string& where) {
+void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind,
+                   const std::string& where) {
   const std::string name = fmt::format("limb {}", number);
   if (!std::isfinite(limb.azimuth)) refuse(name + ": the azimuth is not finite", where, "give an angle in radians");
   require_finite(limb.p_WD, name + ": the place of the drive", where);
@@ -53,16 +56,16 @@ void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool pl
   require_finite(limb.p_BA, name + ": the attachment on the plate", where);
   if (kind == DriveKind::revolute) {
     if (!limb.axis_L.isApprox(Vector3<double>::UnitY(), kUnitTolerance))
-      refuse(fmt::format("{}: a revolute drive turns about +y of its limb frame, not about ({}, {}, {})", name, limb.axis_L.x(),
-                         limb.axis_L.y(), limb.axis_L.z()),
+      refuse(fmt::format("{}: a revolute drive turns about +y of its limb frame, not about ({}, {}, {})", name,
+                         limb.axis_L.x(), limb.axis_L.y(), limb.axis_L.z()),
              where, "turn the limb by its azimuth instead");
     if (plate) require_positive(limb.p_DE_0.x(), name + ": the length of the upper arm", where);
     if (limb.p_DE_0.tail<2>().norm() > kUnitTolerance || limb.p_DE_0.x() < 0)
       refuse(name + ": the elbow of a revolute drive lies on +x of the upper arm at angle 0", where,
              "an angle of 0 is horizontal outwards; put an offset into the drive's zero");
   } else if (std::abs(limb.axis_L.norm() - 1) > kUnitTolerance) {
-    refuse(fmt::format("{}: the axis of the drive has length {}, but must be a unit vector", name, limb.axis_L.norm()), where,
-           "divide the axis by its length");
+    refuse(fmt::format("{}: the axis of the drive has length {}, but must be a unit vector", name, limb.axis_L.norm()),
+           where, "divide the axis by its length");
   }
   if (!plate) return;
   require_positive(limb.strut, name + ": the strut length", where);
@@ -77,8 +80,9 @@ void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool pl
 void validate_limits(const DriveLimits& limits, std::size_t number, const std::string& where) {
   const std::string name = fmt::format("drive {}", number);
   if (!(limits.lower < limits.upper))
-    refuse(fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper), where,
-           "swap or mend the limits");
+    refuse(
+        fmt::format("{}: the lower position limit {} is not below the upper one {}", name, limits.lower, limits.upper),
+        where, "swap or mend the limits");
   const auto positive = [&](double value, const char* what) {
     if (!(value > 0))
       refuse(fmt::format("{}: the {} limit is {}, but must be positive", name, what, value), where,
@@ -97,14 +101,15 @@ DriveLimits::DriveLimits()
 void RobotDescription::validate(const std::string& where) const {
   const TypeRule& rule = rule_of(type, where);
   if (limbs.size() != rule.limbs)
-    refuse(fmt::format("a robot of type {} has {} limb{}, but this one has {}", type, rule.limbs, rule.limbs == 1 ? "" : "s",
-                       limbs.size()),
+    refuse(fmt::format("a robot of type {} has {} limb{}, but this one has {}", type, rule.limbs,
+                       rule.limbs == 1 ? "" : "s", limbs.size()),
            where, "check the drives that hang on the base");
   if (type != "axis" && (drive_kind == DriveKind::prismatic) != (type == "linear-delta3"))
     refuse(fmt::format("the drives of a {} are {}", type, type == "linear-delta3" ? "prismatic" : "revolute"), where,
            "use type linear-delta3 for prismatic drives, delta3 or delta4 for revolute ones");
   if (parts.size() != (rule.plate ? 1U : 0U))
-    refuse(fmt::format("the plate of a {} has {} part, but this one has {}", type, rule.plate ? "one" : "no", parts.size()),
+    refuse(fmt::format("the plate of a {} has {} part, but this one has {}", type, rule.plate ? "one" : "no",
+                       parts.size()),
            where, "the plate of a Delta is one part");
   for (const PlatePart<double>& part : parts) {
     // All coefficients at once: NaN fails the comparison, too.
@@ -126,8 +131,8 @@ void RobotDescription::validate(const std::string& where) const {
   for (std::size_t i = 0; i < limbs.size(); ++i) validate_limb(limbs[i], i + 1, rule.plate, drive_kind, where);
   for (std::size_t i = 0; i < limits.size(); ++i) validate_limits(limits[i], i + 1, where);
   if (rule.plate) {
-    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones leave it
-    // loose.
+    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones
+    // leave it loose.
     double spread = 0;
     for (const auto& limb : limbs) spread = std::max(spread, std::abs(std::sin(limb.azimuth - limbs[0].azimuth)));
     if (spread < 1e-6)

@@ -55,7 +55,8 @@ class RobotOf final : public Robot {
       ids_.push_back(all[static_cast<std::size_t>(column)]);
       names_.push_back(parameter_name(ids_.back()));
       units_.push_back(parameter_unit(
-          ids_.back(), ids_.back().number > 0 && description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute));
+          ids_.back(),
+          ids_.back().number > 0 && description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute));
     }
   }
 
@@ -79,7 +80,8 @@ class RobotOf final : public Robot {
     return status;
   }
 
-  Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd, Eigen::Ref<Vector> qdd) const override {
+  Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd,
+                   Eigen::Ref<Vector> qdd) const override {
     Motion<double, R> motion;
     const Status status = motion_from_task(geometry_, Drives(task.z), Drives(task.zd), Drives(task.zdd), motion);
     if (status == Status::ok) {
@@ -104,7 +106,8 @@ class RobotOf final : public Robot {
     return status;
   }
 
-  Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, Eigen::Ref<Eigen::MatrixXd> Y) const override {
+  Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                   Eigen::Ref<Eigen::MatrixXd> Y) const override {
     Motion<double, R> motion;
     const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
     if (status != Status::ok) return status;
@@ -135,7 +138,8 @@ class RobotOf final : public Robot {
     Status status = posture_from_drives(geometry_, Drives(q), posture);
     Drives out;
     if (status == Status::ok) {
-      status = deltadyn::forward_dynamics<Layout, double, R>(geometry_, posture, Drives(qd), Drives(tau), all_columns(p), out);
+      status = deltadyn::forward_dynamics<Layout, double, R>(geometry_, posture, Drives(qd), Drives(tau),
+                                                             all_columns(p), out);
     }
     if (status == Status::ok) qdd = out;
     return status;
@@ -160,7 +164,8 @@ class RobotOf final : public Robot {
     const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
     if (status != Status::ok) return status;
     const auto all = all_columns(p);
-    energies = {kinetic_energy<Layout>(geometry_, motion, all), potential_energy<Layout>(geometry_, motion.posture, all)};
+    energies = {kinetic_energy<Layout>(geometry_, motion, all),
+                potential_energy<Layout>(geometry_, motion.posture, all)};
     return status;
   }
 

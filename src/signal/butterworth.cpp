@@ -47,7 +47,8 @@ void pass(const std::vector<SecondOrderSection>& sections, Eigen::Ref<Eigen::Vec
 std::vector<SecondOrderSection> butterworth_low_pass(double sample_rate_hz, double cutoff_hz, int order) {
   check(sample_rate_hz, cutoff_hz, order);
   if (!(cutoff_hz < 0.5 * sample_rate_hz)) {
-    throw Error("the cut-off must be below half the sample rate", "low pass", "choose a lower cut-off", ExitCode::usage);
+    throw Error("the cut-off must be below half the sample rate", "low pass", "choose a lower cut-off",
+                ExitCode::usage);
   }
   const double w = std::tan(pi * cutoff_hz / sample_rate_hz);  // pre-warped, s = (z - 1)/(z + 1)
   std::vector<SecondOrderSection> sections;
@@ -55,8 +56,8 @@ std::vector<SecondOrderSection> butterworth_low_pass(double sample_rate_hz, doub
     // The analog pole pair s^2 + 2 zeta w s + w^2.
     const double zeta = std::sin(pi * (2.0 * k + 1.0) / (2.0 * order));
     const double scale = 1.0 / (1.0 + 2.0 * zeta * w + w * w);
-    sections.push_back(
-        {w * w * scale, 2.0 * w * w * scale, w * w * scale, 2.0 * (w * w - 1.0) * scale, (1.0 - 2.0 * zeta * w + w * w) * scale});
+    sections.push_back({w * w * scale, 2.0 * w * w * scale, w * w * scale, 2.0 * (w * w - 1.0) * scale,
+                        (1.0 - 2.0 * zeta * w + w * w) * scale});
   }
   if (order % 2 == 1) sections.push_back({w / (1.0 + w), w / (1.0 + w), 0.0, (w - 1.0) / (1.0 + w), 0.0});
   return sections;
@@ -78,12 +79,13 @@ double single_pass_cutoff_hz(double sample_rate_hz, double cutoff_hz, int order)
   return std::atan(w) * sample_rate_hz / pi;
 }
 
-Eigen::MatrixXd zero_phase_filter(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_rate_hz, double cutoff_hz,
-                                  int order) {
+Eigen::MatrixXd zero_phase_filter(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_rate_hz,
+                                  double cutoff_hz, int order) {
   check(sample_rate_hz, cutoff_hz, order);
   const Index n = columns.rows();
   if (n < 2 || columns.cols() == 0 || cutoff_hz >= 0.5 * sample_rate_hz) return columns;
-  const auto sections = butterworth_low_pass(sample_rate_hz, single_pass_cutoff_hz(sample_rate_hz, cutoff_hz, order), order);
+  const auto sections =
+      butterworth_low_pass(sample_rate_hz, single_pass_cutoff_hz(sample_rate_hz, cutoff_hz, order), order);
   // The slowest pole has died out after a few times the period of the cut-off.
   const auto wanted_padding = static_cast<Index>(std::ceil(0.8 * (1 + order) * sample_rate_hz / cutoff_hz));
   const Index padding = std::clamp<Index>(wanted_padding, 1, n - 1);

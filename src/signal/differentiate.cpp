@@ -12,7 +12,8 @@ namespace deltadyn {
 using Eigen::Index;
 
 Eigen::VectorXd derivative_weights(int points, int degree, int derivative, double at) {
-  if (points < 2 || points > 4001 || degree < 0 || degree >= points || degree > 20 || derivative < 0 || derivative > degree) {
+  if (points < 2 || points > 4001 || degree < 0 || degree >= points || degree > 20 || derivative < 0 ||
+      derivative > degree) {
     throw Error("points, degree and derivative of the polynomial do not fit together", "differentiation",
                 "0 <= derivative <= degree < points, degree at most 20", ExitCode::usage);
   }
@@ -43,12 +44,15 @@ Eigen::MatrixXd savitzky_golay(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                 "give at least " + std::to_string(points) + " samples", ExitCode::usage);
   }
   const double scale = std::pow(sample_time_s, -derivative);
-  const auto at = [&](int position) { return Eigen::VectorXd(scale * derivative_weights(points, degree, derivative, position)); };
+  const auto at = [&](int position) {
+    return Eigen::VectorXd(scale * derivative_weights(points, degree, derivative, position));
+  };
   const Eigen::VectorXd centre = at(half_width);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, columns.cols());
   const Index inner = n - points + 1;
   for (Index c = 0; c < columns.cols(); ++c) {
-    for (int k = 0; k < points; ++k) result.col(c).segment(half_width, inner) += centre(k) * columns.col(c).segment(k, inner);
+    for (int k = 0; k < points; ++k)
+      result.col(c).segment(half_width, inner) += centre(k) * columns.col(c).segment(k, inner);
   }
   for (int i = 0; i < half_width; ++i) {
     result.row(i) = at(i).transpose() * columns.topRows(points);

@@ -15,7 +15,8 @@ DriveMotion differentiate_log(const Log& log, double cutoff_hz, int order, doubl
   const double sample_time_s = log.sample_time_s();
   const double trim = trim_s >= 0 ? trim_s : 1.5 / cutoff_hz;
   const Eigen::Index n = log.samples();
-  const auto trimmed = std::isfinite(trim) && sample_time_s > 0 ? static_cast<Eigen::Index>(std::ceil(trim / sample_time_s)) : n;
+  const auto trimmed =
+      std::isfinite(trim) && sample_time_s > 0 ? static_cast<Eigen::Index>(std::ceil(trim / sample_time_s)) : n;
   DriveMotion motion;
   motion.first = std::max<Eigen::Index>(kHalfWidth, trimmed);
   motion.last = n - motion.first;

@@ -37,8 +37,8 @@ FirDecimator::FirDecimator(double sample_rate_hz, double cutoff_hz, int factor)
   taps_.resize(2 * half + 1);
   for (Index k = 0; k <= half; ++k) {
     const double x = static_cast<double>(k) / static_cast<double>(half + 1);
-    const double tap =
-        2.0 * cutoff * sinc(2.0 * cutoff * static_cast<double>(k)) * std::cyl_bessel_i(0, kKaiserBeta * std::sqrt(1.0 - x * x));
+    const double tap = 2.0 * cutoff * sinc(2.0 * cutoff * static_cast<double>(k)) *
+                       std::cyl_bessel_i(0, kKaiserBeta * std::sqrt(1.0 - x * x));
     taps_(half + k) = tap;
     taps_(half - k) = tap;
   }

@@ -17,12 +17,14 @@ namespace {
 using Eigen::Index;
 using std::numbers::pi;
 
-constexpr double kNoiseRatio = 4.0;     // positions one period apart differ by at most this many times their noise,
-constexpr double kShareOfRange = 3e-4;  // or this share of the drive's range (real drives do not repeat to the last count)
-constexpr int kFewestPeriods = 2;       // a period seen fewer times is no period
+constexpr double kNoiseRatio = 4.0;  // positions one period apart differ by at most this many times their noise,
+// Or this share of the drive's range (real drives do not repeat to the last count)
+constexpr double kShareOfRange = 3e-4;
+constexpr int kFewestPeriods = 2;  // a period seen fewer times is no period
 
 /// Basis functions at the given times, times x (1 + 2 harmonics).
-Eigen::MatrixXd basis(const Eigen::Ref<const Eigen::VectorXd>& t_s, double base_frequency_hz, int harmonics, int derivative) {
+Eigen::MatrixXd basis(const Eigen::Ref<const Eigen::VectorXd>& t_s, double base_frequency_hz, int harmonics,
+                      int derivative) {
   Eigen::MatrixXd result(t_s.size(), 1 + 2 * harmonics);
   result.col(0).setConstant(derivative == 0 ? 1.0 : 0.0);
   for (int k = 1; k <= harmonics; ++k) {
@@ -54,7 +56,9 @@ Mismatch mismatch(const Log& log, Index lag, const Eigen::VectorXd& allowed) {
   const Index count = n - lag - 2;
   double along = 0, square = 0;
   Mismatch result;
-  const auto difference = [&](Index d) { return log.q.col(d).segment(1 + lag, count) - log.q.col(d).segment(1, count); };
+  const auto difference = [&](Index d) {
+    return log.q.col(d).segment(1 + lag, count) - log.q.col(d).segment(1, count);
+  };
   const auto rate = [&](Index d) {
     return (log.q.col(d).segment(2 + lag, count) - log.q.col(d).segment(lag, count)) / (2.0 * h);
   };
@@ -99,8 +103,8 @@ FourierFit fit_fourier(const Eigen::Ref<const Eigen::VectorXd>& t_s, const Eigen
   }
   const Eigen::LDLT<Eigen::MatrixXd> factor(normal.selfadjointView<Eigen::Lower>());
   if (factor.rcond() < 1e-12) {
-    throw Error("the samples do not determine the harmonics", "Fourier fit", "give at least one whole period, or fewer harmonics",
-                ExitCode::usage);
+    throw Error("the samples do not determine the harmonics", "Fourier fit",
+                "give at least one whole period, or fewer harmonics", ExitCode::usage);
   }
   fit.coefficients = factor.solve(right);
   return fit;
@@ -146,7 +150,8 @@ std::optional<Period> find_period(const Log& log) {
       double square = 0;
       for (Index probe = 0; probe < kProbes; ++probe) {
         const Index i = probe * (n - lag - 1) / kProbes;
-        square = std::max(square, ((log.q.row(i + lag) - log.q.row(i)).transpose().array() / deviation.array()).abs().maxCoeff());
+        square = std::max(
+            square, ((log.q.row(i + lag) - log.q.row(i)).transpose().array() / deviation.array()).abs().maxCoeff());
       }
       left = square > 1.0;
       continue;
@@ -191,7 +196,8 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   const auto points = static_cast<Index>(std::lround(period_s / h));
   Log& one = mean.log;
   one.file = log.file;
-  one.t_s = Eigen::VectorXd::LinSpaced(points, 0.0, period_s * static_cast<double>(points - 1) / static_cast<double>(points));
+  one.t_s =
+      Eigen::VectorXd::LinSpaced(points, 0.0, period_s * static_cast<double>(points - 1) / static_cast<double>(points));
   one.q = mean.series.evaluate(one.t_s, 0);
   one.qd = mean.series.evaluate(one.t_s, 1);
   one.qdd = mean.series.evaluate(one.t_s, 2);
@@ -204,7 +210,8 @@ PeriodMean average_periods(const Log& log, double period_s, int harmonics) {
   const Eigen::RowVectorXd reference = log.tau.colwise().mean();
   for (int period = 0; period < mean.periods; ++period) {
     const Eigen::VectorXd when = one.t_s.array() + period * period_s;
-    const Eigen::MatrixXd tau = whole_samples ? log.tau.middleRows(period * points, points).eval() : resample(t_s, log.tau, when);
+    const Eigen::MatrixXd tau =
+        whole_samples ? log.tau.middleRows(period * points, points).eval() : resample(t_s, log.tau, when);
     for (Index i = 0; i < points; ++i) {
       const Index nearest = std::min(log.samples() - 1, static_cast<Index>(std::lround(when(i) / h)));
       if (log.is_filled(nearest)) continue;

@@ -32,7 +32,8 @@ void add_figures(std::vector<Log>& parts, double largest_jitter, double recorded
     for (const Log& part : parts) {
       if (std::ranges::find(part.findings, key, &LogFinding::key) != part.findings.end()) return;
     }
-    first.findings.push_back({.key = key, .file = first.file, .value = value, .unit = unit, .text = first.file + ": " + text});
+    first.findings.push_back(
+        {.key = key, .file = first.file, .value = value, .unit = unit, .text = first.file + ": " + text});
   };
   add("rate_hz", recorded_rate_hz, "Hz", fmt::format("recorded at {:.6g} Hz", recorded_rate_hz));
   add("jitter", largest_jitter, "",
@@ -73,7 +74,8 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
   std::vector<Log> parts = checks::split(room);
   std::vector<Log> usable;
   std::optional<Error> refused;
-  std::vector<LogFinding> carried;  // of parts that are not used: what was said of the file as a whole stands with its first part
+  // Of parts that are not used: what was said of the file as a whole stands with its first part
+  std::vector<LogFinding> carried;
   std::vector<std::string> carried_notes;
   double recorded_rate_hz = 0;
   for (Log& part : parts) {
@@ -93,12 +95,12 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
       carried.insert(carried.end(), part.findings.begin(), part.findings.end());
       carried_notes.insert(carried_notes.end(), part.notes.begin(), part.notes.end());
       carried_notes.push_back(fmt::format("{}: part {} is not used: {}", error.where(), part.part, error.problem()));
-      carried.push_back(
-          {.level = FindingLevel::warning,
-           .key = "unusable_part",
-           .file = part.file,
-           .text = carried_notes.back(),
-           .mend = error.mend().empty() ? "record this part again if it is needed; the others are used" : error.mend()});
+      carried.push_back({.level = FindingLevel::warning,
+                         .key = "unusable_part",
+                         .file = part.file,
+                         .text = carried_notes.back(),
+                         .mend = error.mend().empty() ? "record this part again if it is needed; the others are used"
+                                                      : error.mend()});
     }
   }
   if (usable.empty()) throw *refused;
@@ -113,7 +115,8 @@ std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const L
 void check_and_repair(Log& log, const RobotDescription& robot, const LogCheckOptions& options) {
   std::vector<Log> parts = check_and_split(log, robot, options);
   if (parts.size() > 1) {
-    throw Error(fmt::format("the log falls into {} parts", parts.size()), log.file, "use check_and_split() and take the parts");
+    throw Error(fmt::format("the log falls into {} parts", parts.size()), log.file,
+                "use check_and_split() and take the parts");
   }
   log = std::move(parts.front());
 }

@@ -13,13 +13,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kBandRatio = 1.26;   // a third of an octave
-constexpr double kSegment_s = 4;      // shows motion from half a hertz on
-constexpr double kClear = 30;         // times the noise: less is no news of the motion, or the hump of an interpolated record
-constexpr double kSameFloor = 1.5;    // quantisation noise of a slow motion is not white: beside the motion it is lower
-constexpr double kContent = 0.999;    // of the accelerations' power: what lies above moves no figure
-constexpr double kSharp_hz = 20;      // below it the low pass smears a reversal over more than a tenth of a second
-constexpr double kNoiseShare = 2e-5;  // of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
+constexpr double kBandRatio = 1.26;  // a third of an octave
+constexpr double kSegment_s = 4;     // shows motion from half a hertz on
+constexpr double kClear = 30;  // times the noise: less is no news of the motion, or the hump of an interpolated record
+constexpr double kSameFloor = 1.5;  // quantisation noise of a slow motion is not white: beside the motion it is lower
+constexpr double kContent = 0.999;  // of the accelerations' power: what lies above moves no figure
+constexpr double kSharp_hz = 20;    // below it the low pass smears a reversal over more than a tenth of a second
+// Of an acceleration's power: as noise in the regressor it pulls an inertia down by as much
+constexpr double kNoiseShare = 2e-5;
 constexpr double kLowestCutoff_hz = 5;
 constexpr double kLeastPeriods = 20;  // of the cut-off in a log: its ends are lost for 1.5 of them each
 constexpr double kMostOfRate = 0.25;  // differentiation needs some samples a period of the highest frequency
@@ -48,8 +49,8 @@ double power_between(const MotionBand& band, double above, double cutoff_hz, dou
   return power;
 }
 
-/// Acceleration power below a frequency that is no motion: the floor, and what stands above it beyond the motion's band (humps of an
-/// interpolated or jittering record).
+/// Acceleration power below a frequency that is no motion: the floor, and what stands above it beyond the motion's band
+/// (humps of an interpolated or jittering record).
 double noise_power(const MotionBand& band, double cutoff_hz) {
   return power_between(band, band.top_hz, cutoff_hz,
                        band.noise_density * std::pow(2 * std::numbers::pi, 4) * std::pow(cutoff_hz, 5) / 5);
@@ -60,7 +61,8 @@ double motion_power(const MotionBand& band, double cutoff_hz) {
   return power_between(band, 0, std::min(cutoff_hz, band.top_hz));
 }
 
-/// Mean density, over frequency, of the bands that are nearly as low as the lowest one: noise is much the same in all of them.
+/// Mean density, over frequency, of the bands that are nearly as low as the lowest one: noise is much the same in all
+/// of them.
 double floor_of(const MotionBand& band) {
   if (band.density.size() == 0) return 0;
   const double lowest = band.density.minCoeff();
@@ -82,7 +84,8 @@ double content_of(const MotionBand& band) {
   return band.top_hz;
 }
 
-/// Highest frequency that belongs to the motion, from low ones on: a resonance or an interpolation's own line higher up is none.
+/// Highest frequency that belongs to the motion, from low ones on: a resonance or an interpolation's own line higher up
+/// is none.
 double top_of(const MotionBand& band) {
   double clear = 0;
   for (Index i = 0; i < band.density.size(); ++i) {
@@ -114,7 +117,8 @@ struct DriveSpectra {
     return a_a > 0 ? tau_a / a_a : 0;
   }
 
-  /// Is the noise of the positions a small share of the accelerations, or below the torque's own noise where it ends up?
+  /// Is the noise of the positions a small share of the accelerations, or below the torque's own noise where it ends
+  /// up?
   [[nodiscard]] bool quiet(double cutoff, double inertia_square) const {
     double noise = 0, motion = 0, torque_noise = 0;
     for (std::size_t l = 0; l < position.size(); ++l) {
@@ -152,7 +156,8 @@ double noise_limit_hz(const std::vector<Log>& logs, const std::vector<std::vecto
 }  // namespace
 
 MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double rate_hz) {
-  // The steep spectrum of a motion would leak over the noise: the differences are flatter, and are set right afterwards.
+  // The steep spectrum of a motion would leak over the noise: the differences are flatter, and are set right
+  // afterwards.
   const Eigen::VectorXd steps = position.tail(position.size() - 1) - position.head(position.size() - 1);
   const PowerSpectrum spectrum = welch_spectrum(steps, rate_hz, segment_of(steps.size(), rate_hz));
   std::vector<double> frequency, density;
@@ -185,7 +190,8 @@ MotionBand motion_band(const Eigen::Ref<const Eigen::VectorXd>& position, double
 Eigen::VectorXd position_noise_std(const Log& log) {
   Eigen::VectorXd std(log.drives());
   const double rate_hz = 1.0 / log.sample_time_s();
-  for (Index j = 0; j < log.drives(); ++j) std(j) = std::sqrt(motion_band(log.q.col(j), rate_hz).noise_density * rate_hz / 2);
+  for (Index j = 0; j < log.drives(); ++j)
+    std(j) = std::sqrt(motion_band(log.q.col(j), rate_hz).noise_density * rate_hz / 2);
   return std;
 }
 

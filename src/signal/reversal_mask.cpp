@@ -40,8 +40,8 @@ double position_noise(const Eigen::Ref<const Eigen::VectorXd>& position) {
   double resolution = 0.0;
   const double largest = position.cwiseAbs().maxCoeff();
   for (Index i = 2; i + 2 < n; ++i) {
-    sizes.push_back(
-        std::abs(position(i - 2) - 4.0 * position(i - 1) + 6.0 * position(i) - 4.0 * position(i + 1) + position(i + 2)));
+    sizes.push_back(std::abs(position(i - 2) - 4.0 * position(i - 1) + 6.0 * position(i) - 4.0 * position(i + 1) +
+                             position(i + 2)));
     const double step = std::abs(position(i) - position(i - 1));
     // Smaller steps are rounding of the decimal numbers, not counts of the encoder.
     if (step > 1e-12 * largest && (resolution == 0.0 || step < resolution)) resolution = step;
@@ -51,7 +51,8 @@ double position_noise(const Eigen::Ref<const Eigen::VectorXd>& position) {
 }
 
 double derivative_noise(double position_noise, double sample_rate_hz, double cutoff_hz, int order, int derivative) {
-  const auto sections = butterworth_low_pass(sample_rate_hz, single_pass_cutoff_hz(sample_rate_hz, cutoff_hz, order), order);
+  const auto sections =
+      butterworth_low_pass(sample_rate_hz, single_pass_cutoff_hz(sample_rate_hz, cutoff_hz, order), order);
   // Parseval: mean over the frequencies of (omega^d gain)^2. Beyond some multiples of the cut-off nothing is left.
   constexpr int kSteps = 4000;
   const double highest_hz = std::min(0.5 * sample_rate_hz, 8.0 * cutoff_hz);

@@ -23,15 +23,17 @@ Index automatic_segment(Index samples) {
 
 /// The periodic Hann window: shifted by half its length it adds up to one.
 Eigen::VectorXd hann(Index n) {
-  return Eigen::VectorXd::NullaryExpr(
-      n, [n](Index i) { return 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n)); });
+  return Eigen::VectorXd::NullaryExpr(n, [n](Index i) {
+    return 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+  });
 }
 
 }  // namespace
 
 PowerSpectrum welch_spectrum(const Eigen::VectorXd& signal, double rate_hz, Index segment) {
   if (!std::isfinite(rate_hz) || rate_hz <= 0.0)
-    throw Error(fmt::format("a sampling rate of {} Hz", rate_hz), "power spectrum", "give a positive rate", ExitCode::usage);
+    throw Error(fmt::format("a sampling rate of {} Hz", rate_hz), "power spectrum", "give a positive rate",
+                ExitCode::usage);
   if (segment == 0) segment = automatic_segment(signal.size());
   if (segment < kShortest || segment > signal.size()) {
     throw Error(fmt::format("{} samples cannot be cut into pieces of {}", signal.size(), segment), "power spectrum",

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kHalfWidth = 24;       // samples of the windowed sinc on either side; flat to 0.9 of half the sample rate
-constexpr double kMostLift = 4.0;      // of noise by the inverse of a low pass
+constexpr Index kHalfWidth = 24;   // samples of the windowed sinc on either side; flat to 0.9 of half the sample rate
+constexpr double kMostLift = 4.0;  // of noise by the inverse of a low pass
 constexpr double kLowestBand_hz = 80;  // the inverse reaches at least so far, whatever it lifts: the band of a motion
 
 /// Low pass with its edge at `cut` (share of the sample rate, at most 0.5), and its slope, u samples from the centre.
@@ -52,7 +52,8 @@ Eigen::VectorXd mend_timing(const Eigen::Ref<const Eigen::VectorXd>& y, double s
   if (delay_s == 0 && lag == 0) return x;
   double cut = 0.5;
   if (lag > 0) {
-    const double band_hz = std::max(kLowestBand_hz, std::sqrt(kMostLift * kMostLift - 1) / (2 * std::numbers::pi * lag_s));
+    const double band_hz =
+        std::max(kLowestBand_hz, std::sqrt(kMostLift * kMostLift - 1) / (2 * std::numbers::pi * lag_s));
     cut = std::min(0.4, band_hz * step_s);
   }
   const double width = static_cast<double>(kHalfWidth) * std::max(1.0, 0.25 / cut);

@@ -14,7 +14,8 @@ void ControllerOptions::validate(int drives) const {
   };
   require(bandwidth_hz > 0 && bandwidth_hz < 1000, fmt::format("a bandwidth of {} Hz", bandwidth_hz),
           "give a few Hz to some ten Hz");
-  require(damping_ratio > 0 && damping_ratio < 10, fmt::format("a damping ratio of {}", damping_ratio), "0.7 to 1 is usual");
+  require(damping_ratio > 0 && damping_ratio < 10, fmt::format("a damping ratio of {}", damping_ratio),
+          "0.7 to 1 is usual");
   require(rate_filter_hz > 0, fmt::format("a rate filter at {} Hz", rate_filter_hz), "give a positive frequency");
   for (const auto* gains : {&kp, &kd}) {
     require(gains->empty() || static_cast<int>(gains->size()) == drives,
@@ -73,12 +74,13 @@ Eigen::VectorXd Controller::torque(const ReferenceMotion::State& reference, cons
   const Eigen::VectorXd friction =
       inverse(reference.q, reference.qd, reference.qdd, p_) - inverse(reference.q, reference.qd, reference.qdd, rigid_);
   const Eigen::VectorXd rate = reference.qd - error_rate_;
-  if (options_.law == ControlLaw::computed_torque) return inverse(measured, rate, reference.qdd + push, rigid_) + friction;
+  if (options_.law == ControlLaw::computed_torque)
+    return inverse(measured, rate, reference.qdd + push, rigid_) + friction;
   // C(q, a) b with Christoffel's symbols is symmetric in a and b, so it follows from the squares c(v) = C(q, v) v.
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(error.size());
   const Eigen::VectorXd gravity = inverse(measured, zero, zero, rigid_);
-  const Eigen::VectorXd coriolis =
-      0.25 * (inverse(measured, rate + reference.qd, zero, rigid_) - inverse(measured, rate - reference.qd, zero, rigid_));
+  const Eigen::VectorXd coriolis = 0.25 * (inverse(measured, rate + reference.qd, zero, rigid_) -
+                                           inverse(measured, rate - reference.qd, zero, rigid_));
   const Eigen::VectorXd inertial = inverse(measured, zero, reference.qdd, rigid_) - gravity;
   return inertial + coriolis + gravity + friction + push;
 }

@@ -51,7 +51,9 @@ void FrictionLaw::add(const Effect& effect, double count) {
 }
 
 void FrictionLaw::look_at_rest(const std::string& where) {
-  const auto differs = [](double one, double other) { return std::abs(one - other) > 1e-12 * (std::abs(one) + std::abs(other)); };
+  const auto differs = [](double one, double other) {
+    return std::abs(one - other) > 1e-12 * (std::abs(one) + std::abs(other));
+  };
   JointMotion up, down;
   down.direction = -1;
   const double plain = resistance(up, 0);
@@ -72,9 +74,10 @@ void FrictionLaw::look_at_rest(const std::string& where) {
     const double hold = resistance(up, 0) - resistance(down, 0);
     jumps_ = jumps_ || hold > 1e-9 * (coulomb_ + size);
     if (hold < -1e-9 * (coulomb_ + size)) {
-      throw Error(fmt::format("with {} N m (N) the friction at rest would push instead of hold", terms_.back().amplitude[0]),
-                  where, fmt::format("the joint's Coulomb friction is {}; give the effect a smaller amplitude", coulomb_),
-                  ExitCode::usage);
+      throw Error(
+          fmt::format("with {} N m (N) the friction at rest would push instead of hold", terms_.back().amplitude[0]),
+          where, fmt::format("the joint's Coulomb friction is {}; give the effect a smaller amplitude", coulomb_),
+          ExitCode::usage);
     }
   }
 }
@@ -110,7 +113,8 @@ double FrictionLaw::lost_share(const JointMotion& motion, int along) const {
 double FrictionLaw::transmitted(double tau, const JointMotion& motion) const {
   const double rest = tau - resistance(motion, 0);
   if (!load_ || motion.direction == 0) return rest;
-  // The load has the sign of the rest, since the laws of the load are homogeneous in it and no share reaches 1 against it.
+  // The load has the sign of the rest, since the laws of the load are homogeneous in it and no share reaches 1 against
+  // it.
   return rest * motion.direction > 0 ? rest / (1 + lost_share(motion, 1)) : rest / (1 - lost_share(motion, -1));
 }
 

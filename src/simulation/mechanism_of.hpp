@@ -38,7 +38,8 @@ class MechanismOf final : public Mechanism {
     Drives rates;
     for (int j = 0; j < N; ++j) rates(j) = qd(j);
     if (!rates.allFinite()) return Status::out_of_range;
-    if (const Status status = posture_from_drives(geometry_, true_coordinates(q), motion.posture); status != Status::ok) {
+    if (const Status status = posture_from_drives(geometry_, true_coordinates(q), motion.posture);
+        status != Status::ok) {
       return status;
     }
     set_drive_rates<double, R>(geometry_, rates, Drives::Zero(), motion);
@@ -117,13 +118,15 @@ std::unique_ptr<Mechanism> make_mechanism_of(const RobotDescription& description
 }
 extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta3>(const RobotDescription&, const Eigen::VectorXd&,
                                                                      const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearDelta3>(const RobotDescription&, const Eigen::VectorXd&,
+extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearDelta3>(const RobotDescription&,
+                                                                           const Eigen::VectorXd&,
                                                                            const MechanismOptions&);
 extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta4>(const RobotDescription&, const Eigen::VectorXd&,
                                                                      const MechanismOptions&);
 extern template std::unique_ptr<Mechanism> make_mechanism_of<Axis>(const RobotDescription&, const Eigen::VectorXd&,
                                                                    const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearAxis>(const RobotDescription&, const Eigen::VectorXd&,
+extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearAxis>(const RobotDescription&,
+                                                                         const Eigen::VectorXd&,
                                                                          const MechanismOptions&);
 
 }  // namespace deltadyn::detail

@@ -43,7 +43,9 @@ struct Plant::Impl : detail::JointDynamics {
   }
 
   bool step(double h, State& next, State& rate_next, State& error) {
-    const auto system = [this](double t, const State& state, State& rate) { return derivative(t, state, rate) == Status::ok; };
+    const auto system = [this](double t, const State& state, State& rate) {
+      return derivative(t, state, rate) == Status::ok;
+    };
     return dormand_prince_step(system, now, h, x, rate_now, next, rate_next, error);
   }
 
@@ -57,13 +59,15 @@ struct Plant::Impl : detail::JointDynamics {
   }
 
   [[noreturn]] void lost(const char* how) const {
-    throw Error(fmt::format("at {:.4f} s the robot {}", now, how), "simulation",
-                "check that trajectory, parameters and robot file belong together; a lower --bandwidth-hz steadies a loop that "
-                "is unstable",
-                ExitCode::no_convergence);
+    throw Error(
+        fmt::format("at {:.4f} s the robot {}", now, how), "simulation",
+        "check that trajectory, parameters and robot file belong together; a lower --bandwidth-hz steadies a loop that "
+        "is unstable",
+        ExitCode::no_convergence);
   }
 
-  /// First instant in (0, h] at which a sliding joint reverses or a stuck one breaks loose; x, the time and the rates move there.
+  /// First instant in (0, h] at which a sliding joint reverses or a stuck one breaks loose; x, the time and the rates
+  /// move there.
   void go_to_event(double h) {
     State next, rate_next, error;
     double low = 0, high = h;
@@ -156,7 +160,8 @@ struct Plant::Impl : detail::JointDynamics {
       const double size = done ? relative(error, next) : 1e6;
       if (!(size <= 1)) {
         step_size = h * std::clamp(0.9 * std::pow(size, -0.2), 0.1, 0.9);
-        if (step_size < kShortestStep) lost(done ? "cannot be integrated on" : "leaves its reach or meets a singular pose");
+        if (step_size < kShortestStep)
+          lost(done ? "cannot be integrated on" : "leaves its reach or meets a singular pose");
         continue;
       }
       const double grown = h * std::clamp(0.9 * std::pow(std::max(size, 1e-8), -0.2), 0.2, 5.0);
@@ -198,7 +203,8 @@ struct Plant::Impl : detail::JointDynamics {
 Plant::Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
              const std::vector<Effect>& effects, const PlantOptions& options)
     : impl_(std::make_unique<Impl>(description, names, p, effects, options)) {
-  if (!(options.tolerance > 0 && options.tolerance <= 1e-3) || !(options.largest_step_s > 0) || !(options.current_lag_s >= 0)) {
+  if (!(options.tolerance > 0 && options.tolerance <= 1e-3) || !(options.largest_step_s > 0) ||
+      !(options.current_lag_s >= 0)) {
     throw Error("options of the simulation are out of range", "",
                 "give a tolerance between 0 and 1e-3 and times that are not negative", ExitCode::usage);
   }
@@ -211,8 +217,8 @@ void Plant::start(const DriveVector& q, const DriveVector& qd) {
   const int c = m.coordinates();
   MechanismTerms terms;
   if (q.size() != m.n || qd.size() != m.n || m.parts.mechanism->evaluate(q, qd, terms) != Status::ok) {
-    throw Error("the simulation cannot start where the motion starts: the pose is out of reach or singular", "simulation",
-                "check that the trajectory belongs to this robot");
+    throw Error("the simulation cannot start where the motion starts: the pose is out of reach or singular",
+                "simulation", "check that the trajectory belongs to this robot");
   }
   m.now = m.command_time = 0;
   m.counts = {};
@@ -235,7 +241,8 @@ void Plant::start(const DriveVector& q, const DriveVector& qd) {
   Impl::Terms all;
   if (m.terms_at(m.x, all) != Status::ok) {
     if (m.soft > 0) {
-      throw Error(fmt::format("too little inertia is left behind the spring or play of drive {}", m.parts.soft.front().drive + 1),
+      throw Error(fmt::format("too little inertia is left behind the spring or play of drive {}",
+                              m.parts.soft.front().drive + 1),
                   "simulation", "give play a larger share of the load (0.3 or more)", ExitCode::usage);
     }
     throw Error("the mass matrix of the plant is not positive definite", "simulation",
@@ -321,10 +328,12 @@ double Plant::energy() const {
 DriveVector Plant::inverse(double time, const DriveVector& q, const DriveVector& qd, const DriveVector& qdd) {
   Impl& m = *impl_;
   if (m.soft > 0) {
-    throw Error(fmt::format("drive {} has a spring or play: the motor's motion then needs derivatives of the arm's motion that a "
-                            "trajectory does not have, or has jumps",
-                            m.parts.soft.front().drive + 1),
-                "--inverse", "simulate in closed loop, without --inverse", ExitCode::usage);
+    throw Error(
+        fmt::format(
+            "drive {} has a spring or play: the motor's motion then needs derivatives of the arm's motion that a "
+            "trajectory does not have, or has jumps",
+            m.parts.soft.front().drive + 1),
+        "--inverse", "simulate in closed loop, without --inverse", ExitCode::usage);
   }
   State state = State::Zero(m.size());
   state.head(m.n) = q;

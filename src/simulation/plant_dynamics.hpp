@@ -64,7 +64,8 @@ struct JointDynamics {
 
   [[nodiscard]] double torque_at(int drive, double time) const {
     if (options.current_lag_s <= 0) return tau_end(drive);
-    return tau_end(drive) + (tau_start(drive) - tau_end(drive)) * std::exp(-(time - command_time) / options.current_lag_s);
+    return tau_end(drive) +
+           (tau_start(drive) - tau_end(drive)) * std::exp(-(time - command_time) / options.current_lag_s);
   }
 
   // --- the equations of motion at one state -----------------------------------------------------
@@ -86,7 +87,8 @@ struct JointDynamics {
       using E = decltype(type);
       if constexpr (kIs<E, PlateForce>) {
         const auto forces = E::columns(in, shape_of(effect));
-        for (std::size_t c = 0; c < forces.size(); ++c) sum += effect.amplitude(static_cast<Eigen::Index>(c)) * forces[c];
+        for (std::size_t c = 0; c < forces.size(); ++c)
+          sum += effect.amplitude(static_cast<Eigen::Index>(c)) * forces[c];
       }
     });
     return sum;
@@ -168,8 +170,8 @@ struct JointDynamics {
         rows[at(held++)] = j;
         continue;
       }
-      out.transmitted(j) =
-          parts.laws[at(j)].transmitted(torque_of_joint(j, time), motion_of(j, time, terms, sense_of(j, terms), side_load));
+      out.transmitted(j) = parts.laws[at(j)].transmitted(torque_of_joint(j, time),
+                                                         motion_of(j, time, terms, sense_of(j, terms), side_load));
       force += terms.J.row(j).transpose() * out.transmitted(j);
     }
     out.acceleration = terms.cholesky.solve(force);

@@ -134,7 +134,8 @@ class Builder {
                               spring.motor_share, drive + 1),
                   "--effect", "give the motor (or the play) a share between 0 and 1", ExitCode::usage);
     }
-    SoftDrive soft{.drive = drive, .motor_inertia = motor, .gap = spring.gap, .encoder_on_motor = spring.encoder_on_motor};
+    SoftDrive soft{
+        .drive = drive, .motor_inertia = motor, .gap = spring.gap, .encoder_on_motor = spring.encoder_on_motor};
     soft.stiffness = spring.inertia_over_stiffness > 0
                          ? (spring.encoder_on_motor ? inertia - motor : motor) / spring.inertia_over_stiffness
                          : reduced * std::pow(2 * std::numbers::pi * spring.flank_hz, 2);
@@ -164,8 +165,8 @@ double SoftDrive::energy(double lead) const {
   return 0.5 * stiffness * wound * wound;
 }
 
-PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
-                       const std::vector<Effect>& effects) {
+PlantParts build_plant(const RobotDescription& description, const std::vector<std::string>& names,
+                       const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
   return Builder(description, names, p).build(effects);
 }
 

@@ -24,8 +24,12 @@ struct Quintic {
     a5 = 6 * d - 3 * dv + 0.5 * dw;
   }
   [[nodiscard]] double value(double s) const { return a0 + s * (a1 + s * (a2 + s * (a3 + s * (a4 + s * a5)))); }
-  [[nodiscard]] double rate(double s) const { return (a1 + s * (2 * a2 + s * (3 * a3 + s * (4 * a4 + s * 5 * a5)))) / h; }
-  [[nodiscard]] double acceleration(double s) const { return (2 * a2 + s * (6 * a3 + s * (12 * a4 + s * 20 * a5))) / (h * h); }
+  [[nodiscard]] double rate(double s) const {
+    return (a1 + s * (2 * a2 + s * (3 * a3 + s * (4 * a4 + s * 5 * a5)))) / h;
+  }
+  [[nodiscard]] double acceleration(double s) const {
+    return (2 * a2 + s * (6 * a3 + s * (12 * a4 + s * 20 * a5))) / (h * h);
+  }
 };
 
 }  // namespace
@@ -34,7 +38,8 @@ ReferenceMotion::ReferenceMotion(const TrajectorySamples& samples, int repeats)
     : q_(samples.q), qd_(samples.qd), qdd_(samples.qdd), repeats_(repeats), period_(0) {
   const Eigen::Index n = samples.samples();
   if (n < 2) throw Error("a trajectory needs two samples at least", samples.file, "");
-  if (repeats < 1) throw Error("a trajectory runs once or more often", samples.file, "give --repeat 1 or more", ExitCode::usage);
+  if (repeats < 1)
+    throw Error("a trajectory runs once or more often", samples.file, "give --repeat 1 or more", ExitCode::usage);
   t_ = samples.t_s.array() - samples.t_s(0);
   const double step = t_(n - 1) - t_(n - 2);
   period_ = t_(n - 1);
@@ -48,9 +53,10 @@ ReferenceMotion::ReferenceMotion(const TrajectorySamples& samples, int repeats)
   const bool closed = mismatch(0) < 1e-6 * range;
   if (!closed) {
     if (mismatch(step) > 1e-3 * range) {
-      throw Error(fmt::format("the trajectory does not end where it begins ({:.3g} rad or m apart), so it cannot be repeated",
-                              mismatch(step)),
-                  samples.file, "leave out --repeat, or plan with delta-excite --periodic", ExitCode::usage);
+      throw Error(
+          fmt::format("the trajectory does not end where it begins ({:.3g} rad or m apart), so it cannot be repeated",
+                      mismatch(step)),
+          samples.file, "leave out --repeat, or plan with delta-excite --periodic", ExitCode::usage);
     }
     period_ += step;
     for (Eigen::MatrixXd* m : {&q_, &qd_, &qdd_}) {

@@ -31,7 +31,8 @@ void record(const Effect& effect, double period, Eigen::MatrixXd& torque) {
     visit_effect(effect.id, [&](auto type) {
       using E = decltype(type);
       const Eigen::VectorXd before = torque.col(j);
-      if constexpr (kIs<E, RecordedChange>) torque.col(j) = E::record(before, period, effect.amplitude(0), shape_of(effect));
+      if constexpr (kIs<E, RecordedChange>)
+        torque.col(j) = E::record(before, period, effect.amplitude(0), shape_of(effect));
     });
   }
 }
@@ -59,7 +60,9 @@ void SensorOptions::validate(int drives) const {
 }
 
 Encoders::Encoders(int drives, const SensorOptions& options, std::uint64_t seed)
-    : step_(one_a_drive(options.encoder_step, drives)), noise_(one_a_drive(options.encoder_noise, drives)), random_(seed) {}
+    : step_(one_a_drive(options.encoder_step, drives)),
+      noise_(one_a_drive(options.encoder_noise, drives)),
+      random_(seed) {}
 
 Eigen::VectorXd Encoders::read(const Eigen::Ref<const Eigen::VectorXd>& q) {
   Eigen::VectorXd reading = q;
@@ -74,15 +77,16 @@ bool is_log_effect(EffectId id) {
   return stage_of(id) >= 0;
 }
 
-Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& tau, const std::vector<Effect>& effects,
-                                const SensorOptions& options, std::uint64_t seed) {
+Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& tau,
+                                const std::vector<Effect>& effects, const SensorOptions& options, std::uint64_t seed) {
   const auto drives = static_cast<int>(tau.cols());
   options.validate(drives);
   Eigen::MatrixXd recorded = tau;
   const Eigen::Index n = tau.rows();
   const double period = n > 1 ? (t_s(n - 1) - t_s(0)) / static_cast<double>(n - 1) : 1.0;
   std::vector<Effect> in_order;
-  std::copy_if(effects.begin(), effects.end(), std::back_inserter(in_order), [](const Effect& e) { return is_log_effect(e.id); });
+  std::copy_if(effects.begin(), effects.end(), std::back_inserter(in_order),
+               [](const Effect& e) { return is_log_effect(e.id); });
   std::ranges::stable_sort(in_order, [](const Effect& a, const Effect& b) { return stage_of(a.id) < stage_of(b.id); });
   for (const Effect& effect : in_order) record(effect, period, recorded);
   const Eigen::VectorXd noise = one_a_drive(options.torque_noise, drives);

@@ -46,13 +46,14 @@ class Recorder {
   const std::string loop = "give a lower --bandwidth-hz (or a higher one, if a drive was left behind) or other gains";
   const std::string why = clipped > 0 ? fmt::format("the drives met their torque limits at {} control samples", clipped)
                                       : "the loop is unstable or too weak";
-  throw Error(fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why),
-              "simulation",
-              clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the "
-                            "robot file the drives' true effort, or, if the loop is unstable, " +
-                                loop
-                          : loop,
-              ExitCode::no_convergence);
+  throw Error(
+      fmt::format("at {:.3f} s the robot is {:.2g} rad or m away from where it should be: {}", time, error, why),
+      "simulation",
+      clipped > 0 ? "plan a motion within the torque (delta-excite --params FILE --drive-torque-n-m LIMITS), give the "
+                    "robot file the drives' true effort, or, if the loop is unstable, " +
+                        loop
+                  : loop,
+      ExitCode::no_convergence);
 }
 
 SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std::vector<Effect>& effects,
@@ -102,8 +103,9 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
   const auto samples = static_cast<Eigen::Index>(std::floor(reference.duration_s() * options.log_rate_hz + 1e-6)) + 1;
   const auto first = static_cast<Eigen::Index>(std::ceil(options.discard_s * options.log_rate_hz - 1e-6));
   if (samples - first < 2) {
-    throw Error(fmt::format("the motion of {:.4g} s leaves no log after {:.4g} s", reference.duration_s(), options.discard_s), "",
-                "give a longer motion, a higher rate, or discard less", ExitCode::usage);
+    throw Error(
+        fmt::format("the motion of {:.4g} s leaves no log after {:.4g} s", reference.duration_s(), options.discard_s),
+        "", "give a longer motion, a higher rate, or discard less", ExitCode::usage);
   }
   if (options.inverse) return along(plant, reference, effects, options, first, samples);
 

@@ -11,7 +11,8 @@ StickSlip solve_stick_slip(const Eigen::Ref<const Eigen::MatrixXd>& A, const Joi
   StickSlip result;
   result.force = (0.5 * (low + high)).eval();
   result.direction.setZero(n);
-  // Projected Gauss-Seidel converges for every positive semi-definite A. There are a handful of joints, and they seldom rest.
+  // Projected Gauss-Seidel converges for every positive semi-definite A. There are a handful of joints, and they seldom
+  // rest.
   constexpr int kSweeps = 5000;
   constexpr double kSmall = 1e-13;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

@@ -33,8 +33,9 @@ LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const Sm
   for (const Limit& limit : limits.list(robot.description())) check.uses.push_back({limit, -1, 0, 0});
   const auto count = static_cast<Index>(check.uses.size());
   Eigen::MatrixXd usage(count, samples + 1), values(count, samples + 1);
-  // Coulomb friction jumps where a joint turns back, be it for a moment between two samples. It counts in full, whichever way the
-  // joint turns, on the side of the rest of the torque, which is smooth in time: at a reversal both signs occur anyway.
+  // Coulomb friction jumps where a joint turns back, be it for a moment between two samples. It counts in full,
+  // whichever way the joint turns, on the side of the rest of the torque, which is smooth in time: at a reversal both
+  // signs occur anyway.
   const bool torque = limits.parameters.size() > 0;
   const std::vector<Index> columns = torque ? coulomb_columns(robot) : std::vector<Index>();
   Eigen::MatrixXd Y(n, robot.parameters());

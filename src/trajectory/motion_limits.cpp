@@ -15,7 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Limits of the drives and of the task by the same rules as everywhere; infinite ones do not limit.
-void require_plausible(const MotionLimits& limits, const RobotDescription& robot, const std::vector<TaskColumns>& columns) {
+void require_plausible(const MotionLimits& limits, const RobotDescription& robot,
+                       const std::vector<TaskColumns>& columns) {
   using namespace plausibility;
   const auto bounded = [](const Rule& rule, double value, const std::string& what) {
     if (!std::isinf(value)) require(rule, value, what, "limits", ExitCode::usage);
@@ -27,7 +28,8 @@ void require_plausible(const MotionLimits& limits, const RobotDescription& robot
     for (const double end : {limits.z_lower(i), limits.z_upper(i)})
       bounded(column.rotation ? kYaw : kOffset, end, column.name + ": a position limit");
     bounded(column.rotation ? kYawVelocity : kPlateVelocity, limits.zd(i), column.name + ": the velocity limit");
-    bounded(column.rotation ? kYawAcceleration : kPlateAcceleration, limits.zdd(i), column.name + ": the acceleration limit");
+    bounded(column.rotation ? kYawAcceleration : kPlateAcceleration, limits.zdd(i),
+            column.name + ": the acceleration limit");
   }
 }
 
@@ -94,13 +96,14 @@ void MotionLimits::validate(const RobotDescription& robot) const {
   if (region && robot.parts.empty())
     throw Error("an axis has no workspace", "limits", "limit the range of the drive instead", ExitCode::usage);
   const auto contradiction = [](const std::string& what, double lower, double upper) {
-    throw Error(fmt::format("the limits of the {} contradict each other: lower end {:.6g}, upper end {:.6g}", what, lower, upper),
+    throw Error(fmt::format("the limits of the {} contradict each other: lower end {:.6g}, upper end {:.6g}", what,
+                            lower, upper),
                 "limits", "give a lower end below the upper end", ExitCode::usage);
   };
   const auto positive = [](const std::string& what, double value) {
     if (!(value > 0))
-      throw Error(fmt::format("the {} limit is {:.6g}, so nothing may move", what, value), "limits", "give a positive limit",
-                  ExitCode::usage);
+      throw Error(fmt::format("the {} limit is {:.6g}, so nothing may move", what, value), "limits",
+                  "give a positive limit", ExitCode::usage);
   };
   for (int i = 0; i < n; ++i) {
     const std::string drive = fmt::format("drive {}", i + 1), &task = columns[static_cast<std::size_t>(i)].name;
@@ -118,7 +121,8 @@ void MotionLimits::validate(const RobotDescription& robot) const {
                               turns ? flag_of_turning : flag_of_sliding),
                   ExitCode::usage);
     };
-    if (!std::isfinite(zd(i)) && !std::isfinite(qd(i))) unlimited("velocity", "--drive-velocity-rad-s", "--drive-velocity-m-s");
+    if (!std::isfinite(zd(i)) && !std::isfinite(qd(i)))
+      unlimited("velocity", "--drive-velocity-rad-s", "--drive-velocity-m-s");
     if (!std::isfinite(zdd(i)) && !std::isfinite(qdd(i)))
       unlimited("acceleration", "--drive-acceleration-rad-s2", "--drive-acceleration-m-s2");
     const bool inside_region = region && i < 3;
@@ -131,8 +135,8 @@ void MotionLimits::validate(const RobotDescription& robot) const {
     const char axes[] = "xyz";
     for (int i = 0; i < 3; ++i) {
       if (region->lower()(i) >= z_upper(i) || region->upper()(i) <= z_lower(i))
-        throw Error(fmt::format("the {} range [{:.6g}, {:.6g}] m has nothing in common with the workspace ({})", axes[i],
-                                z_lower(i), z_upper(i), region->text()),
+        throw Error(fmt::format("the {} range [{:.6g}, {:.6g}] m has nothing in common with the workspace ({})",
+                                axes[i], z_lower(i), z_upper(i), region->text()),
                     "limits", "move the workspace or widen the range", ExitCode::usage);
     }
   }

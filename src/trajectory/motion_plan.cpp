@@ -35,7 +35,8 @@ SmoothMotion run_in(const FourierSeries& series, double join, double duration) {
   const double omega = series.omega();
   return {duration, [series, join, duration, omega](double t) {
             const Step s = step(t / duration);
-            return series.state(join - omega * duration * (0.5 - s.integral), omega * s.value, omega * s.slope / duration);
+            return series.state(join - omega * duration * (0.5 - s.integral), omega * s.value,
+                                omega * s.slope / duration);
           }};
 }
 
@@ -43,7 +44,8 @@ SmoothMotion run_out(const FourierSeries& series, double join, double duration) 
   const double omega = series.omega();
   return {duration, [series, join, duration, omega](double t) {
             const Step s = step(1 - t / duration);
-            return series.state(join + omega * duration * (0.5 - s.integral), omega * s.value, -omega * s.slope / duration);
+            return series.state(join + omega * duration * (0.5 - s.integral), omega * s.value,
+                                -omega * s.slope / duration);
           }};
 }
 
@@ -59,8 +61,8 @@ SmoothMotion line(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double
 
 enum class Way { along_curve, new_way };
 
-/// What must be looked at. Along the curve of a motion that keeps its limits, never faster, positions and velocities keep theirs
-/// anyway; a straight line between two poses inside stays inside the workspace, which is convex.
+/// What must be looked at. Along the curve of a motion that keeps its limits, never faster, positions and velocities
+/// keep theirs anyway; a straight line between two poses inside stays inside the workspace, which is convex.
 LimitCheck in_question(LimitCheck check, Way way) {
   std::erase_if(check.uses, [way](const LimitUse& use) {
     const LimitedQuantity quantity = use.limit.quantity;
@@ -102,11 +104,11 @@ Search shortest(const Robot& robot, const MotionLimits& limits, Way way, double 
 
 [[noreturn]] void refuse(const char* what, const LimitCheck& check) {
   if (!check.reachable)
-    throw Error(fmt::format("no {} was found: the way leaves the reach of the robot", what), "", "make the workspace smaller",
-                ExitCode::no_convergence);
+    throw Error(fmt::format("no {} was found: the way leaves the reach of the robot", what), "",
+                "make the workspace smaller", ExitCode::no_convergence);
   const LimitUse& use = check.tightest();
-  throw Error(fmt::format("no {} keeps the limit '{}': {:.6g} {} where {:.6g} to {:.6g} is allowed", what, use.limit.name,
-                          use.value, use.limit.unit, use.limit.lower, use.limit.upper),
+  throw Error(fmt::format("no {} keeps the limit '{}': {:.6g} {} where {:.6g} to {:.6g} is allowed", what,
+                          use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper),
               "", "widen this limit, or give --periodic", ExitCode::no_convergence);
 }
 
@@ -132,9 +134,9 @@ Join find_join(const Robot& robot, const PlanSegment& segment, double rate_hz) {
                                [&](double duration) { return run_in(series, phase, duration); });
     last = in.last;
     if (!in.duration || *in.duration >= best_time) continue;
-    const Search out =
-        shortest(robot, segment.limits, Way::along_curve, rate_hz, first, std::min(kLongestRamp_s, best_time - *in.duration),
-                 [&](double duration) { return run_out(series, phase, duration); });
+    const Search out = shortest(robot, segment.limits, Way::along_curve, rate_hz, first,
+                                std::min(kLongestRamp_s, best_time - *in.duration),
+                                [&](double duration) { return run_out(series, phase, duration); });
     if (!out.duration || *in.duration + *out.duration >= best_time) continue;
     best = {phase, *in.duration, *out.duration};
     best_time = best.in_s + best.out_s;
@@ -151,7 +153,8 @@ void append(MotionPlan& plan, PartKind kind, int segment, SmoothMotion motion) {
 
 SmoothMotion periods(const FourierSeries& series, double phase, int count) {
   const double omega = series.omega();
-  return {count * series.period_s(), [series, phase, omega](double t) { return series.state(phase + omega * t, omega, 0); }};
+  return {count * series.period_s(),
+          [series, phase, omega](double t) { return series.state(phase + omega * t, omega, 0); }};
 }
 
 }  // namespace

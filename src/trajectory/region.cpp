@@ -83,15 +83,18 @@ Vector3d Region::upper() const {
 std::string Region::text() const {
   // What rounding left of a zero is not told.
   const auto told = [](double length) { return std::abs(length) < 1e-6 ? 0.0 : length; };
-  const std::string about = fmt::format("about ({:.4g}, {:.4g}, {:.4g}) m", told(centre.x()), told(centre.y()), told(centre.z()));
+  const std::string about =
+      fmt::format("about ({:.4g}, {:.4g}, {:.4g}) m", told(centre.x()), told(centre.y()), told(centre.z()));
   switch (shape) {
     case RegionShape::ball: return fmt::format("ball of radius {:.4g} m {}", radius, about);
     case RegionShape::half_ball: return fmt::format("lower half ball of radius {:.4g} m {}", radius, about);
-    case RegionShape::cylinder: return fmt::format("cylinder of radius {:.4g} m and height {:.4g} m {}", radius, height, about);
+    case RegionShape::cylinder:
+      return fmt::format("cylinder of radius {:.4g} m and height {:.4g} m {}", radius, height, about);
     case RegionShape::cone:
-      return fmt::format("cone frustum of radii {:.4g} m below, {:.4g} m above and height {:.4g} m {}", radius, top_radius,
-                         height, about);
-    case RegionShape::box: return fmt::format("box of {:.4g} x {:.4g} x {:.4g} m {}", size.x(), size.y(), size.z(), about);
+      return fmt::format("cone frustum of radii {:.4g} m below, {:.4g} m above and height {:.4g} m {}", radius,
+                         top_radius, height, about);
+    case RegionShape::box:
+      return fmt::format("box of {:.4g} x {:.4g} x {:.4g} m {}", size.x(), size.y(), size.z(), about);
   }
   return "";
 }

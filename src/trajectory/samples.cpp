@@ -19,7 +19,8 @@ void complete_drives(const Robot& robot, TrajectorySamples& samples) {
   samples.q = samples.qd = samples.qdd = Eigen::MatrixXd::Zero(n, robot.drives());
   Eigen::VectorXd q(robot.drives()), qd(robot.drives()), qdd(robot.drives());
   for (Eigen::Index row = 0; row < n; ++row) {
-    if (const Status status = robot.to_drives(samples.task(row), q, qd, qdd); status != Status::ok) refuse(samples, row, status);
+    if (const Status status = robot.to_drives(samples.task(row), q, qd, qdd); status != Status::ok)
+      refuse(samples, row, status);
     samples.q.row(row) = q.transpose();
     samples.qd.row(row) = qd.transpose();
     samples.qdd.row(row) = qdd.transpose();
@@ -31,8 +32,8 @@ void complete_task(const Robot& robot, TrajectorySamples& samples) {
   samples.z = samples.zd = samples.zdd = Eigen::MatrixXd::Zero(n, robot.drives());
   TaskState task;
   for (Eigen::Index row = 0; row < n; ++row) {
-    const Status status =
-        robot.to_task(samples.q.row(row).transpose(), samples.qd.row(row).transpose(), samples.qdd.row(row).transpose(), task);
+    const Status status = robot.to_task(samples.q.row(row).transpose(), samples.qd.row(row).transpose(),
+                                        samples.qdd.row(row).transpose(), task);
     if (status != Status::ok) refuse(samples, row, status);
     samples.z.row(row) = task.z.transpose();
     samples.zd.row(row) = task.zd.transpose();

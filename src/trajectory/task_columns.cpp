@@ -10,7 +10,8 @@ std::vector<TaskColumns> task_columns(const RobotDescription& robot) {
     TaskColumns column;
     if (robot.parts.empty()) {
       const DriveColumns drive = drive_columns(robot, k);
-      column = {drive.q, drive.qd, drive.qdd, "q" + std::to_string(k + 1), robot.kind_of_drive(k) == DriveKind::revolute};
+      column = {drive.q, drive.qd, drive.qdd, "q" + std::to_string(k + 1),
+                robot.kind_of_drive(k) == DriveKind::revolute};
     } else {
       column.rotation = k >= 3;
       column.name = k < 3 ? std::string(1, "xyz"[k]) : (robot.telescope ? "psi" : "theta");

@@ -65,14 +65,20 @@ std::vector<Row> files() {
        3,
        {"no\\.csv", "cannot open", "mend: check the path"}},
       {"MissingRobot", [](const W& w) { return w.identify("", w.path("no.urdf")); }, 3, {"no\\.urdf", "mend:"}},
-      {"MissingPrior", [](const W& w) { return w.identify("", "", w.path("no.csv")); }, 3, {"no\\.csv", "cannot open", "mend:"}},
+      {"MissingPrior",
+       [](const W& w) { return w.identify("", "", w.path("no.csv")); },
+       3,
+       {"no\\.csv", "cannot open", "mend:"}},
       {"MissingParameters",
        [](const W& w) { return w.validate("", "", w.path("no.csv")); },
        3,
        {"no\\.csv", "cannot open", "mend:"}},
       {"FolderAsLog", [](const W& w) { return w.identify(w.folder()); }, 3, {"folder, not a file", "mend:"}},
       {"FolderAsRobot", [](const W& w) { return w.info(w.folder()); }, 3, {"folder|directory", "mend:"}},
-      {"EmptyLog", [](const W& w) { return w.identify(w.write("bad.csv", "")); }, 3, {"bad\\.csv", "the file is empty", "mend:"}},
+      {"EmptyLog",
+       [](const W& w) { return w.identify(w.write("bad.csv", "")); },
+       3,
+       {"bad\\.csv", "the file is empty", "mend:"}},
       {"EmptyRobot",
        [](const W& w) { return w.identify("", w.write("bad.urdf", "")); },
        3,
@@ -98,27 +104,39 @@ std::vector<Row> files() {
        3,
        {"bad\\.csv", "column q2_rad is missing; the file has q2", "mend: name the column q2_rad or q2_deg"}},
       {"WrongHeaderTime",
-       [](const W& w) { return w.validate(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "t_s", "time_ms"); })); },
+       [](const W& w) {
+         return w.validate(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "t_s", "time_ms"); }));
+       },
        3,
        {"bad\\.csv", "time column 'time_ms' \\[ms\\] the rows are 1e-06 s apart", "mend: .*t_s"}},
       {"WrongHeaderTorque",
-       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "tau3_Nm", "current3_A"); })); },
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "tau3_Nm", "current3_A"); }));
+       },
        3,
        {"bad\\.csv", "column tau3_Nm is missing", "mend:"}},
       {"WrongHeaderPrismatic",
-       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q1_rad", "q1_m"); })); },
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q1_rad", "q1_m"); }));
+       },
        3,
        {"bad\\.csv", "q1_m, which is for a prismatic drive", "mend:"}},
       {"ColumnTwice",
-       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q2_rad", "q1_rad"); })); },
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) { l[0] = replaced(l[0], "q2_rad", "q1_rad"); }));
+       },
        3,
        {"bad\\.csv, line 1", "q1_rad occurs twice", "mend:"}},
       {"WrongHeaderPrior",
-       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { l[0] = "parameter,value,unit"; })); },
+       [](const W& w) {
+         return w.identify("", "", w.prior("bad.csv", [](Lines& l) { l[0] = "parameter,value,unit"; }));
+       },
        3,
        {"bad\\.csv", "column name is missing", "mend:"}},
       {"TooFewFields",
-       [](const W& w) { return w.identify(w.log("bad.csv", [](Lines& l) { l[39] = l[39].substr(0, l[39].rfind(',')); })); },
+       [](const W& w) {
+         return w.identify(w.log("bad.csv", [](Lines& l) { l[39] = l[39].substr(0, l[39].rfind(',')); }));
+       },
        3,
        {"bad\\.csv, line 40", "8 fields where the header has 9", "mend:"}},
       {"TooManyFields",
@@ -138,7 +156,9 @@ std::vector<Row> files() {
        3,
        {"bad\\.csv, line 51, column tau3_Nm", "'1\\.2Nm' is not a number", "mend:"}},
       {"TextInPrior",
-       [](const W& w) { return w.identify("", "", w.prior("bad.csv", [](Lines& l) { set_field(l, 5, 1, "about 1"); })); },
+       [](const W& w) {
+         return w.identify("", "", w.prior("bad.csv", [](Lines& l) { set_field(l, 5, 1, "about 1"); }));
+       },
        3,
        {"bad\\.csv, line 5, column value", "'about 1' is not a number", "mend:"}},
       {"NanInPrior",
@@ -252,7 +272,8 @@ std::vector<Row> motions() {
          }));
        },
        5,
-       {"does not excite every base parameter", "says nothing about .*[a-z_]+[0-9]*\\.[A-Za-z]+", "mend: record a motion"}},
+       {"does not excite every base parameter", "says nothing about .*[a-z_]+[0-9]*\\.[A-Za-z]+",
+        "mend: record a motion"}},
       {"TorqueNotRecorded",
        [](const W& w) {
          return w.identify(w.log("bad.csv", [](Lines& l) { each_row(l, [](std::size_t, auto& f) { f[7] = "0"; }); }));
@@ -369,7 +390,10 @@ std::vector<Row> robots() {
        [](const W& w) { return w.info(w.write("bad.urdf", to_text(W::robot()).substr(0, 5000))); },
        3,
        {"bad\\.urdf, line [0-9]+", "not well-formed XML", "mend:"}},
-      {"SerialArm", [](const W& w) { return w.identify("", w.write("bad.urdf", kSerialArm)); }, 3, {"bad\\.urdf", "mend:"}},
+      {"SerialArm",
+       [](const W& w) { return w.identify("", w.write("bad.urdf", kSerialArm)); },
+       3,
+       {"bad\\.urdf", "mend:"}},
       {"MissingLoop",
        [](const W& w) {
          return w.identify("", w.write("bad.urdf", without(W::robot(), "<loop name=\"strut2a_end\"", "</loop>")));
@@ -377,7 +401,9 @@ std::vector<Row> robots() {
        3,
        {"bad\\.urdf", "strut2a", "missing loop", "mend: add a spherical <loop>"}},
       {"MissingToolLoop",
-       [](const W& w) { return w.info(w.write("bad.urdf", without(W::robot(), "<loop name=\"tool_axis\"", "</loop>"))); },
+       [](const W& w) {
+         return w.info(w.write("bad.urdf", without(W::robot(), "<loop name=\"tool_axis\"", "</loop>")));
+       },
        3,
        {"bad\\.urdf", "missing loop: the tool", "mend:"}},
       {"UnequalStruts",
@@ -391,7 +417,8 @@ std::vector<Row> robots() {
        {"bad\\.urdf", "unequal struts of limb 3", "1\\.206", "mend:"}},
       {"UnknownLink",
        [](const W& w) {
-         return w.info(w.write("bad.urdf", replaced(to_text(W::robot()), "<child link=\"strut2b\"/>", "<child link=\"rod\"/>")));
+         return w.info(
+             w.write("bad.urdf", replaced(to_text(W::robot()), "<child link=\"strut2b\"/>", "<child link=\"rod\"/>")));
        },
        3,
        {"bad\\.urdf, line [0-9]+", "unknown child link 'rod'", "mend:"}},
@@ -403,8 +430,8 @@ std::vector<Row> robots() {
        {"bad\\.urdf", "mend:"}},
       {"LimitsCrossed",
        [](const W& w) {
-         return w.info(
-             w.write("bad.urdf", replaced(to_text(W::robot()), "lower=\"-0.9\" upper=\"1.6\"", "lower=\"1.6\" upper=\"-0.9\"")));
+         return w.info(w.write("bad.urdf", replaced(to_text(W::robot()), "lower=\"-0.9\" upper=\"1.6\"",
+                                                    "lower=\"1.6\" upper=\"-0.9\"")));
        },
        3,
        {"bad\\.urdf", "drive", "mend:"}},
@@ -434,7 +461,8 @@ std::vector<Row> effects() {
       {"EffectAtDriveThatIsNotThere",
        [](const W& w) { return with_effects(w, "torque_offset,drive5,offset,2,N*m,\n"); },
        3,
-       {"bad\\.csv, line 2, column joint", "cannot act at 'drive5'", "mend: give one of these: drive1, drive2, drive3, drive4"}},
+       {"bad\\.csv, line 2, column joint", "cannot act at 'drive5'",
+        "mend: give one of these: drive1, drive2, drive3, drive4"}},
       {"EffectKeyMissing",
        [=](const W& w) { return with_effects(w, bend); },
        3,
@@ -443,14 +471,16 @@ std::vector<Row> effects() {
       {"EffectKeyUnknown",
        [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,speed,2,N*m,\n"); },
        3,
-       {"bad\\.csv, line 4, column parameter", "no parameter 'speed'", "mend: its parameters are friction, rate, exponent"}},
+       {"bad\\.csv, line 4, column parameter", "no parameter 'speed'",
+        "mend: its parameters are friction, rate, exponent"}},
       {"EffectOfWrongSign",
        [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,friction,-2,N*m,\n"); },
        3,
        {"bad\\.csv, line 4, column value", "friction of stribeck cannot be negative", "mend: give a positive number"}},
       {"EffectShapeNotPositive",
        [](const W& w) {
-         return with_effects(w, "stribeck,drive2,friction,2,N*m,\nstribeck,drive2,rate,0,rad/s,\nstribeck,drive2,exponent,2,,\n");
+         return with_effects(
+             w, "stribeck,drive2,friction,2,N*m,\nstribeck,drive2,rate,0,rad/s,\nstribeck,drive2,exponent,2,,\n");
        },
        3,
        {"bad\\.csv, line 3, column value", "rate of stribeck must be positive", "mend: give a number above 0"}},

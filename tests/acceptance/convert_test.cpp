@@ -1,5 +1,5 @@
-// delta-model convert as installed: an identified robot for MuJoCo, URDF readers and firmware; what travels along, what is
-// listed as left out, what is refused. What the files are worth in other people's programs is tested in tests/peers.
+// delta-model convert as installed: an identified robot for MuJoCo, URDF readers and firmware; what travels along, what
+// is listed as left out, what is refused. What the files are worth in other people's programs is tested in tests/peers.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,8 @@ TEST_P(Convert, ListsTheEffectsThatItLeavesOut) {
                      "saturation,drive1,share,0.5,,\nsaturation,drive1,level,20,N*m,\n");
   if (std::string(GetParam().name) == "linear_delta3") {
     std::string text = folder.read("effects.csv");
-    for (const auto& [from, to] : {std::pair{"kg*m^2", "kg"}, {"N*m", "N"}, {"N*m", "N"}, {"rad/s", "m/s"}, {"N*m", "N"}}) {
+    for (const auto& [from, to] :
+         {std::pair{"kg*m^2", "kg"}, {"N*m", "N"}, {"N*m", "N"}, {"rad/s", "m/s"}, {"N*m", "N"}}) {
       const auto at = text.find(from);
       text.replace(at, std::string(from).size(), to);
     }
@@ -89,11 +90,13 @@ TEST_P(Convert, ListsTheEffectsThatItLeavesOut) {
     }
     EXPECT_EQ(number(read_summary(path("summary.csv")), "left_out"), listed) << format;
     // Friction by rate acts in a controller; what happens to the record only does so nowhere.
-    EXPECT_EQ(result.out.find("left out: effect stribeck at drive1 (rate=0.25") == std::string::npos, format == "header")
+    EXPECT_EQ(result.out.find("left out: effect stribeck at drive1 (rate=0.25") == std::string::npos,
+              format == "header")
         << result.out;
     EXPECT_EQ(number(read_summary(path("summary.csv")), "effects"), format == "header" ? 1 : 0);
     EXPECT_NE(result.out.find("left out: effect saturation at drive1"), std::string::npos) << result.out;
-    EXPECT_EQ(result.out.find("of the record, not of the machine") != std::string::npos, format == "header") << result.out;
+    EXPECT_EQ(result.out.find("of the record, not of the machine") != std::string::npos, format == "header")
+        << result.out;
     EXPECT_EQ(result.out.find("effect rotor_inertia"), std::string::npos) << result.out;
     EXPECT_EQ(result.out.find("effect asymmetric_coulomb"), std::string::npos) << result.out;
     // A constant torque has no place in URDF; everything else finds one.
@@ -114,9 +117,9 @@ TEST_P(Convert, RefusesWhatCannotBe) {
   };
   refused(convert("sdf"), 2, "mjcf");
   refused({"delta-model", "convert", path("robot.urdf"), "--params", path("params.csv"), "-o", path("x")}, 2, "--to");
-  refused(
-      {"delta-model", "convert", path("robot.urdf"), "--params", path("params.csv"), "--to", "urdf", "-o", path("robot.urdf")}, 2,
-      "robot.urdf");
+  refused({"delta-model", "convert", path("robot.urdf"), "--params", path("params.csv"), "--to", "urdf", "-o",
+           path("robot.urdf")},
+          2, "robot.urdf");
   for (const std::string format : kFormats) refused(convert(format, {"--params", path("none.csv")}), 2, "--params");
 
   Lines lines = to_lines(read_text(path("params.csv")));
@@ -127,25 +130,28 @@ TEST_P(Convert, RefusesWhatCannotBe) {
   (void)folder.write("unknown.csv", "effect,joint,parameter,value,unit,std\ngremlin,drive1,size,2,N,\n");
   extra = 2;
   for (const std::string format : kFormats) {
-    refused({"delta-model", "convert", path("robot.urdf"), "--params", path("negative.csv"), "--to", format, "-o", path("x")}, 3,
-            "upper_arm");
-    refused({"delta-model", "convert", path("robot.urdf"), "--params", path("none.csv"), "--to", format, "-o", path("x")}, 3,
-            "none.csv");
+    refused({"delta-model", "convert", path("robot.urdf"), "--params", path("negative.csv"), "--to", format, "-o",
+             path("x")},
+            3, "upper_arm");
+    refused(
+        {"delta-model", "convert", path("robot.urdf"), "--params", path("none.csv"), "--to", format, "-o", path("x")},
+        3, "none.csv");
     refused(convert(format, {"--effects", path("unknown.csv")}), 3, "unknown.csv, line 2");
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Types, Convert,
-    ::testing::Values(
-        Robot{"delta3", {"delta3", "--base-radius", "0.15", "--platform-radius", "0.04", "--upper-arm", "0.3", "--strut", "0.7"}},
-        Robot{"delta4",
-              {"delta4", "--base-radius", "0.2", "--platform-radius", "0.05", "--upper-arm", "0.525", "--strut", "1.106"}},
-        Robot{
-            "linear_delta3",
-            {"linear-delta3", "--base-radius", "0.3", "--platform-radius", "0.06", "--strut", "0.8", "--drive-range-m", "0,0.9"}},
-        Robot{"axis", {"axis"}}),
-    [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Types, Convert,
+                         ::testing::Values(Robot{"delta3",
+                                                 {"delta3", "--base-radius", "0.15", "--platform-radius", "0.04",
+                                                  "--upper-arm", "0.3", "--strut", "0.7"}},
+                                           Robot{"delta4",
+                                                 {"delta4", "--base-radius", "0.2", "--platform-radius", "0.05",
+                                                  "--upper-arm", "0.525", "--strut", "1.106"}},
+                                           Robot{"linear_delta3",
+                                                 {"linear-delta3", "--base-radius", "0.3", "--platform-radius", "0.06",
+                                                  "--strut", "0.8", "--drive-range-m", "0,0.9"}},
+                                           Robot{"axis", {"axis"}}),
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace deltadyn::acceptance

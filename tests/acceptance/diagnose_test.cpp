@@ -1,4 +1,5 @@
-// delta-diagnose with the installed tools: simulated logs in which an effect is hidden, bad input, and the labelled and measured logs.
+// delta-diagnose with the installed tools: simulated logs in which an effect is hidden, bad input, and the labelled and
+// measured logs.
 
 #include <cmath>
 #include <cstdlib>
@@ -28,7 +29,8 @@ class Diagnosing : public VirtualRobot {
     plan("motion.csv", duration_s, frequency_hz, seed);
     succeed(simulate(
         "motion.csv", name,
-        Words{"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)} + effect));
+        Words{"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)} +
+            effect));
   }
   void record_all(const Words& effect) const {
     record("fast.csv", 0.2, 1, effect);
@@ -77,7 +79,8 @@ TEST_F(Diagnosing, NamesWhatIsHiddenAndFindsNothingMoreInTheImprovedModel) {
 
   EXPECT_EQ(folder.read("improved.csv").substr(0, 23), "# effects: effects.csv\n");
   const ToolResult again = succeed(diagnose("improved.csv", {"--effects", path("effects.csv")}));
-  EXPECT_EQ(summary().at("verdict"), "nothing-missing") << again.out << read_text(path("diagnosis.csv")).substr(0, 1500);
+  EXPECT_EQ(summary().at("verdict"), "nothing-missing")
+      << again.out << read_text(path("diagnosis.csv")).substr(0, 1500);
 }
 
 TEST_F(Diagnosing, GivesNoNameToBendingFrictionFromASlowLogAlone) {
@@ -85,9 +88,9 @@ TEST_F(Diagnosing, GivesNoNameToBendingFrictionFromASlowLogAlone) {
   const Words bend = {"--effect", "shear_thinning@drive4:friction=0.4,rate=2.5,exponent=0"};
   record("slow.csv", 0.02, 2, bend);
   record("check.csv", 0.15, 3, bend);
-  const ToolResult slow =
-      succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("slow.csv"), "--holdout",
-               path("check.csv"), "--null-runs", kNullRuns, "-o", path("diagnosis.csv"), "--summary", path("summary.csv")});
+  const ToolResult slow = succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"),
+                                   path("slow.csv"), "--holdout", path("check.csv"), "--null-runs", kNullRuns, "-o",
+                                   path("diagnosis.csv"), "--summary", path("summary.csv")});
   EXPECT_EQ(summary().at("verdict"), "not-testable") << slow.out;
   EXPECT_EQ(summary().at("effect"), "") << slow.out;
 }
@@ -101,8 +104,8 @@ TEST_F(Diagnosing, TellsTheSizeOfAStribeckEffect) {
 }
 
 TEST_F(Diagnosing, NamesFrictionThatDiffersByDirectionWithADeadZone) {
-  record_all(
-      {"--effect", "direction_dependent_friction@drive2:coulomb_difference=1,viscous_difference=0.3,dead_zone=3,rate=0.15"});
+  record_all({"--effect",
+              "direction_dependent_friction@drive2:coulomb_difference=1,viscous_difference=0.3,dead_zone=3,rate=0.15"});
   succeed(diagnose("truth.csv"));
   EXPECT_EQ(summary().at("effect"), "direction_dependent_friction");
   EXPECT_EQ(summary().at("joint"), "drive2");
@@ -137,8 +140,8 @@ TEST_F(Diagnosing, CounterweightsAreHeldByTheArmsParameters) {
 
 TEST_F(Diagnosing, SaysWhenTheLogsAreTooShort) {
   record("fast.csv", 0.5, 1, {}, 1.5);
-  succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o", path("diagnosis.csv"),
-           "--summary", path("summary.csv")});
+  succeed({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o",
+           path("diagnosis.csv"), "--summary", path("summary.csv")});
   EXPECT_EQ(summary().at("verdict"), "not-testable");
   EXPECT_GT(number(summary(), "needed_length_s"), 1.5);
 }
@@ -164,10 +167,10 @@ TEST_F(Diagnosing, RefusesInputThatWouldProveNothing) {
   EXPECT_NE(old.err.find("version 0"), std::string::npos) << old.err;
 
   (void)folder.write("robot.urdf", read_text(installed("robots/linear_delta3.urdf")));
-  EXPECT_EQ(
-      run({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o", path("diagnosis.csv")})
-          .code,
-      3);
+  EXPECT_EQ(run({"delta-diagnose", path("robot.urdf"), "--params", path("truth.csv"), path("fast.csv"), "-o",
+                 path("diagnosis.csv")})
+                .code,
+            3);
 }
 
 /// The data folder, or empty.
@@ -191,14 +194,15 @@ TEST_P(LabelledLog, IsDiagnosedRight) {
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_delta4/labelled";
   const std::string logs = data + "/mujoco_delta4/labelled/" + GetParam().folder;
   const testing::TemporaryFolder folder;
-  // As a user comes to it: with parameters that were fitted although the effect is in the logs. Fitted they are, trusted or not.
+  // As a user comes to it: with parameters that were fitted although the effect is in the logs. Fitted they are,
+  // trusted or not.
   const std::string robot = installed("robots/mujoco_delta4.urdf");
   const ToolResult identified =
       run({"delta-identify", robot, logs + "/fast.csv", logs + "/slow.csv", "-o", folder.path("p.csv")});
   EXPECT_TRUE(identified.code == 0 || identified.code == 5) << identified.err;
-  succeed({"delta-diagnose", robot, "--params", folder.path("p.csv"), logs + "/fast.csv", logs + "/slow.csv", "--holdout",
-           logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", folder.path("diagnosis.csv"), "--summary",
-           folder.path("summary.csv")});
+  succeed({"delta-diagnose", robot, "--params", folder.path("p.csv"), logs + "/fast.csv", logs + "/slow.csv",
+           "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", folder.path("diagnosis.csv"),
+           "--summary", folder.path("summary.csv")});
   const auto summary = read_summary(folder.path("summary.csv"));
   EXPECT_EQ(summary.at("verdict"), GetParam().verdict);
   EXPECT_EQ(summary.at("effect"), GetParam().effect);
@@ -219,9 +223,10 @@ TEST(MeasuredAxis, HasViscousFrictionThatDiffersByDirectionAndNothingElse) {
   const testing::TemporaryFolder folder;
   const std::string robot = installed("robots/emps.urdf");
   succeed({"delta-identify", robot, data + "/emps/identification.csv", "-o", folder.path("params.csv")});
-  succeed({"delta-diagnose", robot, "--params", folder.path("params.csv"), data + "/emps/identification.csv", "--holdout",
-           data + "/emps/verification.csv", "--null-runs", kNullRuns, "-o", folder.path("diagnosis.csv"), "--effects-out",
-           folder.path("effects.csv"), "--params-out", folder.path("improved.csv"), "--summary", folder.path("summary.csv")});
+  succeed({"delta-diagnose", robot, "--params", folder.path("params.csv"), data + "/emps/identification.csv",
+           "--holdout", data + "/emps/verification.csv", "--null-runs", kNullRuns, "-o", folder.path("diagnosis.csv"),
+           "--effects-out", folder.path("effects.csv"), "--params-out", folder.path("improved.csv"), "--summary",
+           folder.path("summary.csv")});
   const auto summary = read_summary(folder.path("summary.csv"));
   EXPECT_EQ(summary.at("effect"), "asymmetric_viscous");
   EXPECT_EQ(number(summary, "effects"), 1);
@@ -238,13 +243,13 @@ class DirtyLogs : public ::testing::Test {
   /// Identifies, diagnoses, and compares what is written with what delta-validate says to it.
   std::map<std::string, std::string> diagnosed(const std::string& folder_of_logs) {
     const std::string logs = shared_data("mujoco_dirty/README.md") + "/mujoco_dirty/" + folder_of_logs;
-    succeed({"delta-model", "create", "delta4", "--base-radius", "0.16", "--platform-radius", "0.045", "--upper-arm", "0.30",
-             "--strut", "0.72", "--strut-spacing", "0.09", "-o", path("robot.urdf")});
+    succeed({"delta-model", "create", "delta4", "--base-radius", "0.16", "--platform-radius", "0.045", "--upper-arm",
+             "0.30", "--strut", "0.72", "--strut-spacing", "0.09", "-o", path("robot.urdf")});
     (void)run({"delta-identify", path("robot.urdf"), logs + "/fast.csv", logs + "/slow.csv", "-o", path("p.csv")});
     const ToolResult told =
-        succeed({"delta-diagnose", path("robot.urdf"), "--params", path("p.csv"), logs + "/fast.csv", logs + "/slow.csv",
-                 "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", path("d.csv"), "--effects-out",
-                 path("e.csv"), "--params-out", path("improved.csv"), "--summary", path("s.csv")});
+        succeed({"delta-diagnose", path("robot.urdf"), "--params", path("p.csv"), logs + "/fast.csv",
+                 logs + "/slow.csv", "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", path("d.csv"),
+                 "--effects-out", path("e.csv"), "--params-out", path("improved.csv"), "--summary", path("s.csv")});
     EXPECT_NE(told.out.find("friction of drive 2 builds up"), std::string::npos) << told.out;
     succeed({"delta-validate", path("robot.urdf"), "--params", path("improved.csv"), "--effects", path("e.csv"),
              logs + "/holdout.csv", "--summary", path("v.csv")});
@@ -256,14 +261,16 @@ class DirtyLogs : public ::testing::Test {
 };
 
 TEST_F(DirtyLogs, MissNothingWhereNothingIsHidden) {
-  if (shared_data("mujoco_dirty/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
+  if (shared_data("mujoco_dirty/README.md").empty())
+    GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
   const auto summary = diagnosed("nothing_hidden");
   EXPECT_EQ(summary.at("verdict"), "nothing-missing");
   EXPECT_EQ(summary.at("effect"), "");
 }
 
 TEST_F(DirtyLogs, NameTheStribeckEffectAndKeepTheDirt) {
-  if (shared_data("mujoco_dirty/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
+  if (shared_data("mujoco_dirty/README.md").empty())
+    GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
   const auto summary = diagnosed("stribeck_1");
   EXPECT_EQ(summary.at("verdict"), "named");
   EXPECT_EQ(summary.at("effect"), "stribeck");
@@ -299,22 +306,22 @@ TEST_P(DiagnosedDrive, IsNamedRightOrUndecided) {
   for (const std::string& log : GetParam().train) logs.push_back(data + log);
   const std::string held = data + GetParam().holdout;
   succeed(Words{"delta-identify", robot, "-o", folder.path("p.csv")} + logs);
-  succeed(Words{"delta-diagnose", robot, "--params", folder.path("p.csv"), "--holdout", held, "--null-runs", kNullRuns, "-o",
-                folder.path("d.csv"), "--effects-out", folder.path("e.csv"), "--params-out", folder.path("improved.csv"),
-                "--summary", folder.path("s.csv")} +
+  succeed(Words{"delta-diagnose", robot, "--params", folder.path("p.csv"), "--holdout", held, "--null-runs", kNullRuns,
+                "-o", folder.path("d.csv"), "--effects-out", folder.path("e.csv"), "--params-out",
+                folder.path("improved.csv"), "--summary", folder.path("s.csv")} +
           logs);
   const auto summary = read_summary(folder.path("s.csv"));
   const std::string found = summary.at("effect").empty() ? summary.at("verdict") : summary.at("effect");
   bool right = false;
   for (const std::string& one : GetParam().right) {
-    right |=
-        found == one || (summary.count("confusable_with") > 0 && summary.at("confusable_with").find(one) != std::string::npos);
+    right |= found == one ||
+             (summary.count("confusable_with") > 0 && summary.at("confusable_with").find(one) != std::string::npos);
   }
   EXPECT_TRUE(right) << found;
   // What is written is never worse than what was given.
   succeed({"delta-validate", robot, "--params", folder.path("p.csv"), held, "--summary", folder.path("given.csv")});
-  succeed({"delta-validate", robot, "--params", folder.path("improved.csv"), "--effects", folder.path("e.csv"), held, "--summary",
-           folder.path("written.csv")});
+  succeed({"delta-validate", robot, "--params", folder.path("improved.csv"), "--effects", folder.path("e.csv"), held,
+           "--summary", folder.path("written.csv")});
   EXPECT_LE(number(read_summary(folder.path("written.csv")), "rms_residual_drive1"),
             number(read_summary(folder.path("given.csv")), "rms_residual_drive1"));
 }

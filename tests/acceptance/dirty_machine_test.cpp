@@ -1,5 +1,5 @@
-// A machine with everyday dirt gives a useful model with default flags: damped bristles in every drive, cogging, a filtered torque, lengths
-// that are not quite those of the drawing.
+// A machine with everyday dirt gives a useful model with default flags: damped bristles in every drive, cogging, a
+// filtered torque, lengths that are not quite those of the drawing.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,8 @@ namespace deltadyn::acceptance {
 namespace {
 
 constexpr int kPoses = 500;
-constexpr double kTorqueNoise = 0.045, kTorqueStep = 0.02, kTorqueNoise4 = 0.0035, kTorqueStep4 = 0.002;  // as the plant has them
+// As the plant has them
+constexpr double kTorqueNoise = 0.045, kTorqueStep = 0.02, kTorqueNoise4 = 0.0035, kTorqueStep4 = 0.002;
 constexpr double kRate_hz = 500;
 
 class DirtyMachine : public ::testing::Test {
@@ -29,10 +30,10 @@ class DirtyMachine : public ::testing::Test {
     data_ = shared == nullptr ? "" : std::string(shared) + "/mujoco_dirty/";
     if (data_.empty() || !fs::exists(data_ + "nothing_hidden/fast.csv"))
       GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_dirty";
-    succeed({"delta-model", "create", "delta4", "--base-radius", "0.16", "--platform-radius", "0.045", "--upper-arm", "0.30",
-             "--strut", "0.72", "--strut-spacing", "0.09", "-o", path("robot.urdf")});
-    succeed({"delta-identify", path("robot.urdf"), data_ + "nothing_hidden/fast.csv", data_ + "nothing_hidden/slow.csv", "-o",
-             path("params.csv"), "--summary", path("summary.csv")});
+    succeed({"delta-model", "create", "delta4", "--base-radius", "0.16", "--platform-radius", "0.045", "--upper-arm",
+             "0.30", "--strut", "0.72", "--strut-spacing", "0.09", "-o", path("robot.urdf")});
+    succeed({"delta-identify", path("robot.urdf"), data_ + "nothing_hidden/fast.csv", data_ + "nothing_hidden/slow.csv",
+             "-o", path("params.csv"), "--summary", path("summary.csv")});
   }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
@@ -80,7 +81,8 @@ TEST_F(DirtyMachine, GivesAUsefulModel) {
   // Cogging of 31 waves a turn in the limbs' drives, 9 in the fourth one.
   const std::vector<Ripple> ripples = ripples_of(table, robot->description());
   for (int drive = 0; drive < 4; ++drive) {
-    const auto found = std::find_if(ripples.begin(), ripples.end(), [drive](const Ripple& r) { return r.drive == drive; });
+    const auto found =
+        std::find_if(ripples.begin(), ripples.end(), [drive](const Ripple& r) { return r.drive == drive; });
     ASSERT_NE(found, ripples.end()) << drive;
     EXPECT_NEAR(found->n, drive < 3 ? 31 : 9, drive < 3 ? 0.6 : 0.05) << drive;
   }
@@ -95,7 +97,8 @@ TEST_F(DirtyMachine, TheKeysOfTheCheckHoldTheFineDelay) {
   EXPECT_EQ(summary.at("check_verdict"), "mended");
 }
 
-/// On a motion that took no part, rows near reversals with it, little is left but the noise of the torque behind the low pass.
+/// On a motion that took no part, rows near reversals with it, little is left but the noise of the torque behind the
+/// low pass.
 TEST_F(DirtyMachine, PredictsAnotherMotion) {
   succeed({"delta-validate", path("robot.urdf"), "--params", path("params.csv"), data_ + "nothing_hidden/holdout.csv",
            "--summary", path("validation.csv")});

@@ -77,7 +77,8 @@ std::vector<Row> robot_files() {
       {"AWholeFileInMillimetresNamesTheWayOut",
        [](const W& w) { return w.info(w.write("bad.urdf", in_millimetres(shipped("delta3.urdf")))); },
        3,
-       {"bad\\.urdf, line .*joint drive1", "looks like millimetres", "mend: .*delta-model adopt .*bad\\.urdf --length-unit mm"}},
+       {"bad\\.urdf, line .*joint drive1", "looks like millimetres",
+        "mend: .*delta-model adopt .*bad\\.urdf --length-unit mm"}},
       {"LimitsInDegrees",
        [limit](const W& w) { return w.info(spoilt(w, "delta3.urdf", limit, "lower=\"-50\" upper=\"90\"")); },
        3,
@@ -124,11 +125,17 @@ std::vector<Row> parameter_files() {
     };
   };
   return {
-      {"PriorInGrams", with("platform.m", "1230", true), 3, {"bad\\.csv, line", "platform: the mass", "grams", "mend:"}},
+      {"PriorInGrams",
+       with("platform.m", "1230", true),
+       3,
+       {"bad\\.csv, line", "platform: the mass", "grams", "mend:"}},
       {"ParametersInGrams", with("strut.m", "278", false), 3, {"bad\\.csv, line", "strut: the mass", "grams", "mend:"}},
       {"NegativeMass", with("tool.m", "-0.4", true), 3, {"bad\\.csv, line", "tool: the mass", "mend:"}},
       {"NegativeInertia", with("strut.Iyy", "-0.1", true), 3, {"bad\\.csv, line", "strut: the inertia", "mend:"}},
-      {"SquareMillimetres", with("upper_arm.Iyy", "189000", false), 3, {"bad\\.csv, line", "the inertia", "kg mm", "mend:"}},
+      {"SquareMillimetres",
+       with("upper_arm.Iyy", "189000", false),
+       3,
+       {"bad\\.csv, line", "the inertia", "kg mm", "mend:"}},
       {"NegativeFriction", with("drive1.viscous", "-1.5", true), 3, {"bad\\.csv, line", "drive1\\.viscous", "mend:"}},
       {"NoNumber", with("drive1.viscous", "nan", true), 3, {"bad\\.csv, line", "mend:"}},
   };
@@ -157,7 +164,10 @@ std::vector<Row> flags() {
        [](const W& w) { return create_delta3(w.path("x.urdf"), 0.15, 0.04, 0.3, 7); },
        2,
        {"an upper arm of 0\\.3 m does not go with struts of 7 m", "mend:"}},
-      {"CreateVelocityInDegrees", create({"--drive-velocity-rad-s", "500"}), 2, {"drive 1", "looks like degrees", "mend:"}},
+      {"CreateVelocityInDegrees",
+       create({"--drive-velocity-rad-s", "500"}),
+       2,
+       {"drive 1", "looks like degrees", "mend:"}},
       {"CreateRangeInDegrees", create({"--drive-range-rad=-50,90"}), 2, {"drive 1", "looks like degrees", "mend:"}},
       {"CreateGravityATenth", create({"--gravity-m-s2", "0.981"}), 2, {"--gravity-m-s2", "9\\.84", "mend:"}},
       {"CreateGravityNotANumber", create({"--gravity-m-s2", "nan"}), 2, {"--gravity-m-s2", "mend:"}},
@@ -174,7 +184,10 @@ std::vector<Row> flags() {
        },
        2,
        {"looks like millimetres", "mend:"}},
-      {"PriorPlateOfHalfATon", prior("delta3.urdf", {"--platform-mass-kg", "500"}), 2, {"platform: the mass is 500 kg", "mend:"}},
+      {"PriorPlateOfHalfATon",
+       prior("delta3.urdf", {"--platform-mass-kg", "500"}),
+       2,
+       {"platform: the mass is 500 kg", "mend:"}},
       {"PriorArmAsWideAsAHouse",
        prior("delta3.urdf", {"--upper-arm-outer-diameter-m", "40"}),
        2,
@@ -191,9 +204,18 @@ std::vector<Row> flags() {
        prior("delta3.urdf", {"--telescope-upper-length-m", "0.7"}),
        2,
        {"--telescope-upper-length-m does not belong to this delta3", "mend: leave it out"}},
-      {"PriorToolOfADelta3", prior("delta3.urdf", {"--tool-mass-kg", "0.7"}), 2, {"--tool-mass-kg does not belong", "mend:"}},
-      {"PriorCarriageOfADelta4", prior("mujoco_delta4.urdf", {"--carriage-mass-kg", "2"}), 2, {"has no carriage", "mend:"}},
-      {"PriorArmOfALinearDelta", prior("linear_delta3.urdf", {"--upper-arm-wall-m", "0.003"}), 2, {"has no upper arm", "mend:"}},
+      {"PriorToolOfADelta3",
+       prior("delta3.urdf", {"--tool-mass-kg", "0.7"}),
+       2,
+       {"--tool-mass-kg does not belong", "mend:"}},
+      {"PriorCarriageOfADelta4",
+       prior("mujoco_delta4.urdf", {"--carriage-mass-kg", "2"}),
+       2,
+       {"has no carriage", "mend:"}},
+      {"PriorArmOfALinearDelta",
+       prior("linear_delta3.urdf", {"--upper-arm-wall-m", "0.003"}),
+       2,
+       {"has no upper arm", "mend:"}},
       {"PriorStrutsOfAnAxis", prior("emps.urdf", {"--strut-wall-m", "0.001"}), 2, {"has no struts", "mend:"}},
       {"ExciteInDegrees",
        excite("delta3.urdf",
@@ -216,10 +238,17 @@ std::vector<Row> flags() {
        excite("delta3.urdf", {"--drive-range-rad=-3,1.6"}),
        2,
        {"lower position limit", "robot file allows -0\\.9", "mend:"}},
-      {"ExcitePlateInMillimetres", excite("delta3.urdf", {"--platform-velocity-m-s", "4000"}), 2, {"x: the velocity", "mend:"}},
-      {"ExciteYawInDegrees", excite("irb360_6_1600.urdf", {"--yaw-range-rad", "180"}), 2, {"psi", "looks like degrees", "mend:"}},
+      {"ExcitePlateInMillimetres",
+       excite("delta3.urdf", {"--platform-velocity-m-s", "4000"}),
+       2,
+       {"x: the velocity", "mend:"}},
+      {"ExciteYawInDegrees",
+       excite("irb360_6_1600.urdf", {"--yaw-range-rad", "180"}),
+       2,
+       {"psi", "looks like degrees", "mend:"}},
       {"ExciteWorkspaceInMillimetres",
-       excite("delta3.urdf", {"--workspace", "ball", "--workspace-center-m", "0,0,-700", "--workspace-radius-m", "150"}),
+       excite("delta3.urdf",
+              {"--workspace", "ball", "--workspace-center-m", "0,0,-700", "--workspace-radius-m", "150"}),
        2,
        {"workspace", "looks like millimetres", "mend:"}},
   };
@@ -235,7 +264,8 @@ INSTANTIATE_TEST_SUITE_P(RobotFiles, Doors, ::testing::ValuesIn(robot_files()), 
 INSTANTIATE_TEST_SUITE_P(ParameterFiles, Doors, ::testing::ValuesIn(parameter_files()), name_of);
 INSTANTIATE_TEST_SUITE_P(Flags, Doors, ::testing::ValuesIn(flags()), name_of);
 
-/// The robot hangs from a ceiling: identified with the file as the cell has it, and with the plain robot under turned gravity.
+/// The robot hangs from a ceiling: identified with the file as the cell has it, and with the plain robot under turned
+/// gravity.
 TEST(Mounting, AHangingRobotIsIdentifiedAsTheSameRobotUnderTurnedGravity) {
   const Workshop w;
   const std::string plain = shipped("mujoco_delta4.urdf");
@@ -248,12 +278,14 @@ TEST(Mounting, AHangingRobotIsIdentifiedAsTheSameRobotUnderTurnedGravity) {
   const std::string leaning = w.write("leaning.urdf", hung);
   // Gravity in the base: turned back by pi/2 + 0.5 about y.
   const double angle = 1.5707963267948966 + 0.5;
-  const std::string turned = w.write(
-      "turned.urdf", replaced(plain, "xyz_m_s2=\"0 0 -9.81\"",
-                              fmt::format("xyz_m_s2=\"{:.17g} 0 {:.17g}\"", 9.81 * std::sin(angle), -9.81 * std::cos(angle))));
+  const std::string turned =
+      w.write("turned.urdf",
+              replaced(plain, "xyz_m_s2=\"0 0 -9.81\"",
+                       fmt::format("xyz_m_s2=\"{:.17g} 0 {:.17g}\"", 9.81 * std::sin(angle), -9.81 * std::cos(angle))));
   const RobotDescription description = read_robot_file(turned);
   const auto model = make_robot(description);
-  const Eigen::VectorXd truth = values(read_parameters(w.path("prior.csv")), model->parameter_names(), model->parameter_units());
+  const Eigen::VectorXd truth =
+      values(read_parameters(w.path("prior.csv")), model->parameter_names(), model->parameter_units());
   testing_support::SyntheticOptions motion;
   motion.torque_noise = 0.05;
   motion.with_derivatives = false;
@@ -321,8 +353,8 @@ TEST(Adopt, GivesARobotThatIdentifiesAsTheOriginal) {
 TEST(Adopt, TurnsAWholeFileOfMillimetres) {
   const Workshop w;
   const std::string robot = w.path("metres.urdf");
-  succeed({"delta-model", "adopt", w.write("mm.urdf", in_millimetres(shipped("mujoco_delta4.urdf"))), "--length-unit", "mm", "-o",
-           robot});
+  succeed({"delta-model", "adopt", w.write("mm.urdf", in_millimetres(shipped("mujoco_delta4.urdf"))), "--length-unit",
+           "mm", "-o", robot});
   std::string expected = succeed({"delta-model", "info", w.path("robot.urdf")}).out,
               found = succeed({"delta-model", "info", robot}).out;
   // Geometry and drives; behind these stand figures of random states, which amplify the last digit of a length.
@@ -334,7 +366,9 @@ TEST(Adopt, TurnsAWholeFileOfMillimetres) {
 
 std::vector<Row> adoptions() {
   const auto adopt = [](const W& w, const std::string& text, const Words& more = {}) {
-    return Words{"delta-model", "adopt", w.write("c.urdf", text), "-o", w.path("x.urdf"), "--prior-out", w.path("x.csv")} + more;
+    return Words{"delta-model",    "adopt",       w.write("c.urdf", text), "-o",
+                 w.path("x.urdf"), "--prior-out", w.path("x.csv")} +
+           more;
   };
   return {
       {"AdoptMillimetres",
@@ -356,7 +390,10 @@ std::vector<Row> adoptions() {
        2,
        {"their distance cannot be found", "mend: give --strut-spacing"}},
       {"AdoptALog", [=](const W& w) { return adopt(w, "t_s,q1_rad\n0,1\n"); }, 3, {"c\\.urdf", "XML", "mend:"}},
-      {"AdoptASerialArm", [=](const W& w) { return adopt(w, shipped("emps.urdf")); }, 3, {"no base with three drives", "mend:"}},
+      {"AdoptASerialArm",
+       [=](const W& w) { return adopt(w, shipped("emps.urdf")); },
+       3,
+       {"no base with three drives", "mend:"}},
       {"AdoptOntoItself",
        [](const W& w) {
          return Words{"delta-model", "adopt", w.path("robot.urdf"), "-o", w.path("robot.urdf")};

@@ -47,8 +47,8 @@ Words excite(const std::string& robot) {
 TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
   const testing::TemporaryFolder folder;
   succeed(excite("mujoco_delta4.urdf") + kMainCase +
-              Words{"-o", folder.path("t.csv"), "--coefficients", folder.path("c.csv"), "--summary", folder.path("s.csv"),
-                    "--starts", "16", "--time-limit-s", "500"},
+              Words{"-o", folder.path("t.csv"), "--coefficients", folder.path("c.csv"), "--summary",
+                    folder.path("s.csv"), "--starts", "16", "--time-limit-s", "500"},
           {600});
   const auto summary = read_summary(folder.path("s.csv"));
   EXPECT_EQ(summary.at("stopped"), "completed");
@@ -59,15 +59,17 @@ TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
   EXPECT_LT(number(summary, "bound_gap"), 1.1e-3);
 
   const Lines lines = to_lines(folder.read("t.csv"));
-  EXPECT_EQ(
-      lines[0],
-      "t_s,x_m,y_m,z_m,psi_rad,xd_m_s,yd_m_s,zd_m_s,psid_rad_s,xdd_m_s2,ydd_m_s2,zdd_m_s2,psidd_rad_s2,"
-      "q1_rad,q2_rad,q3_rad,q4_rad,qd1_rad_s,qd2_rad_s,qd3_rad_s,qd4_rad_s,qdd1_rad_s2,qdd2_rad_s2,qdd3_rad_s2,qdd4_rad_s2");
+  EXPECT_EQ(lines[0],
+            "t_s,x_m,y_m,z_m,psi_rad,xd_m_s,yd_m_s,zd_m_s,psid_rad_s,xdd_m_s2,ydd_m_s2,zdd_m_s2,psidd_rad_s2,"
+            "q1_rad,q2_rad,q3_rad,q4_rad,qd1_rad_s,qd2_rad_s,qd3_rad_s,qd4_rad_s,qdd1_rad_s2,qdd2_rad_s2,qdd3_rad_s2,"
+            "qdd4_rad_s2");
   EXPECT_EQ(static_cast<double>(lines.size() - 1), number(summary, "samples"));
   EXPECT_GT(lines.size(), 10000U);
-  const double limit[] = {0, 0, 0, 0, 40, 4, 4, 4, 48, 50, 50, 50, 240, 1.6, 1.6, 1.6, 50, 6, 6, 6, 48, 60, 60, 60, 240};
+  const double limit[] = {0,   0,   0,   0,  40, 4, 4, 4,  48, 50, 50, 50, 240,
+                          1.6, 1.6, 1.6, 50, 6,  6, 6, 48, 60, 60, 60, 240};
   for (std::size_t k = 2; k <= lines.size(); ++k) {
-    for (std::size_t c = 4; c < 25; ++c) ASSERT_LE(std::abs(field(lines, k, c)), limit[c]) << "line " << k << ", column " << c;
+    for (std::size_t c = 4; c < 25; ++c)
+      ASSERT_LE(std::abs(field(lines, k, c)), limit[c]) << "line " << k << ", column " << c;
     const double x = field(lines, k, 1), y = field(lines, k, 2), z = field(lines, k, 3) + 0.8;
     ASSERT_LE(x * x + y * y + z * z, 0.35 * 0.35);
     ASSERT_LE(z, 0);
@@ -82,12 +84,13 @@ TEST(Excite, SlowAndFastSegmentsHaveFilesOfTheirOwnAndRowsAwayFromReversals) {
   const testing::TemporaryFolder folder;
   const ToolResult result =
       run(excite("mujoco_delta4.urdf") + kMainCase +
-              Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--segments", "2", "--segment-speeds", "0.3,1",
-                    "--segment-files", "--starts", "4", "--time-limit-s", "500"},
+              Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--segments", "2",
+                    "--segment-speeds", "0.3,1", "--segment-files", "--starts", "4", "--time-limit-s", "500"},
           {600});
   EXPECT_EQ(result.code, 0) << result.err;
   const auto summary = read_summary(folder.path("s.csv"));
-  EXPECT_THAT(result.out + result.err, HasSubstr(summary.at("verdict") == "trusted" ? "A good excitation" : " excitation: "));
+  EXPECT_THAT(result.out + result.err,
+              HasSubstr(summary.at("verdict") == "trusted" ? "A good excitation" : " excitation: "));
   for (const char* segment : {"1", "2"}) {
     for (const char* drive : {"1", "2", "3", "4"})
       EXPECT_GT(number(summary, fmt::format("away_from_reversals_segment{}_drive{}", segment, drive)), 0.43);
@@ -118,8 +121,8 @@ TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
   succeed(excite("mujoco_delta4.urdf") + kMainCase +
           Words{"-o", folder.path("t.csv"), "--params", light_file, "--drive-torque-n-m", "40,40,40,4", "--starts", "1",
                 "--time-limit-s", "60"});
-  succeed({"delta-simulate", installed("robots/mujoco_delta4.urdf"), "--params", truth, "--trajectory", folder.path("t.csv"),
-           "--encoder-bits", "19", "-o", folder.path("log.csv")});
+  succeed({"delta-simulate", installed("robots/mujoco_delta4.urdf"), "--params", truth, "--trajectory",
+           folder.path("t.csv"), "--encoder-bits", "19", "-o", folder.path("log.csv")});
   const Lines log = to_lines(folder.read("log.csv"));
   double most = 0;
   for (std::size_t k = 2; k <= log.size(); ++k)
@@ -133,8 +136,8 @@ TEST(Excite, SameSeedSameBytesWhateverTheThreads) {
   const Words flags =
       excite("mujoco_delta4.urdf") + kMainCase + Words{"--starts", "2", "--harmonics", "3", "--time-limit-s", "500"};
   for (const std::string threads : {"1", "3"}) {
-    succeed(flags + Words{"--threads", threads, "-o", folder.path("t" + threads), "--coefficients", folder.path("c" + threads),
-                          "--validation", folder.path("v" + threads)});
+    succeed(flags + Words{"--threads", threads, "-o", folder.path("t" + threads), "--coefficients",
+                          folder.path("c" + threads), "--validation", folder.path("v" + threads)});
   }
   EXPECT_EQ(folder.read("t1"), folder.read("t3"));
   EXPECT_EQ(folder.read("c1"), folder.read("c3"));
@@ -170,8 +173,9 @@ TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
       {"delta3.urdf", {"--segments", "2", "--segment-speeds", "0.3,1"}, "t_s,x_m,y_m,z_m,xd_m_s"},
       {"linear_delta3.urdf", {"--periodic"}, "q1_m,q2_m,q3_m,qd1_m_s"},
       {"irb360_6_1600.urdf",
-       {"--workspace", "cylinder", "--workspace-center-m", "0,0,-0.95", "--workspace-radius-m", "0.3", "--workspace-height-m",
-        "0.2", "--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "60,60,60,4"},
+       {"--workspace", "cylinder", "--workspace-center-m", "0,0,-0.95", "--workspace-radius-m", "0.3",
+        "--workspace-height-m", "0.2", "--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m",
+        "60,60,60,4"},
        "psi_rad"},
       {"emps.urdf",
        {"--drive-range-m", "0,0.4", "--drive-velocity-m-s", "0.5", "--drive-acceleration-m-s2", "5"},
@@ -187,7 +191,8 @@ TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
   }
 }
 
-// Each limit makes sense and slow states that fall inside them exist, but no pose holds itself and its friction with 12 N m.
+// Each limit makes sense and slow states that fall inside them exist, but no pose holds itself and its friction with 12
+// N m.
 TEST(Excite, LimitsThatCannotBeMetAreNamedWithExitCodeFour) {
   const testing::TemporaryFolder folder;
   const ToolResult result = run(excite("mujoco_delta4.urdf") + Words{"-o",
@@ -266,7 +271,8 @@ TEST(Excite, BadInputIsNamedAtOnce) {
       {{"--drive-velocity-m-s", "1"}, 2, "not the unit of the drives"},
       {{"--drive-range-rad", "1.5,1.6;1.5,1.6;1.5,1.6;-1,1"}, 3, "the limits leave no motion"},
       {{"--drive-torque-n-m", "60"}, 2, "needs a model"},
-      {{"--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "60,60,60,4", "--torque-margin", "1"},
+      {{"--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "60,60,60,4", "--torque-margin",
+        "1"},
        2,
        "--torque-margin is out of range"},
       {{"--params", installed("logs/mujoco_delta4/truth.csv"), "--drive-torque-n-m", "4,60,60,4"},

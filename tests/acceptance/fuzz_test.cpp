@@ -43,7 +43,8 @@ class Damage {
 
   /// Replaces the next number in the text.
   void change_number(std::string& text, std::size_t at) {
-    static const char* const kNumbers[] = {"0", "-1", "1e9", "-0.0", "1e300", "nan", "3.5", "1e-9", "99999999999999999999"};
+    static const char* const kNumbers[] = {
+        "0", "-1", "1e9", "-0.0", "1e300", "nan", "3.5", "1e-9", "99999999999999999999"};
     const std::size_t begin = text.find_first_of("0123456789", at);
     if (begin == std::string::npos) return;
     const std::size_t end = std::min(text.size(), text.find_first_not_of("0123456789.e-", begin));
@@ -63,8 +64,8 @@ class Damage {
 constexpr int kCases = 200;
 
 /// Runs the command on damaged copies of a text. \return how many of them were refused
-int survive(std::uint64_t seed, const std::string& good, const std::function<Words(const Workshop&, const std::string&)>& command,
-            const std::string& name) {
+int survive(std::uint64_t seed, const std::string& good,
+            const std::function<Words(const Workshop&, const std::string&)>& command, const std::string& name) {
   Damage damage(seed);
   const Workshop workshop;
   int refused = 0;
@@ -74,8 +75,9 @@ int survive(std::uint64_t seed, const std::string& good, const std::function<Wor
     const auto before = contents(workshop.folder());
     const ToolResult result = run(command(workshop, file), {20});
     const std::set<int> allowed = {0, 2, 3, 4, 5};
-    EXPECT_EQ(allowed.count(result.code), 1U) << "case " << k << " of seed " << seed << " ended with " << result.code << "\n"
-                                              << result.out << result.err;
+    EXPECT_EQ(allowed.count(result.code), 1U)
+        << "case " << k << " of seed " << seed << " ended with " << result.code << "\n"
+        << result.out << result.err;
     // An exception that nobody foresaw has no advice for the user.
     EXPECT_EQ(result.err.find("unexpected error"), std::string::npos) << "case " << k << " of seed " << seed << "\n"
                                                                       << result.err;
@@ -87,7 +89,8 @@ int survive(std::uint64_t seed, const std::string& good, const std::function<Wor
       }
     }
     for (const char* output : {"out.csv", "base.csv", "summary.csv"}) fs::remove(workshop.path(output));
-    for (const auto& [left, bytes] : contents(workshop.folder())) EXPECT_EQ(left.find(".tmp"), std::string::npos) << left;
+    for (const auto& [left, bytes] : contents(workshop.folder()))
+      EXPECT_EQ(left.find(".tmp"), std::string::npos) << left;
     if (::testing::Test::HasFailure()) break;
   }
   return refused;
@@ -123,8 +126,8 @@ TEST(Fuzz, DamagedRobots) {
 
 TEST(Fuzz, DamagedParameters) {
   const int refused = survive(
-      4, to_text(Workshop::prior()), [](const Workshop& w, const std::string& file) { return w.validate("", "", file); },
-      "fuzz.csv");
+      4, to_text(Workshop::prior()),
+      [](const Workshop& w, const std::string& file) { return w.validate("", "", file); }, "fuzz.csv");
   EXPECT_GT(refused, kCases / 8);
   EXPECT_LT(refused, kCases);
 }

@@ -61,8 +61,8 @@ class Identified {
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
   [[nodiscard]] std::map<std::string, std::string> validate(const std::string& parameters) const {
-    succeed({"delta-validate", installed(kRobot), "--params", parameters, log("verification.csv"), "-o", path("residuals.csv"),
-             "--summary", path("validation.csv")});
+    succeed({"delta-validate", installed(kRobot), "--params", parameters, log("verification.csv"), "-o",
+             path("residuals.csv"), "--summary", path("validation.csv")});
     return read_summary(path("validation.csv"));
   }
 
@@ -97,7 +97,8 @@ struct Pair {
   Eigen::VectorXd truth = values(read_parameters(log("truth.csv")), robot->parameter_names(), robot->parameter_units());
   Eigen::VectorXd found;
 
-  explicit Pair(const ParameterTable& params) : found(values(params, robot->parameter_names(), robot->parameter_units())) {}
+  explicit Pair(const ParameterTable& params)
+      : found(values(params, robot->parameter_names(), robot->parameter_units())) {}
 };
 
 /// Poses in the lower half ball of 0.35 m about (0, 0, -0.80) m, psi in +-3 rad.
@@ -167,8 +168,8 @@ void check_mass_matrix_by_energy(const Pair& pair) {
       for (std::size_t j = 0; j < 4; ++j) {
         const auto energy = oracles::mass_matrix_entry(mechanism, load, testing_support::numbers(q), i, j, guess);
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
-        worst =
-            std::max(worst, std::abs(static_cast<double>(energy) - M(row, column)) / std::sqrt(M(row, row) * M(column, column)));
+        worst = std::max(
+            worst, std::abs(static_cast<double>(energy) - M(row, column)) / std::sqrt(M(row, row) * M(column, column)));
       }
     }
   }
@@ -190,7 +191,8 @@ void check_torque_parts(const Pair& pair, const std::string& residual_file) {
     if (name.find("viscous") != std::string::npos || name.find("coulomb") != std::string::npos) truth(k) = found(k) = 0;
   }
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(4);
-  const auto parts = [&](Eigen::Index row, const Eigen::VectorXd& p, Eigen::VectorXd& coriolis, Eigen::VectorXd& acceleration) {
+  const auto parts = [&](Eigen::Index row, const Eigen::VectorXd& p, Eigen::VectorXd& coriolis,
+                         Eigen::VectorXd& acceleration) {
     Eigen::VectorXd gravity(4), moving(4), all(4);
     const Eigen::VectorXd at = q.row(row), rate = qd.row(row), growth = qdd.row(row);
     EXPECT_EQ(pair.robot->inverse_dynamics(at, still, still, p, gravity), Status::ok);
@@ -210,7 +212,8 @@ void check_torque_parts(const Pair& pair, const std::string& residual_file) {
     error_a = error_a.cwiseMax((a - a_true).cwiseAbs());
   }
   ASSERT_GT(q.rows(), 500);
-  // The Coriolis torque of the telescope's drive is a few mN m, below the noise of any log: no relative error of its own.
+  // The Coriolis torque of the telescope's drive is a few mN m, below the noise of any log: no relative error of its
+  // own.
   figure("coriolis_torque_percent_of_largest", 100 * error_c.maxCoeff() / largest_c.maxCoeff(), 0.3);
   for (int j = 0; j < 4; ++j) {
     figure(fmt::format("acceleration_torque_percent_drive{}", j + 1), 100 * error_a(j) / largest_a(j), 0.3);
@@ -308,8 +311,8 @@ TEST(Identification, AVeryShortLogGivesAConsistentModelThatIsNotTrusted) {
   std::size_t end = 0;
   for (int line = 0; line < 700; ++line) end = text.find('\n', end) + 1;
   const std::string part = folder.write("short.csv", text.substr(0, end));
-  const ToolResult result = run({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz", "50",
-                                 "-o", folder.path("params.csv"), "--summary", folder.path("summary.csv")});
+  const ToolResult result = run({"delta-identify", installed(kRobot), part, "--prior", log("truth.csv"), "--cutoff-hz",
+                                 "50", "-o", folder.path("params.csv"), "--summary", folder.path("summary.csv")});
   ASSERT_TRUE(result.code == 0 || result.code == 5) << result.err;
   const auto summary = read_summary(folder.path("summary.csv"));
   EXPECT_NE(summary.at("verdict"), "trusted") << "0.7 s do not make a trusted model";
@@ -320,10 +323,11 @@ TEST(Identification, ReportsAreWholePages) {
   if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
   const testing::TemporaryFolder folder;
   const std::string identification = folder.path("identification.html"), validation = folder.path("validation.html");
-  succeed({"delta-identify", installed(kRobot), log("identification_fast.csv"), log("identification_slow.csv"), "--cutoff-hz",
-           "40", "--prior", log("truth.csv"), "-o", folder.path("params.csv"), "--report", identification});
-  succeed({"delta-validate", installed(kRobot), "--params", folder.path("params.csv"), log("verification.csv"), "--cutoff-hz",
-           "40", "--report", validation});
+  succeed({"delta-identify", installed(kRobot), log("identification_fast.csv"), log("identification_slow.csv"),
+           "--cutoff-hz", "40", "--prior", log("truth.csv"), "-o", folder.path("params.csv"), "--report",
+           identification});
+  succeed({"delta-validate", installed(kRobot), "--params", folder.path("params.csv"), log("verification.csv"),
+           "--cutoff-hz", "40", "--report", validation});
   for (const std::string& file : {identification, validation}) {
     const std::string page = read_text(file);
     EXPECT_GT(page.size(), 20000U) << file;
@@ -338,16 +342,17 @@ TEST(Identification, ReportsAreWholePages) {
 TEST(Identification, SameInputSameBytesWithAnyNumberOfThreads) {
   const testing::TemporaryFolder folder;
   const auto identify = [&](const std::string& threads, const std::string& name) {
-    succeed({"delta-identify", installed(kRobot), log("identification_slow.csv"), "--prior", log("truth.csv"), "--cutoff-hz",
-             "40", "--threads", threads, "-o", folder.path(name), "--base", folder.path("base_" + name)});
+    succeed({"delta-identify", installed(kRobot), log("identification_slow.csv"), "--prior", log("truth.csv"),
+             "--cutoff-hz", "40", "--threads", threads, "-o", folder.path(name), "--base",
+             folder.path("base_" + name)});
     return folder.read(name) + folder.read("base_" + name);
   };
   const std::string first = identify("1", "a.csv");
   EXPECT_EQ(identify("1", "b.csv"), first);
   EXPECT_EQ(identify("2", "c.csv"), first);
   const auto validate = [&](const std::string& threads, const std::string& name) {
-    succeed({"delta-validate", installed(kRobot), log("identification_slow.csv"), "--params", log("truth.csv"), "--cutoff-hz",
-             "40", "--threads", threads, "-o", folder.path(name)});
+    succeed({"delta-validate", installed(kRobot), log("identification_slow.csv"), "--params", log("truth.csv"),
+             "--cutoff-hz", "40", "--threads", threads, "-o", folder.path(name)});
     return folder.read(name);
   };
   const std::string residuals = validate("1", "d.csv");
@@ -358,11 +363,12 @@ TEST(Identification, RigidStatesOfTheMuJoCoPlant) {
   const testing::TemporaryFolder folder;
   ParameterTable rigid = read_parameters(log("truth.csv"));
   for (ParameterEntry& entry : rigid.entries) {
-    if (entry.name.find("viscous") != std::string::npos || entry.name.find("coulomb") != std::string::npos) entry.value = 0;
+    if (entry.name.find("viscous") != std::string::npos || entry.name.find("coulomb") != std::string::npos)
+      entry.value = 0;
   }
   write_parameters(folder.path("rigid.csv"), rigid);
-  succeed({"delta-validate", installed(kRobot), "--params", folder.path("rigid.csv"), log("rigid_states.csv"), "--no-filter",
-           "--summary", folder.path("summary.csv")});
+  succeed({"delta-validate", installed(kRobot), "--params", folder.path("rigid.csv"), log("rigid_states.csv"),
+           "--no-filter", "--summary", folder.path("summary.csv")});
   const auto summary = read_summary(folder.path("summary.csv"));
   const CsvTable states = read_csv(log("rigid_states.csv"));
   EXPECT_EQ(number(summary, "samples"), static_cast<double>(states.rows()));
@@ -387,10 +393,13 @@ TEST(PublishedRobots, EmpsAsAnAxis) {
   const std::string data = shared_data("emps/identification.csv");
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with emps/identification.csv";
   const testing::TemporaryFolder folder;
-  const ToolResult result = succeed({"delta-identify", installed("robots/emps.urdf"), data, "-o", folder.path("params.csv")});
+  const ToolResult result =
+      succeed({"delta-identify", installed("robots/emps.urdf"), data, "-o", folder.path("params.csv")});
   const ParameterTable params = read_parameters(folder.path("params.csv"));
-  for (const auto& [name, value] :
-       {std::pair{"upper_arm.m", 95.11}, {"drive1.viscous", 203.4}, {"drive1.coulomb", 20.40}, {"drive1.offset", -3.17}}) {
+  for (const auto& [name, value] : {std::pair{"upper_arm.m", 95.11},
+                                    {"drive1.viscous", 203.4},
+                                    {"drive1.coulomb", 20.40},
+                                    {"drive1.offset", -3.17}}) {
     const ParameterEntry* found = params.find(name);
     ASSERT_NE(found, nullptr) << name;
     std::cout << "  " << name << " " << found->value << " published " << value << "\n";
@@ -407,7 +416,8 @@ TEST(PublishedRobots, TorqueOfTheAutonoxDelta) {
   const auto summary = read_summary(folder.path("summary.csv"));
   EXPECT_EQ(number(summary, "samples"), static_cast<double>(read_csv(data).rows()));
   for (int j = 1; j <= 3; ++j)
-    figure(fmt::format("delta_rl5_torque_Nm_drive{}", j), number(summary, fmt::format("max_residual_drive{}", j)), 1e-9);
+    figure(fmt::format("delta_rl5_torque_Nm_drive{}", j), number(summary, fmt::format("max_residual_drive{}", j)),
+           1e-9);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ std::string exports() {
 }
 
 std::string map_channel(const std::string& quantity, const std::string& source, const std::string& unit) {
-  return fmt::format("[[channel]]\ndrive = 1\nquantity = \"{}\"\nsource = \"{}\"\nunit = \"{}\"\n", quantity, source, unit);
+  return fmt::format("[[channel]]\ndrive = 1\nquantity = \"{}\"\nsource = \"{}\"\nunit = \"{}\"\n", quantity, source,
+                     unit);
 }
 
 class ImportTest : public ::testing::Test {
@@ -41,9 +42,11 @@ TEST_F(ImportTest, OtherToolsReadWhatImportReads) {
   const auto plain = read_summary(path("summary.csv"));
   for (const std::string& file : {path("again.csv"), export_file}) {
     const ToolResult result = succeed(workshop_.validate(file) + Words{"--map", path("map.toml")});
-    EXPECT_NEAR(number(read_summary(path("summary.csv")), "rms_residual_drive2"), number(plain, "rms_residual_drive2"), 1e-9)
+    EXPECT_NEAR(number(read_summary(path("summary.csv")), "rms_residual_drive2"), number(plain, "rms_residual_drive2"),
+                1e-9)
         << file;
-    EXPECT_NE(result.out.find("q1_rad from 'q1_rad' [rad]"), std::string::npos) << "the tool does not say what it took for what";
+    EXPECT_NE(result.out.find("q1_rad from 'q1_rad' [rad]"), std::string::npos)
+        << "the tool does not say what it took for what";
   }
   const ToolResult guessed = succeed(workshop_.validate(export_file));
   EXPECT_NE(guessed.out.find("read as text separated by ';', with decimal comma"), std::string::npos) << guessed.out;
@@ -71,18 +74,18 @@ TEST_F(ImportTest, SaysWhatIsMissingAndWritesTheMapToMend) {
 
 // The map that was written just now is the one to be mended.
 TEST_F(ImportTest, NextStepNamesTheMapThatWasWritten) {
-  const std::string file =
-      workshop_.log("export.csv", [](Lines& lines) { lines[0] = "t_s,pos1,pos2,pos3,pos4,tau1_Nm,tau2_Nm,tau3_Nm,tau4_Nm"; });
-  const ToolResult refused =
-      run({"delta-log", "import", file, "--robot", path("robot.urdf"), "-o", path("out.csv"), "--map-out", path("m.toml")});
+  const std::string file = workshop_.log(
+      "export.csv", [](Lines& lines) { lines[0] = "t_s,pos1,pos2,pos3,pos4,tau1_Nm,tau2_Nm,tau3_Nm,tau4_Nm"; });
+  const ToolResult refused = run(
+      {"delta-log", "import", file, "--robot", path("robot.urdf"), "-o", path("out.csv"), "--map-out", path("m.toml")});
   EXPECT_EQ(refused.code, 3);
   EXPECT_NE(refused.err.find("mend " + path("m.toml")), std::string::npos) << refused.err;
   EXPECT_EQ(refused.err.find("write a column map"), std::string::npos) << refused.err;
 }
 
 TEST_F(ImportTest, ListsAreSeparatedByCommasAndTakeNoFile) {
-  const std::string file =
-      workshop_.log("export.csv", [](Lines& lines) { lines[0] = "t_s,q1_rad,q2_rad,q3_rad,q4_rad,i1_A,i2_A,i3_A,i4_A"; });
+  const std::string file = workshop_.log(
+      "export.csv", [](Lines& lines) { lines[0] = "t_s,q1_rad,q2_rad,q3_rad,q4_rad,i1_A,i2_A,i3_A,i4_A"; });
   const Words import = {"delta-log", "import", "--robot", path("robot.urdf"), "-o", path("out.csv")};
   const ToolResult good = succeed(import + Words{"--torque-constant", "1,1,1,1", file});
   EXPECT_NE(good.out.find("1500 rows"), std::string::npos) << good.out;
@@ -107,13 +110,13 @@ TEST_F(ImportTest, RefusesFlagsThatMakeNoSense) {
 TEST_F(ImportTest, TwinCatScopeInEveryOptionOfItsExport) {
   if (exports().empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with exports/";
   const std::string robot = axis();
-  const std::string map =
-      workshop_.write("map.toml", map_channel("position", "func_OS", "deg") + map_channel("torque", "func_freesample", "mNm"));
+  const std::string map = workshop_.write(
+      "map.toml", map_channel("position", "func_OS", "deg") + map_channel("torque", "func_freesample", "mNm"));
   std::string first;
-  for (const char* name :
-       {"default", "ContainEOF_true", "DecimalMark_c", "separator_2", "ExcludeDoubleTimestamp_true-SortChannels_false"}) {
-    succeed(
-        {"delta-log", "import", exports() + "twincat_" + name + ".csv", "--robot", robot, "--map", map, "-o", path("out.csv")});
+  for (const char* name : {"default", "ContainEOF_true", "DecimalMark_c", "separator_2",
+                           "ExcludeDoubleTimestamp_true-SortChannels_false"}) {
+    succeed({"delta-log", "import", exports() + "twincat_" + name + ".csv", "--robot", robot, "--map", map, "-o",
+             path("out.csv")});
     const std::string log = read_text(path("out.csv"));
     const Lines lines = to_lines(log);
     ASSERT_EQ(lines.size(), 4987U) << name;  // 5 kHz until the slow group ends at 997 ms
@@ -131,9 +134,11 @@ TEST_F(ImportTest, Rosbag2OfAnArm) {
   const ToolResult open = run({"delta-log", "import", bag, "--robot", robot, "-o", path("out.csv")});
   EXPECT_EQ(open.code, 3);  // six joints and one drive: only the user knows which
   EXPECT_NE(open.err.find("/joint_states/elbow_joint/position"), std::string::npos) << open.err;
-  const std::string map = workshop_.write("map.toml", map_channel("position", "/joint_states/elbow_joint/position", "rad") +
-                                                          map_channel("torque", "/joint_states/elbow_joint/effort", "Nm"));
-  succeed({"delta-log", "import", bag, "--robot", robot, "--map", map, "-o", path("out.csv"), "--summary", path("summary.csv")});
+  const std::string map =
+      workshop_.write("map.toml", map_channel("position", "/joint_states/elbow_joint/position", "rad") +
+                                      map_channel("torque", "/joint_states/elbow_joint/effort", "Nm"));
+  succeed({"delta-log", "import", bag, "--robot", robot, "--map", map, "-o", path("out.csv"), "--summary",
+           path("summary.csv")});
   const auto summary = read_summary(path("summary.csv"));
   EXPECT_EQ(number(summary, "samples"), 3441);
   EXPECT_NEAR(number(summary, "rate_hz"), 125, 1e-6);

@@ -40,12 +40,13 @@ class Spoilt {
   static std::string robot_file() { return installed("robots/mujoco_delta4.urdf"); }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
   [[nodiscard]] ToolResult identify(const Words& flags = {}) const {
-    return run(Words{"delta-identify", robot_file()} + logs_ + Words{"-o", path("params.csv"), "--summary", path("summary.csv")} +
-               flags);
+    return run(Words{"delta-identify", robot_file()} + logs_ +
+               Words{"-o", path("params.csv"), "--summary", path("summary.csv")} + flags);
   }
   [[nodiscard]] ToolResult check(const Words& flags = {}) const {
     return run(Words{"delta-log", "check"} + logs_ +
-               Words{"--robot", robot_file(), "--summary", path("summary.csv"), "--report", path("check.html")} + flags);
+               Words{"--robot", robot_file(), "--summary", path("summary.csv"), "--report", path("check.html")} +
+               flags);
   }
   [[nodiscard]] ToolResult diagnose(const Words& flags) const {
     return run(Words{"delta-diagnose", robot_file()} + logs_ +
@@ -103,7 +104,8 @@ TEST(FaultyLogs, ADelayThatIsKeptIsAWarning) {
 TEST(FaultyLogs, FaultsEndWithTheirNameAndNoParameters) {
   const std::vector<double> degrees = testing_support::for_limbs(4, 57.29577951308232, 57.29577951308232);
   const std::vector<std::pair<std::function<void(Log&)>, std::string>> faults = {
-      {[](Log& log) { log.tau.col(1) *= -1; }, "torque of drive 2 has the wrong sign: residual [0-9.]+ % as given, [0-9.]+ % so"},
+      {[](Log& log) { log.tau.col(1) *= -1; },
+       "torque of drive 2 has the wrong sign: residual [0-9.]+ % as given, [0-9.]+ % so"},
       {[](Log& log) { log.tau *= -1; }, "torque of all drives has the wrong sign"},
       {[](Log& log) { log.tau.col(1).swap(log.tau.col(2)); }, "torques of drives 2 and 3 are swapped"},
       {[&](Log& log) {
@@ -159,7 +161,8 @@ TEST(FaultyLogs, EverySentenceIsSaidOnce) {
     return kinds;
   };
   for (const ToolResult& result : {logs.identify(), logs.check()}) {
-    for (const auto& [kind, count] : told(result)) EXPECT_EQ(count, 2) << kind << ", two logs\n" << result.out << result.err;
+    for (const auto& [kind, count] : told(result))
+      EXPECT_EQ(count, 2) << kind << ", two logs\n" << result.out << result.err;
   }
   for (const char* key : {"check_missing_numbers_drive1", "check_missing_numbers_drive4", "check_spikes_drive4"})
     EXPECT_EQ(logs.summary().count(key), 1U) << key;
@@ -204,7 +207,8 @@ TEST(FaultyLogs, ATorqueThatNothingExplainsIsAFault) {
   EXPECT_THAT(page, HasSubstr("None of these values is to be trusted"));
 }
 
-// Limbs and yaw that do not belong together are told where the yaw's residual knows; mirrored as a whole it is the same machine.
+// Limbs and yaw that do not belong together are told where the yaw's residual knows; mirrored as a whole it is the same
+// machine.
 TEST(FaultyLogs, AMachineThatIsMirroredInPartIsTold) {
   const auto turn_yaw = [](Log& log) {
     log.q.col(3) *= -1;
@@ -220,7 +224,8 @@ TEST(FaultyLogs, AMachineThatIsMirroredInPartIsTold) {
     const ToolResult check = logs.check();
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_THAT(check.err,
-                ContainsRegex("limbs and the sign of drive 4 do not belong together: residual of drive 4 [0-9.]+ N m as given"));
+                ContainsRegex(
+                    "limbs and the sign of drive 4 do not belong together: residual of drive 4 [0-9.]+ N m as given"));
     EXPECT_THAT(check.err, HasSubstr("counter-clockwise from limb 1 seen from above"));
     EXPECT_EQ(logs.summary().count("check_mirrored_drive4"), 1U);
   }
@@ -239,8 +244,8 @@ TEST(FaultyLogs, TheCommandOfTheDiagnosisHasTheFilesThatAreKnown) {
   EXPECT_THAT(fit.out, HasSubstr(late.path("identification_fast.csv") + " " + late.path("identification_slow.csv") +
                                  " --holdout ANOTHER_LOG.csv"));
   EXPECT_THAT(fit.out, HasSubstr("(ANOTHER_LOG.csv: a log that took no part in the fit)"));
-  const ToolResult check =
-      run({"delta-validate", Spoilt::robot_file(), "--params", late.path("params.csv"), late.path("identification_fast.csv")});
+  const ToolResult check = run({"delta-validate", Spoilt::robot_file(), "--params", late.path("params.csv"),
+                                late.path("identification_fast.csv")});
   EXPECT_THAT(check.out, HasSubstr("TRAINING_LOGS.csv --holdout " + late.path("identification_fast.csv")));
   EXPECT_THAT(check.out, HasSubstr("(TRAINING_LOGS.csv: the logs that the parameters were identified from)"));
 }
@@ -255,12 +260,13 @@ TEST(FaultyLogs, ARefusedDiagnosisWritesThePageOfTheCheck) {
 
 class ClosedLoop : public VirtualRobot {};
 
-// The loops answer the steps of the encoders with real torque, while the accelerations beside it are not all seen. In a slow motion
-// this stood out as a torque that comes 2 ms early.
+// The loops answer the steps of the encoders with real torque, while the accelerations beside it are not all seen. In a
+// slow motion this stood out as a torque that comes 2 ms early.
 TEST_F(ClosedLoop, AnswersOfTheLoopsToTheEncodersAreNoDelay) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     plan("slow_plan.csv", 30, 0.1, seed);
-    const Words sensors = {"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)};
+    const Words sensors = {"--encoder-bits",    "19",     "--torque-noise-n-m",
+                           "0.1,0.1,0.1,0.012", "--seed", std::to_string(seed)};
     succeed(simulate("slow_plan.csv", "slow.csv", sensors));
     const ToolResult check =
         run({"delta-log", "check", path("slow.csv"), "--robot", path("robot.urdf"), "--summary", path("check.csv")});

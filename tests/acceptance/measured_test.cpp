@@ -1,5 +1,5 @@
-// Measured single drives through the installed tools, with default flags: exit codes and figures. The logs may not travel with the
-// product.
+// Measured single drives through the installed tools, with default flags: exit codes and figures. The logs may not
+// travel with the product.
 
 #include <cmath>
 #include <cstdlib>
@@ -18,15 +18,16 @@ struct Bench {
   const char* name;
   Words robot;  ///< flags of delta-model create axis
   const char *train, *holdout;
-  int identify;             ///< exit code
-  double inertia, coulomb;  ///< by an independent least squares at a cut-off of its own [kg m^2, N m]; 0: the log does not tell
-  double viscous;           ///< [N m s/rad]
-  double length;            ///< J / (m c) of a pendulum [m]; 0: none
+  int identify;  ///< exit code
+  /// By an independent least squares at a cut-off of its own [kg m^2, N m]; 0: the log does not tell
+  double inertia, coulomb;
+  double viscous;  ///< [N m s/rad]
+  double length;   ///< J / (m c) of a pendulum [m]; 0: none
 };
 
-// The pendulum: its torque holds nothing of the inertia above 4 to 7 Hz (the drive's own loop answers the steps of its encoder
-// there), and somebody pushes it in two of the logs. The fifth log is 4 s of a torque full of short peaks of 17 N m: what it tells is known to
-// a third only, which is not to be trusted; as a hold-out log it serves.
+// The pendulum: its torque holds nothing of the inertia above 4 to 7 Hz (the drive's own loop answers the steps of its
+// encoder there), and somebody pushes it in two of the logs. The fifth log is 4 s of a torque full of short peaks of 17
+// N m: what it tells is known to a third only, which is not to be trusted; as a hold-out log it serves.
 const Bench kBenches[] = {
     {"ddp", {"--arm", "0.5"}, "dfki/ddp", "dfki/dircol", 0, 0.193, 0.165, 0, 0.5},
     {"dircol", {"--arm", "0.5"}, "dfki/dircol", "dfki/ddp", 0, 0.188, 0.161, 0, 0.5},
@@ -85,13 +86,16 @@ class MeasuredDrive : public ::testing::TestWithParam<Bench> {};
 TEST_P(MeasuredDrive, IsIdentifiedAndValidated) {
   const Bench& bench = GetParam();
   const std::string train = measured(bench.train), holdout = measured(bench.holdout);
-  if (train.empty() || holdout.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured/" << bench.train;
+  if (train.empty() || holdout.empty())
+    GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured/" << bench.train;
   const testing::TemporaryFolder folder;
-  const std::string robot = folder.path("axis.urdf"), params = folder.path("params.csv"), base = folder.path("base.csv");
+  const std::string robot = folder.path("axis.urdf"), params = folder.path("params.csv"),
+                    base = folder.path("base.csv");
   succeed(Words{"delta-model", "create", "axis", "-o", robot} + bench.robot);
   const ToolResult identify = run({"delta-identify", robot, train, "-o", params, "--base", base});
   EXPECT_EQ(identify.code, bench.identify) << identify.out << identify.err;
-  const ToolResult validate = run({"delta-validate", robot, holdout, "--params", params, "--summary", folder.path("v.csv")});
+  const ToolResult validate =
+      run({"delta-validate", robot, holdout, "--params", params, "--summary", folder.path("v.csv")});
   EXPECT_EQ(validate.code, 0) << validate.out << validate.err;
 
   const std::pair<double, double> inertia = base_parameter(base, "Iyy");
@@ -101,7 +105,8 @@ TEST_P(MeasuredDrive, IsIdentifiedAndValidated) {
   expect_near(base_parameter(base, "coulomb"), bench.coulomb, "Coulomb friction");
   expect_near(base_parameter(base, "viscous"), bench.viscous, "viscous friction");
   if (bench.length == 0) return;
-  const double length = inertia.first / std::hypot(base_parameter(base, "mcx").first, base_parameter(base, "mcz").first);
+  const double length =
+      inertia.first / std::hypot(base_parameter(base, "mcx").first, base_parameter(base, "mcz").first);
   std::cout << "  J / (m c) " << length << " m\n";
   EXPECT_NEAR(length, bench.length, 0.015 * bench.length);
 }

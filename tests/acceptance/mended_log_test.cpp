@@ -107,7 +107,8 @@ std::vector<Fault> faults() {
       {"StampsOfAnHourInSinglePrecision",
        [](Table& rows, auto&) {
          for (std::size_t k = 0; k < rows.size(); ++k) {
-           rows[k][0] = fmt::format("{:.7f}", static_cast<double>(static_cast<float>(3600.0 + 0.001 * static_cast<double>(k))));
+           rows[k][0] =
+               fmt::format("{:.7f}", static_cast<double>(static_cast<float>(3600.0 + 0.001 * static_cast<double>(k))));
          }
        },
        "samples were taken evenly"},
@@ -136,8 +137,8 @@ TEST_P(MendedLog, GivesTheFrictionOfTheMachine) {
     logs.push_back(folder.write(name, to_text(lines)));
   }
   // A fixed cut-off keeps it fast; the files themselves are what is on trial.
-  const ToolResult result = succeed({"delta-identify", installed("robots/mujoco_delta4.urdf"), logs[0], logs[1], "--cutoff-hz",
-                                     "40", "-o", folder.path("p.csv")});
+  const ToolResult result = succeed({"delta-identify", installed("robots/mujoco_delta4.urdf"), logs[0], logs[1],
+                                     "--cutoff-hz", "40", "-o", folder.path("p.csv")});
   EXPECT_TRUE(std::regex_search(result.out + result.err, std::regex(GetParam().note))) << result.out << result.err;
   const auto value_of = [](const std::string& file, const std::string& name) {
     for (const std::string& line : to_lines(read_text(file))) {
@@ -149,7 +150,8 @@ TEST_P(MendedLog, GivesTheFrictionOfTheMachine) {
     for (const std::string law : {".coulomb", ".viscous"}) {
       const double truth = value_of(installed("logs/mujoco_delta4/truth.csv"), joint + law);
       const double found = value_of(folder.path("p.csv"), joint + law);
-      EXPECT_LT(100.0 * std::abs(found / truth - 1.0), GetParam().percent) << joint << law << " " << found << " for " << truth;
+      EXPECT_LT(100.0 * std::abs(found / truth - 1.0), GetParam().percent)
+          << joint << law << " " << found << " for " << truth;
     }
   }
 }

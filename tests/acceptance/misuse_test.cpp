@@ -209,7 +209,8 @@ std::vector<Row> flags() {
        {"--base-radius is -0\\.2 m", "mend:"}},
       {"NegativeDensity",
        [](const W& w) {
-         return Words{"delta-model", "prior", w.path("robot.urdf"), "--strut-density-kg-m3", "-5", "-o", w.path("x.csv")};
+         return Words{"delta-model", "prior", w.path("robot.urdf"), "--strut-density-kg-m3",
+                      "-5",          "-o",    w.path("x.csv")};
        },
        2,
        {"density", "mend:"}},
@@ -244,15 +245,18 @@ TEST_P(Misuse, IsRefusedWithAMessageAndLeavesNothingBehind) {
 TEST(MissingEffects, AreToldByEveryToolWithTheFlagThatMendsIt) {
   const Workshop w;
   const std::string params = w.write("improved.csv", "# effects: effects.csv\n" + to_text(W::prior()));
-  const std::string effects = w.path("effects.csv"), given = "improved.csv holds only together with the effects of " + effects;
+  const std::string effects = w.path("effects.csv"),
+                    given = "improved.csv holds only together with the effects of " + effects;
   const Words convert = {"delta-model", "convert", w.path("robot.urdf"), "--params", params, "--to",
                          "header",      "-o",      w.path("m.hpp")};
-  const Words tools[] = {w.validate("", "", params),
-                         w.identify("", "", params),
-                         convert,
-                         {"delta-diagnose", w.path("robot.urdf"), w.path("log.csv"), "--params", params, "-o", w.path("d.csv")}};
+  const Words tools[] = {
+      w.validate("", "", params),
+      w.identify("", "", params),
+      convert,
+      {"delta-diagnose", w.path("robot.urdf"), w.path("log.csv"), "--params", params, "-o", w.path("d.csv")}};
   const auto told = [](const Words& words) { return run(words).err; };
-  EXPECT_NE(told(convert).find(given + ", which is not there: give --effects with the place of effects.csv"), std::string::npos);
+  EXPECT_NE(told(convert).find(given + ", which is not there: give --effects with the place of effects.csv"),
+            std::string::npos);
   (void)w.write("effects.csv", "effect,joint,parameter,value,unit,std\ntorque_offset,drive1,offset,0.1,N*m,\n");
   for (const Words& words : tools) {
     EXPECT_NE(told(words).find("warning: " + params + " holds only together with the effects of " + effects +

@@ -29,21 +29,22 @@ TEST_P(Counts, AreThoseOfThePaper) {
   const Count& count = GetParam();
   const testing::TemporaryFolder folder;
   const std::string file = folder.path("info.csv");
-  succeed(Words{"delta-model", "info", installed(std::string("robots/") + count.robot), "--summary", file} + count.flags);
+  succeed(Words{"delta-model", "info", installed(std::string("robots/") + count.robot), "--summary", file} +
+          count.flags);
   const auto summary = read_summary(file);
   EXPECT_EQ(number(summary, "base_parameters"), count.base);
   EXPECT_EQ(number(summary, "columns"), count.columns);
   EXPECT_GT(number(summary, "rank_gap"), 1e4) << "the count is not certain";
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, Counts,
-                         ::testing::Values(Count{"Delta4", "irb360_6_1600.urdf", {}, 37, 70},
-                                           Count{"Delta4WithoutTool", "irb360_6_1600.urdf", {"--without-tool"}, 34, 60},
-                                           Count{"Delta4IndividualLimbs", "irb360_6_1600.urdf", {"--individual-limbs"}, 59, 110},
-                                           Count{"Delta4OfMuJoCo", "mujoco_delta4.urdf", {}, 37, 70},
-                                           Count{"Delta3", "delta3.urdf", {}, 18, 36},
-                                           Count{"DeltaRl5", "delta_rl5.urdf", {}, 18, 36}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Robots, Counts,
+    ::testing::Values(Count{"Delta4", "irb360_6_1600.urdf", {}, 37, 70},
+                      Count{"Delta4WithoutTool", "irb360_6_1600.urdf", {"--without-tool"}, 34, 60},
+                      Count{"Delta4IndividualLimbs", "irb360_6_1600.urdf", {"--individual-limbs"}, 59, 110},
+                      Count{"Delta4OfMuJoCo", "mujoco_delta4.urdf", {}, 37, 70},
+                      Count{"Delta3", "delta3.urdf", {}, 18, 36}, Count{"DeltaRl5", "delta_rl5.urdf", {}, 18, 36}),
+    [](const auto& one) { return one.param.name; });
 
 // --- create, info, prior ------------------------------------------------------------------------
 
@@ -59,7 +60,8 @@ class Create : public ::testing::TestWithParam<Type> {};
 
 TEST_P(Create, ReadsBackToWhatWasAskedFor) {
   const testing::TemporaryFolder folder;
-  const std::string robot = folder.path("robot.urdf"), summary = folder.path("info.csv"), prior = folder.path("prior.csv");
+  const std::string robot = folder.path("robot.urdf"), summary = folder.path("info.csv"),
+                    prior = folder.path("prior.csv");
   succeed(Words{"delta-model", "create"} + GetParam().create + Words{"-o", robot});
   const std::string first = folder.read("robot.urdf");
 
@@ -94,24 +96,25 @@ TEST_P(Create, ReadsBackToWhatWasAskedFor) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Types, Create,
-                         ::testing::Values(Type{"delta3",
-                                                {"delta3", "--base-radius", "0.15", "--platform-radius", "0.04", "--upper-arm",
-                                                 "0.3", "--strut", "0.7", "--strut-spacing", "0.08"}},
-                                           Type{"delta4",
-                                                {"delta4", "--base-radius", "0.21", "--platform-radius", "0.055", "--upper-arm",
-                                                 "0.5", "--strut", "1.1", "--telescope-base-m", "0.01,0,0.05",
-                                                 "--telescope-platform-m", "0,0,0.02", "--gravity-m-s2", "9.80665"}},
-                                           Type{"delta4_hanging_on_a_wall",
-                                                {"delta4", "--base-radius", "0.2", "--platform-radius", "0.05", "--upper-arm",
-                                                 "0.525", "--strut", "1.106", "--gravity-direction", "1,0,0"}},
-                                           Type{"linear_delta3",
-                                                {"linear-delta3", "--base-radius", "0.3", "--platform-radius", "0.06", "--strut",
-                                                 "0.8", "--drive-range-m", "0,0.9"}},
-                                           Type{"tilted_linear_delta3",
-                                                {"linear-delta3", "--base-radius", "0.5", "--platform-radius", "0.06", "--strut",
-                                                 "0.8", "--rail-tilt-rad", "0.3", "--drive-range-m", "0,0.5"}}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Types, Create,
+    ::testing::Values(Type{"delta3",
+                           {"delta3", "--base-radius", "0.15", "--platform-radius", "0.04", "--upper-arm", "0.3",
+                            "--strut", "0.7", "--strut-spacing", "0.08"}},
+                      Type{"delta4",
+                           {"delta4", "--base-radius", "0.21", "--platform-radius", "0.055", "--upper-arm", "0.5",
+                            "--strut", "1.1", "--telescope-base-m", "0.01,0,0.05", "--telescope-platform-m", "0,0,0.02",
+                            "--gravity-m-s2", "9.80665"}},
+                      Type{"delta4_hanging_on_a_wall",
+                           {"delta4", "--base-radius", "0.2", "--platform-radius", "0.05", "--upper-arm", "0.525",
+                            "--strut", "1.106", "--gravity-direction", "1,0,0"}},
+                      Type{"linear_delta3",
+                           {"linear-delta3", "--base-radius", "0.3", "--platform-radius", "0.06", "--strut", "0.8",
+                            "--drive-range-m", "0,0.9"}},
+                      Type{"tilted_linear_delta3",
+                           {"linear-delta3", "--base-radius", "0.5", "--platform-radius", "0.06", "--strut", "0.8",
+                            "--rail-tilt-rad", "0.3", "--drive-range-m", "0,0.5"}}),
+    [](const auto& one) { return one.param.name; });
 
 TEST(Create, MakesAnAxis) {
   const testing::TemporaryFolder folder;
@@ -124,7 +127,8 @@ TEST(Create, MakesAnAxis) {
   }
 }
 
-// The advice says the flags that make the same machine: gravity acts along a vertical axis, and at 60 degrees to one that leans by 30.
+// The advice says the flags that make the same machine: gravity acts along a vertical axis, and at 60 degrees to one
+// that leans by 30.
 TEST(Create, OfAnAxisThatIsNotHorizontalNamesTheGravityThatIsAlike) {
   const testing::TemporaryFolder folder;
   const Words create = {"delta-model", "create", "axis", "--arm", "0.3", "-o", folder.path("axis.urdf")};

@@ -1,4 +1,5 @@
-// The virtual robot and the studies of the paper's examples, with the installed tools, against the figures that were promised.
+// The virtual robot and the studies of the paper's examples, with the installed tools, against the figures that were
+// promised.
 
 #include <cmath>
 #include <fmt/format.h>
@@ -21,7 +22,8 @@ namespace {
 
 TEST_F(VirtualRobot, SameInputAndSeedGiveTheSameFile) {
   plan("t.csv", 1.5, 0.4, 1);
-  const Words noisy = {"--encoder-bits", "17", "--encoder-noise-rad", "1e-5", "--torque-noise-n-m", "0.1", "--seed", "4"};
+  const Words noisy = {"--encoder-bits", "17", "--encoder-noise-rad", "1e-5", "--torque-noise-n-m", "0.1",
+                       "--seed",         "4"};
   succeed(simulate("t.csv", "a.csv", noisy));
   succeed(simulate("t.csv", "b.csv", noisy));
   EXPECT_EQ(read_text(path("a.csv")), read_text(path("b.csv")));
@@ -32,8 +34,8 @@ TEST_F(VirtualRobot, SameInputAndSeedGiveTheSameFile) {
 TEST_F(VirtualRobot, InverseModeGivesTheModelItself) {
   plan("t.csv", 6, 0.3, 1);
   succeed(simulate("t.csv", "log.csv", {"--inverse"}));
-  run({"delta-identify", path("robot.urdf"), path("log.csv"), "--prior", path("truth.csv"), "--no-filter", "-o", path("p.csv"),
-       "--summary", path("identify.csv")});
+  run({"delta-identify", path("robot.urdf"), path("log.csv"), "--prior", path("truth.csv"), "--no-filter", "-o",
+       path("p.csv"), "--summary", path("identify.csv")});
   for (int j = 1; j <= 4; ++j) {
     figure(fmt::format("inverse_residual_drive{}", j),
            number(read_summary(path("identify.csv")), fmt::format("rms_residual_drive{}", j)), 1e-9);
@@ -45,8 +47,8 @@ TEST_F(VirtualRobot, TheTorqueOfTheLogIsThatOfTheMotionAndEnergyIsKept) {
   succeed(simulate("t.csv", "log.csv", {"--with-derivatives"}));
   const auto summary = read_summary(path("summary.csv"));
   figure("energy_imbalance_joule", std::abs(number(summary, "energy_imbalance")), 1e-7);
-  succeed(
-      {"delta-validate", path("robot.urdf"), "--params", path("truth.csv"), path("log.csv"), "--no-filter", "-o", path("r.csv")});
+  succeed({"delta-validate", path("robot.urdf"), "--params", path("truth.csv"), path("log.csv"), "--no-filter", "-o",
+           path("r.csv")});
   const CsvTable table = read_csv(path("r.csv"));
   int off = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -64,23 +66,24 @@ TEST_F(VirtualRobot, TheTorqueOfTheLogIsThatOfTheMotionAndEnergyIsKept) {
 TEST_F(VirtualRobot, AnIdentificationFindsTheTruthInItsIntervals) {
   plan("fast.csv", 10, 0.4, 3);
   plan("slow.csv", 10, 0.1, 4);
-  const Words sensors = {"--encoder-bits", "19", "--torque-noise-n-m", "0.1,0.1,0.1,0.012", "--control-rate-hz", "4000"};
+  const Words sensors = {"--encoder-bits",    "19",  "--torque-noise-n-m", "0.1,0.1,0.1,0.012",
+                         "--control-rate-hz", "4000"};
   succeed(simulate("fast.csv", "log_fast.csv", sensors));
   succeed(simulate("slow.csv", "log_slow.csv", sensors + Words{"--seed", "2"}));
   // Priors 20 % off.
   ParameterTable prior = read_parameters(path("truth.csv"));
   for (ParameterEntry& entry : prior.entries) entry.value *= 0.8;
   write_parameters(path("prior.csv"), prior);
-  const ToolResult identified = run({"delta-identify", path("robot.urdf"), path("log_fast.csv"), path("log_slow.csv"), "--prior",
-                                     path("prior.csv"), "-o", path("p.csv")});
+  const ToolResult identified = run({"delta-identify", path("robot.urdf"), path("log_fast.csv"), path("log_slow.csv"),
+                                     "--prior", path("prior.csv"), "-o", path("p.csv")});
   ASSERT_TRUE(identified.code == 0 || identified.code == 5) << identified.err;
   const ParameterTable truth = read_parameters(path("truth.csv")), found = read_parameters(path("p.csv"));
   double worst = 0;
   for (const ParameterEntry& entry : found.entries) {
     if (entry.name.rfind("drive", 0) != 0 || entry.name.find('.') == std::string::npos) continue;
     const double error = std::abs(entry.value - truth.find(entry.name)->value);
-    std::cout << fmt::format("  {}: {:.5g}, truth {:.5g}, std {:.2g}\n", entry.name, entry.value, truth.find(entry.name)->value,
-                             entry.std);
+    std::cout << fmt::format("  {}: {:.5g}, truth {:.5g}, std {:.2g}\n", entry.name, entry.value,
+                             truth.find(entry.name)->value, entry.std);
     worst = std::max(worst, error / entry.std);
   }
   figure("friction_error_in_standard_deviations", worst, 4);
@@ -88,9 +91,10 @@ TEST_F(VirtualRobot, AnIdentificationFindsTheTruthInItsIntervals) {
 
 TEST_F(VirtualRobot, EffectsComeFromAFileAsFromTheCommandLine) {
   plan("t.csv", 1, 0.4, 1);
-  (void)folder.write("effects.csv",
-                     "effect,joint,parameter,value,unit,std\n"
-                     "stribeck,drive2,friction,2,N*m,0.1\nstribeck,drive2,rate,0.25,rad/s,\nstribeck,drive2,exponent,2,,\n");
+  (void)folder.write(
+      "effects.csv",
+      "effect,joint,parameter,value,unit,std\n"
+      "stribeck,drive2,friction,2,N*m,0.1\nstribeck,drive2,rate,0.25,rad/s,\nstribeck,drive2,exponent,2,,\n");
   succeed(simulate("t.csv", "file.csv", {"--effects", path("effects.csv")}));
   succeed(simulate("t.csv", "flag.csv", {"--effect", "stribeck@drive2:friction=2,rate=0.25,exponent=2"}));
   succeed(simulate("t.csv", "none.csv"));
@@ -106,7 +110,8 @@ TEST_F(VirtualRobot, AnUnknownEffectIsRefusedWithTheKnownOnes) {
   const ToolResult key = run(simulate("t.csv", "log.csv", {"--effect", "stribeck@drive1:size=3"}));
   EXPECT_EQ(key.code, 2);
   EXPECT_NE(key.err.find("friction, rate, exponent"), std::string::npos) << key.err;
-  const ToolResult joint = run(simulate("t.csv", "log.csv", {"--effect", "stribeck@drive9:friction=1,rate=1,exponent=1"}));
+  const ToolResult joint =
+      run(simulate("t.csv", "log.csv", {"--effect", "stribeck@drive9:friction=1,rate=1,exponent=1"}));
   EXPECT_EQ(joint.code, 2) << "a flag is wrong, not a file";
   EXPECT_NE(joint.err.find("drive4"), std::string::npos) << joint.err;
   EXPECT_FALSE(fs::exists(path("log.csv")));
@@ -135,7 +140,8 @@ TEST_F(VirtualRobot, AMotionBeyondTheTorqueIsToldAsSuch) {
 
 TEST_F(VirtualRobot, InverseModeRefusesASpringAndPlay) {
   plan("t.csv", 1, 0.4, 1);
-  for (const char* effect : {"joint_elasticity@drive2:inertia_over_stiffness=1e-5", "backlash@drive2:share=0.6,gap=0.01"}) {
+  for (const char* effect :
+       {"joint_elasticity@drive2:inertia_over_stiffness=1e-5", "backlash@drive2:share=0.6,gap=0.01"}) {
     const ToolResult refused = run(simulate("t.csv", "log.csv", {"--inverse", "--effect", effect}));
     EXPECT_EQ(refused.code, 2) << refused.out << refused.err;
     EXPECT_NE(refused.err.find("drive 2 has a spring or play"), std::string::npos) << refused.err;
@@ -236,8 +242,8 @@ TEST(Studies, IndustrialRobotNeedsItsSpindleMendedByHand) {
   const auto summary = study(folder, "industrial.sh");
   figure("rms_spindle_identified", number(summary, "rms_identified_drive4"), 0.25);
   figure("rms_spindle_by_hand", number(summary, "rms_by_hand_drive4"), 0.18);
-  figure("rms_spindle_by_hand_over_identified", number(summary, "rms_by_hand_drive4") / number(summary, "rms_identified_drive4"),
-         0.9);
+  figure("rms_spindle_by_hand_over_identified",
+         number(summary, "rms_by_hand_drive4") / number(summary, "rms_identified_drive4"), 0.9);
   // What the slow motion asks for goes the way of the paper's 5 and 0.75.
   EXPECT_GT(number(summary, "viscous_factor"), 2.5);
   EXPECT_LT(number(summary, "coulomb_factor"), 0.9);

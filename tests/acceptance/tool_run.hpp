@@ -179,7 +179,8 @@ inline double number(const std::map<std::string, std::string>& summary, const st
 
 /// Prints what was reached beside what was wanted, for reports, and checks it.
 inline void figure(const std::string& name, double value, double target) {
-  std::cout << "figure " << name << " " << value << " target " << target << (value <= target ? "" : "  MISSED") << std::endl;
+  std::cout << "figure " << name << " " << value << " target " << target << (value <= target ? "" : "  MISSED")
+            << std::endl;
   ::testing::Test::RecordProperty(name, std::to_string(value));
   EXPECT_LE(value, target) << name;
 }

@@ -29,7 +29,8 @@ class VirtualRobot : public ::testing::Test {
   /// Fourier motion from the tests' own generator, so that this test stands without delta-excite.
   void plan(const std::string& name, double duration_s, double frequency_hz, std::uint64_t seed) const {
     const auto robot = make_robot(read_robot_file(path("robot.urdf")));
-    const Eigen::VectorXd p = values(read_parameters(path("truth.csv")), robot->parameter_names(), robot->parameter_units());
+    const Eigen::VectorXd p =
+        values(read_parameters(path("truth.csv")), robot->parameter_names(), robot->parameter_units());
     testing_support::SyntheticOptions options;
     options.duration_s = duration_s;
     options.base_frequency_hz = frequency_hz;

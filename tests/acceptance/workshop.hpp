@@ -108,7 +108,8 @@ class Workshop {
   }
 
   /// delta-identify on this folder. Missing arguments stand for the good files. A fixed cut-off keeps it fast.
-  [[nodiscard]] Words identify(const std::string& log = "", const std::string& robot = "", const std::string& prior = "") const {
+  [[nodiscard]] Words identify(const std::string& log = "", const std::string& robot = "",
+                               const std::string& prior = "") const {
     return {"delta-identify",
             robot.empty() ? path("robot.urdf") : robot,
             log.empty() ? path("log.csv") : log,
@@ -123,7 +124,8 @@ class Workshop {
             "--cutoff-hz",
             "50"};
   }
-  [[nodiscard]] Words validate(const std::string& log = "", const std::string& robot = "", const std::string& params = "") const {
+  [[nodiscard]] Words validate(const std::string& log = "", const std::string& robot = "",
+                               const std::string& params = "") const {
     return {"delta-validate",
             robot.empty() ? path("robot.urdf") : robot,
             log.empty() ? path("log.csv") : log,

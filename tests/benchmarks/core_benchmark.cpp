@@ -1,5 +1,6 @@
 /// \file
-/// Time of the core's calls for one state of a delta4, in float and double: mean, and the worst of the repetitions beside it.
+/// Time of the core's calls for one state of a delta4, in float and double: mean, and the worst of the repetitions
+/// beside it.
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
@@ -67,7 +68,8 @@ void motion(benchmark::State& state) {
 
 template <class T>
 void torque(benchmark::State& state) {
-  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return inverse_dynamics<Layout>(g, m, s.p); });
+  after_motion<T>(state,
+                  [](const auto& g, const auto& s, const auto& m) { return inverse_dynamics<Layout>(g, m, s.p); });
 }
 
 template <class T>
@@ -81,7 +83,8 @@ void full_regressor(benchmark::State& state) {
 
 template <class T>
 void inertia(benchmark::State& state) {
-  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return mass_matrix<Layout>(g, m.posture, s.p); });
+  after_motion<T>(state,
+                  [](const auto& g, const auto& s, const auto& m) { return mass_matrix<Layout>(g, m.posture, s.p); });
 }
 
 /// Torques of the state serve as what to accelerate with.
@@ -97,7 +100,8 @@ void acceleration(benchmark::State& state) {
 
 template <class T>
 void equations(benchmark::State& state) {
-  after_motion<T>(state, [](const auto& g, const auto& s, const auto& m) { return equations_of_motion<Layout>(g, m, s.p); });
+  after_motion<T>(state,
+                  [](const auto& g, const auto& s, const auto& m) { return equations_of_motion<Layout>(g, m, s.p); });
 }
 
 template <class T>
@@ -124,8 +128,12 @@ double worst(const std::vector<double>& times) {
   return *std::max_element(times.begin(), times.end());
 }
 
-#define DELTADYN_BENCHMARK(name) \
-  BENCHMARK(name)->Repetitions(20)->ReportAggregatesOnly()->ComputeStatistics("worst", worst)->Unit(benchmark::kMicrosecond)
+#define DELTADYN_BENCHMARK(name)          \
+  BENCHMARK(name)                         \
+      ->Repetitions(20)                   \
+      ->ReportAggregatesOnly()            \
+      ->ComputeStatistics("worst", worst) \
+      ->Unit(benchmark::kMicrosecond)
 
 DELTADYN_BENCHMARK(motion<double>);
 DELTADYN_BENCHMARK(motion<float>);

@@ -1,6 +1,6 @@
 /// \file
-/// Time of a controller's call for one set point of a delta4, rigid and with seven effects, in float and double: the mean over random
-/// set points, and beside it the worst set point.
+/// Time of a controller's call for one set point of a delta4, rigid and with seven effects, in float and double: the
+/// mean over random set points, and beside it the worst set point.
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,8 @@ void call(Controller& control, const SetPoint<T>& point) {
   benchmark::DoNotOptimize(tau);
 }
 
-/// Of each set point the best of some rounds, so that what else the machine does does not count; of these the worst [us].
+/// Of each set point the best of some rounds, so that what else the machine does does not count; of these the worst
+/// [us].
 template <class T, class Controller>
 double worst_set_point(Controller& control, const std::array<SetPoint<T>, 256>& points) {
   constexpr int kRounds = 30, kCalls = 20;

@@ -30,8 +30,8 @@ TEST(SettleRulings, SaysWhatHoldsAtTheEnd) {
   out.named = {named};
   const std::string like = kLikeAnother;
   out.considered = {considered("convex_viscous", kFound), considered("stribeck", like + "convex_viscous"),
-                    considered("shear_thinning", like + "convex_viscous"), considered("hysteresis", like + "convex_viscous"),
-                    considered("backlash", "no evidence")};
+                    considered("shear_thinning", like + "convex_viscous"),
+                    considered("hysteresis", like + "convex_viscous"), considered("backlash", "no evidence")};
   settle_rulings(out);
   EXPECT_EQ(out.considered[0].ruling, "fits, but is not confirmed");
   EXPECT_EQ(out.considered[1].ruling, kFound);

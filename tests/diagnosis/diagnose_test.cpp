@@ -1,4 +1,5 @@
-// The diagnosis of one drive with everyday dirt: a bristle and a ripple that the model knows, with and without an effect beside them.
+// The diagnosis of one drive with everyday dirt: a bristle and a ripple that the model knows, with and without an
+// effect beside them.
 
 #include "deltadyn/diagnosis/diagnose.hpp"
 
@@ -44,8 +45,10 @@ class DirtyAxis : public ::testing::Test {
     prior.head(10) << 2, 0, 0, 0, 0.4, 0.4, 0.4, 0, 0, 0;
     prior.tail(2) << 1, 1;
     // As it comes from a machine that was in order: the effect came later.
-    const Identification given = identify(*robot_, {dirty_log(11, 0), dirty_log(12, 0)}, prior, {}, IdentificationOptions{});
-    given_ = {given.fit.p, {}, given.processing.presliding, given.processing.presliding_damping_s, given.processing.ripples};
+    const Identification given =
+        identify(*robot_, {dirty_log(11, 0), dirty_log(12, 0)}, prior, {}, IdentificationOptions{});
+    given_ = {
+        given.fit.p, {}, given.processing.presliding, given.processing.presliding_damping_s, given.processing.ripples};
     options_.null_runs = 40;
     options_.processing.presliding = given_.presliding;
     options_.processing.presliding_damping_s = given_.presliding_damping_s;
@@ -85,7 +88,8 @@ TEST_F(DirtyAxis, NamesWhatCameBesideItAndProvesWhatIsWritten) {
   ASSERT_EQ(own.presliding.size(), 1);
   EXPECT_GT(own.presliding(0), 0);
   EXPECT_FALSE(own.ripples.empty());
-  const WrittenModel written{result_.improved->fit.p, result_.effects, own.presliding, own.presliding_damping_s, own.ripples};
+  const WrittenModel written{result_.improved->fit.p, result_.effects, own.presliding, own.presliding_damping_s,
+                             own.ripples};
   const auto rms = [&](const WrittenModel& model) {
     return validate_written(*robot_, {holdout_}, model, {}, true, false).validation.drives[0].rms_residual;
   };

@@ -28,8 +28,10 @@ struct Searched {
     const double n = share * 2 * std::numbers::pi / range;
     Eigen::ArrayXd wave = 0.8 * (n * log.q.col(0).array() + 0.3).cos();
     if (friction)
-      wave *=
-          testing::MultiSine{plain.base_hz, plain.amplitude}.at(log.t_s, 1, 0.7 * static_cast<double>(plain.seed)).array().sign();
+      wave *= testing::MultiSine{plain.base_hz, plain.amplitude}
+                  .at(log.t_s, 1, 0.7 * static_cast<double>(plain.seed))
+                  .array()
+                  .sign();
     log.tau.col(0).array() += wave;
     ProcessingOptions processing;
     processing.cutoff_hz = 40;
@@ -44,8 +46,8 @@ struct Searched {
   }
   [[nodiscard]] static std::size_t find(const EffectSearch& search, EffectId id) {
     const auto& all = search.hypotheses();
-    return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), [&](const Hypothesis& one) { return one.id == id; }) -
-                                    all.begin());
+    return static_cast<std::size_t>(
+        std::find_if(all.begin(), all.end(), [&](const Hypothesis& one) { return one.id == id; }) - all.begin());
   }
 };
 

@@ -51,7 +51,8 @@ VectorXd noise(double correlation, unsigned seed) {
   NormalDistribution normal;
   VectorXd e(kRows);
   double last = normal(random);
-  for (Index k = 0; k < kRows; ++k) e(k) = last = correlation * last + std::sqrt(1 - correlation * correlation) * normal(random);
+  for (Index k = 0; k < kRows; ++k)
+    e(k) = last = correlation * last + std::sqrt(1 - correlation * correlation) * normal(random);
   return e;
 }
 

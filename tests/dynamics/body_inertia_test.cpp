@@ -50,8 +50,8 @@ class BodyOfPoints : public ::testing::Test {
   [[nodiscard]] Vector3<double> acceleration(const Vector3<double>& r) const {
     return body.a + body.w_d.cross(r) + body.w.cross(body.w.cross(r));
   }
-  /// Partial velocity of a point by qd, in the body's frame, and its rate as seen from a frame at rest: J_w turns with the body, and
-  /// Jd_w is the rate of its components there.
+  /// Partial velocity of a point by qd, in the body's frame, and its rate as seen from a frame at rest: J_w turns with
+  /// the body, and Jd_w is the rate of its components there.
   [[nodiscard]] Shares share(const Vector3<double>& r) const { return body.J_v - skew(r) * body.J_w; }
   [[nodiscard]] Shares share_rate(const Vector3<double>& r) const {
     return body.Jd_v - skew(r) * body.Jd_w - skew(body.w) * skew(r) * body.J_w;

@@ -81,8 +81,10 @@ TYPED_TEST(Equations, HoldInTaskCoordinates) {
     const Drives F = task.M * m.zdd + task.C * m.zd + task.g + task.f;
     const Drives tau = inverse_dynamics<Layout>(d.geometry, m, d.p);
     const auto J = task_jacobian(m.posture);
-    torque = std::max(torque, (J.transpose() * F - tau).norm() / ((J.transpose() * task.M * m.zdd).norm() + tau.norm()));
-    power = std::max(power, std::abs(F.dot(m.zd) - tau.dot(m.qd)) / (F.norm() * m.zd.norm() + tau.norm() * m.qd.norm()));
+    torque =
+        std::max(torque, (J.transpose() * F - tau).norm() / ((J.transpose() * task.M * m.zdd).norm() + tau.norm()));
+    power =
+        std::max(power, std::abs(F.dot(m.zd) - tau.dot(m.qd)) / (F.norm() * m.zd.norm() + tau.norm() * m.qd.norm()));
     energy = std::max(energy, std::abs(m.zd.dot(task.M * m.zd) - m.qd.dot(terms.M * m.qd)) / m.qd.dot(terms.M * m.qd));
     // d/dt of J^-T M J^-1 by the product rule, with the rate of M by dual numbers.
     const auto J_d = task_jacobian_rate(jacobian_rates(d.geometry, m));
@@ -109,7 +111,8 @@ TYPED_TEST(Equations, HaveTheChristoffelSymbolsAsCoriolisMatrix) {
     const auto geometry = cast_geometry<Number>(d.geometry);
     Posture<Number, TypeParam> nearby;
     ASSERT_EQ(posture_with_slopes(geometry, d.motion.posture, nearby), Status::ok);
-    const Matrix<Number, N, N> M = mass_matrix<Layout, Number, TypeParam>(geometry, nearby, d.p.template cast<Number>());
+    const Matrix<Number, N, N> M =
+        mass_matrix<Layout, Number, TypeParam>(geometry, nearby, d.p.template cast<Number>());
     Matrix<double, N, N> C = Matrix<double, N, N>::Zero();
     double size = 1e-6;
     for (int i = 0; i < N; ++i) {
@@ -138,7 +141,8 @@ TYPED_TEST(Equations, HaveTheGradientOfThePotentialAsGravity) {
     const Number V = potential_energy<Layout, Number, TypeParam>(geometry, nearby, d.p.template cast<Number>());
     const auto g = equations_of_motion<Layout>(d.geometry, d.motion, d.p).g;
     worst = std::max(worst, (g - V.slope).norm() / (1e-3 + g.norm()));
-    EXPECT_NEAR(V.value, (potential_energy<Layout>(d.geometry, d.motion.posture, d.p)), 1e-11 * (1 + std::abs(V.value)));
+    EXPECT_NEAR(V.value, (potential_energy<Layout>(d.geometry, d.motion.posture, d.p)),
+                1e-11 * (1 + std::abs(V.value)));
   }
   EXPECT_LT(worst, 1e-8);
 }
@@ -169,8 +173,8 @@ TYPED_TEST(Equations, AreTheSameInSinglePrecision) {
     d.next();
     const auto coarse = cast_geometry<float>(d.geometry);
     Motion<float, R> motion;
-    ASSERT_EQ(assemble_posture<float>(coarse, d.motion.posture.q.template cast<float>(), d.task.z.template cast<float>(),
-                                      motion.posture),
+    ASSERT_EQ(assemble_posture<float>(coarse, d.motion.posture.q.template cast<float>(),
+                                      d.task.z.template cast<float>(), motion.posture),
               Status::ok);
     set_drive_rates<float, R>(coarse, d.motion.qd.template cast<float>(), d.motion.qdd.template cast<float>(), motion);
     const auto fine = equations_of_motion<Layout>(d.geometry, d.motion, d.p);

@@ -52,7 +52,8 @@ TYPED_TEST(ForwardDynamics, DoesSoInSinglePrecision) {
     const Vector<float, Layout::kColumns> load = d.p.template cast<float>();
     const Floats tau = inverse_dynamics<Layout>(coarse, state, load);
     Floats qdd;
-    ASSERT_EQ((forward_dynamics<Layout, float, TypeParam>(coarse, state.posture, state.qd, tau, load, qdd)), Status::ok);
+    ASSERT_EQ((forward_dynamics<Layout, float, TypeParam>(coarse, state.posture, state.qd, tau, load, qdd)),
+              Status::ok);
     EXPECT_THAT(qdd, IsNear(state.qdd, 1e-3 * static_cast<double>(state.qdd.norm()))) << "trial " << trial;
   }
 }
@@ -80,8 +81,8 @@ class Simulation : public ::testing::Test {};
 using SimulatedRobots = ::testing::Types<Delta3, LinearDelta3, Delta4, Axis, LinearAxis>;
 TYPED_TEST_SUITE(Simulation, SimulatedRobots);
 
-// What the drives give is in the energy of the bodies or went into viscous friction, over 0.3 s of a fast motion. The work is
-// integrated beside the motion, by the same method of Runge and Kutta.
+// What the drives give is in the energy of the bodies or went into viscous friction, over 0.3 s of a fast motion. The
+// work is integrated beside the motion, by the same method of Runge and Kutta.
 TYPED_TEST(Simulation, BalancesTheEnergy) {
   using R = TypeParam;
   using Layout = ParameterLayout<R, Limbs::individual>;
@@ -90,7 +91,8 @@ TYPED_TEST(Simulation, BalancesTheEnergy) {
   const auto geometry = random_geometry<R>(random);
   const auto task = random_task<R>(random);
   auto p = random_parameters<Layout>(random);
-  for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) p(Layout::coulomb(joint)) = 0;  // a jump would spoil the method
+  // A jump would spoil the method
+  for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) p(Layout::coulomb(joint)) = 0;
   struct State {
     Drives q, qd;
     double work;

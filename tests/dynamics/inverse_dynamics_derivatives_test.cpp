@@ -40,7 +40,9 @@ TYPED_TEST(Derivatives, AreTheSlopesOfTheTorque) {
     const double h = 1e-3;  // the differences are of fourth order; by qd and qdd they are exact but for rounding
     for (int j = 0; j < N; ++j) {
       const Drives e = Drives::Unit(j);
-      const auto slope = [&](auto&& at) -> Drives { return (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h); };
+      const auto slope = [&](auto&& at) -> Drives {
+        return (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+      };
       by_q.col(j) = slope([&](double s) { return torque(q + s * e, qd, qdd); });
       by_qd.col(j) = slope([&](double s) { return torque(q, qd + s * e, qdd); });
       by_qdd.col(j) = slope([&](double s) { return torque(q, qd, qdd + s * e); });

@@ -45,7 +45,8 @@ void expect_regressor_times_parameters(Random& random) {
     Matrix<double, R::kDrives, Layout::kColumns> Y;
     regressor<Layout>(geometry, motion, Y);
     const double size = (Y.cwiseAbs() * p.cwiseAbs()).maxCoeff();
-    EXPECT_THAT(inverse_dynamics<Layout>(geometry, motion, p), IsNear((Y * p).eval(), 1e-13 * size)) << "trial " << trial;
+    EXPECT_THAT(inverse_dynamics<Layout>(geometry, motion, p), IsNear((Y * p).eval(), 1e-13 * size))
+        << "trial " << trial;
   }
 }
 
@@ -70,8 +71,8 @@ TYPED_TEST(InverseDynamics, AtRestIsTheGradientOfThePotentialPlusOffsets) {
     d.next();
     const auto& q = d.motion.posture.q;
     const auto load = load_of<TypeParam, Layout>(d.p);
-    const auto gradient =
-        to_vector<TypeParam::kDrives>(oracles::gravity_torque(oracle_of(d.geometry), load, numbers(q), numbers(d.task.z)));
+    const auto gradient = to_vector<TypeParam::kDrives>(
+        oracles::gravity_torque(oracle_of(d.geometry), load, numbers(q), numbers(d.task.z)));
     const auto still = Vector<double, TypeParam::kDrives>::Zero().eval();
     set_drive_rates<double, TypeParam>(d.geometry, still, still, d.motion);
     const auto offsets = d.p.template tail<TypeParam::kDrives>();
@@ -84,8 +85,10 @@ TYPED_TEST(InverseDynamics, ScalesAccelerationAndVelocityTorqueAsRigidBodiesDo) 
   auto& d = this->drawn;
   d.next();
   // Without friction and offset: tau(s qd, s^2 qdd) - tau(0, 0) = s^2 (tau(qd, qdd) - tau(0, 0)).
-  d.p.template tail<DrawnMotion<TypeParam>::Layout::kColumns - DrawnMotion<TypeParam>::Layout::kRotorInertia>().setZero();
-  d.p.template segment<2 * DrawnMotion<TypeParam>::Layout::kFrictionJoints>(DrawnMotion<TypeParam>::Layout::kFriction).setZero();
+  d.p.template tail<DrawnMotion<TypeParam>::Layout::kColumns - DrawnMotion<TypeParam>::Layout::kRotorInertia>()
+      .setZero();
+  d.p.template segment<2 * DrawnMotion<TypeParam>::Layout::kFrictionJoints>(DrawnMotion<TypeParam>::Layout::kFriction)
+      .setZero();
   const Drives qd = d.motion.qd, qdd = d.motion.qdd;
   const auto torque_at = [&](const Drives& velocity, const Drives& acceleration) {
     set_drive_rates<double, TypeParam>(d.geometry, velocity, acceleration, d.motion);
@@ -118,7 +121,8 @@ TYPED_TEST(InverseDynamics, BalancesThePowerAlongAMotion) {
     };
     const double h = 1e-4;
     const double rate = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
-    const double heat = static_cast<double>(oracles::friction_power(mechanism, load, numbers(q), numbers(qd), numbers(d.task.z)));
+    const double heat =
+        static_cast<double>(oracles::friction_power(mechanism, load, numbers(q), numbers(qd), numbers(d.task.z)));
     const double offset = qd.dot(d.p.template tail<TypeParam::kDrives>());
     const double power = qd.dot(this->torque(d.p));
     EXPECT_NEAR(rate, power - heat - offset, 1e-8 * this->size() * qd.norm());
@@ -152,7 +156,8 @@ class ThreefoldSymmetry : public ::testing::Test {};
 using SymmetricRobots = ::testing::Types<Delta3, LinearDelta3, Delta4>;
 TYPED_TEST_SUITE(ThreefoldSymmetry, SymmetricRobots);
 
-// The same motion one limb further on: torques move on by one limb, the fourth drive turns by 120 degrees and feels the same.
+// The same motion one limb further on: torques move on by one limb, the fourth drive turns by 120 degrees and feels the
+// same.
 TYPED_TEST(ThreefoldSymmetry, PermutesTheTorques) {
   using R = TypeParam;
   using Layout = ParameterLayout<R, Limbs::shared>;
@@ -179,7 +184,8 @@ TYPED_TEST(ThreefoldSymmetry, PermutesTheTorques) {
     if (R::kTelescope) q_there(R::kDrives - 1) += 2.0943951023931953;
     ASSERT_EQ(motion_from_drives<double>(geometry, q_there, turned(here.qd), turned(here.qdd), there), Status::ok);
     const Drives tau = inverse_dynamics<Layout>(geometry, here, p);
-    EXPECT_THAT(inverse_dynamics<Layout>(geometry, there, p), IsNear(turned(tau), 1e-11 * (1 + tau.cwiseAbs().maxCoeff())));
+    EXPECT_THAT(inverse_dynamics<Layout>(geometry, there, p),
+                IsNear(turned(tau), 1e-11 * (1 + tau.cwiseAbs().maxCoeff())));
   }
 }
 

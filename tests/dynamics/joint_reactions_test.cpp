@@ -18,7 +18,8 @@ class Reactions : public ::testing::Test {
  protected:
   void draw() {
     drawn.next();
-    ASSERT_EQ((joint_reactions<typename DrawnMotion<R>::Layout>(drawn.geometry, drawn.motion, drawn.p, loads)), Status::ok);
+    ASSERT_EQ((joint_reactions<typename DrawnMotion<R>::Layout>(drawn.geometry, drawn.motion, drawn.p, loads)),
+              Status::ok);
   }
   DrawnMotion<R> drawn{61};
   JointReactions<double, R> loads;
@@ -26,7 +27,8 @@ class Reactions : public ::testing::Test {
 using Robots = ::testing::Types<Delta3, LinearDelta3, Delta4, Axis, LinearAxis>;
 TYPED_TEST_SUITE(Reactions, Robots);
 
-// Principle of virtual power on one side, Newton and Euler on the other: the drives' share of the bearings' loads is the torque.
+// Principle of virtual power on one side, Newton and Euler on the other: the drives' share of the bearings' loads is
+// the torque.
 TYPED_TEST(Reactions, HoldTheDriveTorques) {
   using R = TypeParam;
   using Layout = typename DrawnMotion<R>::Layout;
@@ -37,7 +39,8 @@ TYPED_TEST(Reactions, HoldTheDriveTorques) {
     const Drives tau = inverse_dynamics<Layout>(d.geometry, d.motion, d.p);
     Drives expected = tau, found;
     for (int i = 0; i < R::kDrives; ++i) {  // what the motor itself takes
-      expected(i) -= d.p(Layout::viscous(i)) * d.motion.qd(i) + d.p(Layout::coulomb(i)) * (d.motion.qd(i) > 0 ? 1 : -1) +
+      expected(i) -= d.p(Layout::viscous(i)) * d.motion.qd(i) +
+                     d.p(Layout::coulomb(i)) * (d.motion.qd(i) > 0 ? 1 : -1) +
                      d.p(Layout::kRotorInertia + i) * d.motion.qdd(i) + d.p(Layout::kOffset + i);
     }
     for (int i = 0; i < R::kLimbs; ++i) {
@@ -68,7 +71,8 @@ Needed needed(const oracles::Pose<oracles::Dual<oracles::Dual<oracles::Real>>>& 
   }
   const Eigen::Matrix<Real, 3, 3> cross = X_dd * oracles::mass_moments(ten) * X.transpose();  // integral of a r^T
   const Eigen::Matrix<Real, 3, 1> force = (X_dd * oracles::mass_moments(ten)).col(3);
-  const Eigen::Matrix<Real, 3, 1> moment(cross(2, 1) - cross(1, 2), cross(0, 2) - cross(2, 0), cross(1, 0) - cross(0, 1));
+  const Eigen::Matrix<Real, 3, 1> moment(cross(2, 1) - cross(1, 2), cross(0, 2) - cross(2, 0),
+                                         cross(1, 0) - cross(0, 1));
   return {force.cast<double>(), moment.cast<double>()};
 }
 
@@ -103,7 +107,8 @@ TYPED_TEST(Reactions, BalanceEveryBody) {
     }
     if constexpr (R::kTelescope) {
       // The tool's frame lies on its axis, above the bar's lower joint.
-      for (int k = 0; k < 2; ++k) bodies[plate + 1].p(k).value.value += static_cast<oracles::Real>(d.geometry.telescope.p_BV(k));
+      for (int k = 0; k < 2; ++k)
+        bodies[plate + 1].p(k).value.value += static_cast<oracles::Real>(d.geometry.telescope.p_BV(k));
       add(this->loads.tool_bearing, -1, balance[plate]);
       add(this->loads.tool_bearing, 1, balance[plate + 1]);
       add(this->loads.telescope_tool, 1, balance[plate + 1]);
@@ -113,8 +118,10 @@ TYPED_TEST(Reactions, BalanceEveryBody) {
       add(this->loads.telescope_tool, -1, balance[plate + 3]);
       EXPECT_NEAR(this->loads.tool_bearing.moment.z(), 0, 1e-9);
       const double rate = d.motion.telescope.length_d;
-      const double friction = d.p(Layout::viscous(R::kDrives)) * rate + d.p(Layout::coulomb(R::kDrives)) * (rate > 0 ? 1 : -1);
-      EXPECT_NEAR(this->loads.telescope_slide.force.dot(d.motion.posture.telescope.e), friction, 1e-9 * (1 + std::abs(friction)));
+      const double friction =
+          d.p(Layout::viscous(R::kDrives)) * rate + d.p(Layout::coulomb(R::kDrives)) * (rate > 0 ? 1 : -1);
+      EXPECT_NEAR(this->loads.telescope_slide.force.dot(d.motion.posture.telescope.e), friction,
+                  1e-9 * (1 + std::abs(friction)));
     }
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const Needed need = needed(bodies[b], load.bodies[b], d.geometry.gravity);

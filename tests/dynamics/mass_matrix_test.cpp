@@ -67,7 +67,8 @@ TYPED_TEST(MassMatrix, IsSymmetricAndPositiveDefiniteForConsistentParameters) {
     p.template segment<TypeParam::kDrives>(Layout::kRotorInertia).setZero();  // the bodies alone must do
     const auto M = mass_matrix<Layout>(this->geometry, this->motion.posture, p);
     EXPECT_EQ(M, M.transpose());
-    EXPECT_GT((Eigen::SelfAdjointEigenSolver<Matrix<double, TypeParam::kDrives, TypeParam::kDrives>>(M).eigenvalues()(0)), 0);
+    EXPECT_GT(
+        (Eigen::SelfAdjointEigenSolver<Matrix<double, TypeParam::kDrives, TypeParam::kDrives>>(M).eigenvalues()(0)), 0);
   }
 }
 
@@ -80,12 +81,13 @@ TYPED_TEST(MassMatrix, IsTheSecondDerivativeOfTheKineticEnergy) {
     Matrix<double, kSize, kSize> expected;
     for (int i = 0; i < kSize; ++i) {
       for (int j = 0; j < kSize; ++j) {
-        expected(i, j) = static_cast<double>(
-            oracles::mass_matrix_entry(oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q),
-                                       static_cast<std::size_t>(i), static_cast<std::size_t>(j), numbers(this->task.z)));
+        expected(i, j) = static_cast<double>(oracles::mass_matrix_entry(
+            oracle_of(this->geometry), load_of<TypeParam, Layout>(p), numbers(this->motion.posture.q),
+            static_cast<std::size_t>(i), static_cast<std::size_t>(j), numbers(this->task.z)));
       }
     }
-    EXPECT_THAT((mass_matrix<Layout>(this->geometry, this->motion.posture, p)), IsNear(expected, 1e-12 * expected.norm()));
+    EXPECT_THAT((mass_matrix<Layout>(this->geometry, this->motion.posture, p)),
+                IsNear(expected, 1e-12 * expected.norm()));
   }
 }
 
@@ -95,11 +97,12 @@ TYPED_TEST(MassMatrix, IsTheSameInSinglePrecision) {
   const auto p = random_parameters<Layout>(this->random);
   const auto coarse = cast_geometry<float>(this->geometry);
   Posture<float, TypeParam> posture;
-  ASSERT_EQ(assemble_posture<float>(coarse, this->motion.posture.q.template cast<float>(), this->task.z.template cast<float>(),
-                                    posture),
+  ASSERT_EQ(assemble_posture<float>(coarse, this->motion.posture.q.template cast<float>(),
+                                    this->task.z.template cast<float>(), posture),
             Status::ok);
   const auto M = mass_matrix<Layout>(this->geometry, this->motion.posture, p);
-  EXPECT_THAT((mass_matrix<Layout, float, TypeParam>(coarse, posture, p.template cast<float>())), IsNear(M, 1e-4 * M.norm()));
+  EXPECT_THAT((mass_matrix<Layout, float, TypeParam>(coarse, posture, p.template cast<float>())),
+              IsNear(M, 1e-4 * M.norm()));
 }
 
 }  // namespace

@@ -41,7 +41,10 @@ struct Row {
 
 // Ten rows of the repository's first trajectory, torques from the authors' own program.
 const Row kRows[] = {
-    {{0.0923972374293, 0.0923692961136, 0.0923759973315}, {0, 0, 0}, {0, 0, 0}, {-18.1559155485, -18.156266717, -18.1561824966}},
+    {{0.0923972374293, 0.0923692961136, 0.0923759973315},
+     {0, 0, 0},
+     {0, 0, 0},
+     {-18.1559155485, -18.156266717, -18.1561824966}},
     {{0.340953856807, 0.151128300616, -0.00995355095533},
      {0.838640455999, 0.235793518717, -0.160994735212},
      {0.367435926588, 0.297108721076, 0.938935606173},
@@ -104,7 +107,8 @@ Eigen::VectorXd largest_error(const Robot& robot, const Eigen::VectorXd& p, cons
                         qdd = channels(table, "qdd", "_rad_s2", n), tau = channels(table, "tau", "_Nm", n);
   Eigen::VectorXd worst = Eigen::VectorXd::Zero(n), model(n);
   for (Eigen::Index k = 0; k < q.rows(); ++k) {
-    const Status status = robot.inverse_dynamics(q.row(k).transpose(), qd.row(k).transpose(), qdd.row(k).transpose(), p, model);
+    const Status status =
+        robot.inverse_dynamics(q.row(k).transpose(), qd.row(k).transpose(), qdd.row(k).transpose(), p, model);
     EXPECT_EQ(status, Status::ok) << "row " << k;
     worst = worst.cwiseMax((model - tau.row(k).transpose()).cwiseAbs());
   }
@@ -113,7 +117,8 @@ Eigen::VectorXd largest_error(const Robot& robot, const Eigen::VectorXd& p, cons
 
 TEST(PublishedDelta, HasItsAuthorsTorquesInEveryRow) {
   const char* folder = std::getenv("DELTADYN_SHARED_DATA");  // NOLINT(concurrency-mt-unsafe)
-  if (folder == nullptr) GTEST_SKIP() << "set DELTADYN_SHARED_DATA to the folder that holds delta_rl5/ to test every row";
+  if (folder == nullptr)
+    GTEST_SKIP() << "set DELTADYN_SHARED_DATA to the folder that holds delta_rl5/ to test every row";
   const std::filesystem::path data = std::filesystem::path(folder) / "delta_rl5";
   const auto robot = make_robot(published_delta());
   const Eigen::VectorXd p =
@@ -129,7 +134,8 @@ TEST(SimulatedDelta4, HasTheTorquesOfMujoco) {
   const auto robot = make_robot(delta_description("delta4"));
   ParameterTable truth = read_parameters((data / "truth.csv").string());
   for (ParameterEntry& entry : truth.entries) {
-    const bool friction = entry.name.find(".viscous") != std::string::npos || entry.name.find(".coulomb") != std::string::npos;
+    const bool friction =
+        entry.name.find(".viscous") != std::string::npos || entry.name.find(".coulomb") != std::string::npos;
     if (friction) entry.value = 0;  // the states were computed without friction
   }
   const Eigen::VectorXd p = values(truth, robot->parameter_names(), robot->parameter_units());

@@ -30,8 +30,9 @@ class Regressor : public ::testing::Test {
 
   template <class Layout>
   Drives oracle(const Vector<double, Layout::kColumns>& p) const {
-    return to_vector<R::kDrives>(oracles::drive_torque(oracle_of(geometry), load_of<R, Layout>(p), numbers(motion.posture.q),
-                                                       numbers(motion.qd), numbers(motion.qdd), numbers(task.z)));
+    return to_vector<R::kDrives>(oracles::drive_torque(oracle_of(geometry), load_of<R, Layout>(p),
+                                                       numbers(motion.posture.q), numbers(motion.qd),
+                                                       numbers(motion.qdd), numbers(task.z)));
   }
 
   /// What rounding of the terms of Y p can do.
@@ -97,7 +98,8 @@ TYPED_TEST(Regressor, SharedColumnsAreTheSumOfTheLimbs) {
     if (kind == Body::strut && !kHasPlate<TypeParam>) continue;
     auto sum = body(individual, Individual::body(kind, 0));
     for (int i = 1; i < TypeParam::kLimbs; ++i) sum += body(individual, Individual::body(kind, i));
-    EXPECT_THAT(body(shared, Shared::body(kind, 0)), IsNear(sum, 1e-12 * (1 + sum.cwiseAbs().maxCoeff()))) << name(kind);
+    EXPECT_THAT(body(shared, Shared::body(kind, 0)), IsNear(sum, 1e-12 * (1 + sum.cwiseAbs().maxCoeff())))
+        << name(kind);
   }
   constexpr int kRest = Shared::kColumns - kInertialParameters * (Shared::kLimbSets + Shared::kStruts);
   EXPECT_EQ(shared.template rightCols<kRest>(), individual.template rightCols<kRest>());
@@ -130,7 +132,8 @@ TYPED_TEST(Regressor, IsTheSameInSinglePrecision) {
     for (int k = 0; k < Layout::kColumns; ++k) {
       // Coulomb columns jump with the sign of a rate; rates here are far from zero beside float's resolution.
       const double scale = 1 + y.col(k).cwiseAbs().maxCoeff();
-      EXPECT_THAT(y_float.col(k).eval(), IsNear(y.col(k).eval(), 3e-4 * scale)) << "column " << k << ", trial " << trial;
+      EXPECT_THAT(y_float.col(k).eval(), IsNear(y.col(k).eval(), 3e-4 * scale))
+          << "column " << k << ", trial " << trial;
     }
   }
 }

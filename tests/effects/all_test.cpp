@@ -53,8 +53,9 @@ class EveryEffect : public testing::TestWithParam<const char*> {
   void SetUp() override {
     const std::string type = GetParam();
     const bool axis = type.find("axis") != std::string::npos;
-    robot_ = make_robot(axis ? testing_support::axis_description(type == "axis" ? DriveKind::revolute : DriveKind::prismatic)
-                             : testing_support::delta_description(type));
+    robot_ =
+        make_robot(axis ? testing_support::axis_description(type == "axis" ? DriveKind::revolute : DriveKind::prismatic)
+                        : testing_support::delta_description(type));
     p_ = testing_support::delta_truth(*robot_);
     testing_support::SyntheticOptions options;
     options.duration_s = 2;
@@ -66,7 +67,8 @@ class EveryEffect : public testing::TestWithParam<const char*> {
     signals_ = model_->signals(log_, p_);
   }
 
-  /// Calls what(effect) for each effect of the list, at each place of the robot and for each choice that its shapes have.
+  /// Calls what(effect) for each effect of the list, at each place of the robot and for each choice that its shapes
+  /// have.
   template <class What>
   void for_each(const What& what) const {
     for (const EffectKind& kind : effect_catalogue()) {
@@ -154,8 +156,8 @@ class EveryEffect : public testing::TestWithParam<const char*> {
     Plant plant(robot_->description(), robot_->parameter_names(), p_, effects);
     MatrixXd torque(log_.q.rows(), log_.q.cols());
     for (Index k = 0; k < torque.rows(); ++k)
-      torque.row(k) =
-          plant.inverse(log_.t_s(k), log_.q.row(k).transpose(), log_.qd.row(k).transpose(), log_.qdd.row(k).transpose());
+      torque.row(k) = plant.inverse(log_.t_s(k), log_.q.row(k).transpose(), log_.qd.row(k).transpose(),
+                                    log_.qdd.row(k).transpose());
     return torque;
   }
 
@@ -166,12 +168,14 @@ class EveryEffect : public testing::TestWithParam<const char*> {
   EffectSignals signals_;
 };
 
-/// A spring or play: its own motion has to be integrated (tests/identification/effect_columns_test.cpp, acceptance tests).
+/// A spring or play: its own motion has to be integrated (tests/identification/effect_columns_test.cpp, acceptance
+/// tests).
 bool softens(const Effect& effect, const RobotDescription& robot) {
   ChangedMachine machine(robot);
   visit_effect(effect.id, [&](auto type) {
     using E = decltype(type);
-    if constexpr (HasChange<E, ChangedMachine>::value) E::change(machine, effect.joint, amplitudes_of(effect), shape_of(effect));
+    if constexpr (HasChange<E, ChangedMachine>::value)
+      E::change(machine, effect.joint, amplitudes_of(effect), shape_of(effect));
   });
   return !machine.springs.empty();
 }
@@ -187,9 +191,10 @@ TEST_P(EveryEffect, ItsColumnIsTheDifferenceThatTheVirtualRobotMakes) {
   int compared = 0;
   for_each([&](const Effect& effect) {
     if (softens(effect, robot_->description())) return;
-    const MatrixXd difference = is_log_effect(effect.id)
-                                    ? MatrixXd(recorded_torque(log_.t_s, signals_.torque, {effect}, {}, 1) - signals_.torque)
-                                    : MatrixXd(needed({effect}) - plain);
+    const MatrixXd difference =
+        is_log_effect(effect.id)
+            ? MatrixXd(recorded_torque(log_.t_s, signals_.torque, {effect}, {}, 1) - signals_.torque)
+            : MatrixXd(needed({effect}) - plain);
     // A change of the machine is seen to first order: what is left is of second order in an amplitude of 1e-5.
     const double bound = by_differences(effect.id) ? 1e-3 : 1e-8;
     if (effect_kind(effect.id).effect_class == EffectClass::phase) {
@@ -239,7 +244,8 @@ TEST_P(EveryEffect, ItsAmplitudesComeBackBesideTheBaseParameters) {
 }
 
 TEST_P(EveryEffect, FilesAndFlagsMakeTheRoundTrip) {
-  const std::string path = (std::filesystem::temp_directory_path() / fmt::format("effects_{}.csv", GetParam())).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / fmt::format("effects_{}.csv", GetParam())).string();
   const RobotDescription& robot = robot_->description();
   for_each([&](const Effect& effect) {
     write_effects(path, {effect}, robot);
@@ -280,7 +286,8 @@ TEST_P(EveryEffect, AWrongSignOrSizeIsRefused) {
   std::filesystem::remove(path);
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, EveryEffect, testing::Values("delta3", "delta4", "linear-delta3", "axis", "linear-axis"),
+INSTANTIATE_TEST_SUITE_P(Robots, EveryEffect,
+                         testing::Values("delta3", "delta4", "linear-delta3", "axis", "linear-axis"),
                          [](const auto& tested) {
                            std::string name = tested.param;
                            std::erase(name, '-');
@@ -334,7 +341,8 @@ void check_slope(std::mt19937_64& random) {
     const auto slope = columns(input(D(), moved, unit), dual_shape);
     const auto up = columns(input(0.0, moved, kStep), shape), down = columns(input(0.0, moved, -kStep), shape);
     for (std::size_t c = 0; c < up.size(); ++c)
-      EXPECT_NEAR(slope[c].slope(0), (up[c] - down[c]) / (2 * kStep), 1e-6 * (1 + std::abs(slope[c].slope(0)))) << traits.name;
+      EXPECT_NEAR(slope[c].slope(0), (up[c] - down[c]) / (2 * kStep), 1e-6 * (1 + std::abs(slope[c].slope(0))))
+          << traits.name;
   }
 }
 

@@ -15,7 +15,9 @@ TEST(CurrentLag, ReachesMostOfAStepAfterItsTime) {
 TEST(CurrentLag, TrailsARampByItsTimeAndACommandLeadsIt) {
   const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(200, 0, 199e-3);
   EXPECT_NEAR(effects::CurrentLag::record(ramp, 1e-3, 0.004, {0.004, 0})(199), ramp(199) - 0.004, 1e-12);
-  EXPECT_LT((effects::CurrentLag::record(ramp, 1e-3, 0.004, {0.004, 1}) - ramp.array().operator+(0.004).matrix()).norm(), 1e-12);
+  EXPECT_LT(
+      (effects::CurrentLag::record(ramp, 1e-3, 0.004, {0.004, 1}) - ramp.array().operator+(0.004).matrix()).norm(),
+      1e-12);
   EXPECT_EQ(effects::CurrentLag::record(ramp, 1e-3, 0.0, {0, 0}), ramp);
 }
 

@@ -9,7 +9,8 @@
 namespace deltadyn {
 namespace {
 
-/// A motor turns an arm through a spring, all on one axis and without damping, so that a harmonic motion has a closed form.
+/// A motor turns an arm through a spring, all on one axis and without damping, so that a harmonic motion has a closed
+/// form.
 template <class T>
 class JointElasticity : public testing::Test {};
 using Scalars = testing::Types<float, double>;
@@ -20,7 +21,8 @@ TYPED_TEST(JointElasticity, IsTheFirstTermOfTheExactTorqueWithTheEncoderOnTheMot
   std::mt19937_64 random(1);
   UniformDistribution uniform(0, 1);
   for (int trial = 0; trial < 200; ++trial) {
-    const double motor = 0.05 + 0.3 * uniform(random), arm = 0.1 + 0.5 * uniform(random), k = 1e3 + 1e4 * uniform(random);
+    const double motor = 0.05 + 0.3 * uniform(random), arm = 0.1 + 0.5 * uniform(random),
+                 k = 1e3 + 1e4 * uniform(random);
     const double w = std::sqrt(k / arm) * (0.05 + 0.25 * uniform(random)), theta = uniform(random) - 0.5;
     const double ratio = arm * w * w / k;  // square of frequency over resonance
     const double exact = -arm * w * w * theta * ratio / (1 - ratio);
@@ -33,7 +35,8 @@ TYPED_TEST(JointElasticity, IsTheFirstTermOfTheExactTorqueWithTheEncoderOnTheMot
     in.load_lag = T(inertia * inertia * fourth);
     in.inertia_lag = T(inertia * inertia * fourth);
     const T column = effects::JointElasticity::column(in, {T(1), T(motor / inertia), T(0)});
-    EXPECT_NEAR(arm / k * static_cast<double>(column), exact, 1.0001 * ratio * std::abs(exact) + 1e-5 * std::abs(exact));
+    EXPECT_NEAR(arm / k * static_cast<double>(column), exact,
+                1.0001 * ratio * std::abs(exact) + 1e-5 * std::abs(exact));
   }
 }
 

@@ -25,7 +25,8 @@ TEST(LimbInertiaMismatch, FollowsGravityWhereverItPoints) {
     in.gravity_x = 3;
     in.gravity_z = -9;
     const auto potential = [&in](double a) { return -(in.gravity_x * std::cos(a) - in.gravity_z * std::sin(a)); };
-    EXPECT_NEAR(effects::LimbInertiaMismatch::columns(in, {})[0], (potential(q + 1e-5) - potential(q - 1e-5)) / 2e-5, 1e-8);
+    EXPECT_NEAR(effects::LimbInertiaMismatch::columns(in, {})[0], (potential(q + 1e-5) - potential(q - 1e-5)) / 2e-5,
+                1e-8);
   }
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 using testing_support::Random;
 
-constexpr Criterion kAll[] = {Criterion::log_det, Criterion::det, Criterion::cond, Criterion::trace, Criterion::min_eigenvalue};
+constexpr Criterion kAll[] = {Criterion::log_det, Criterion::det, Criterion::cond, Criterion::trace,
+                              Criterion::min_eigenvalue};
 
 Eigen::MatrixXd random_information(Random& random, int p) {
   Eigen::MatrixXd A(3 * p, p);
@@ -43,7 +44,8 @@ TEST(Criterion, GradientIsTheSlopeAlongEveryDirection) {
       for (Eigen::Index k = 0; k < D.size(); ++k) D(k) = random.uniform(-1, 1);
       D = (D + D.transpose()).eval();
       constexpr double kStep = 1e-5;
-      const double slope = (evaluate(criterion, M + kStep * D).value - evaluate(criterion, M - kStep * D).value) / (2 * kStep);
+      const double slope =
+          (evaluate(criterion, M + kStep * D).value - evaluate(criterion, M - kStep * D).value) / (2 * kStep);
       EXPECT_NEAR(at.by_M.cwiseProduct(D).sum(), slope, 1e-7 * (1 + std::abs(slope))) << word_of(criterion);
     }
   }

@@ -60,7 +60,8 @@ TEST(DesignBound, NoOtherSharesOfTheStatesGiveMore) {
     // Near the best design and far from it.
     Eigen::VectorXd shares = bound.shares;
     const double mix = trial % 2 == 0 ? 0.02 : 1.0;
-    for (Eigen::Index k = 0; k < shares.size(); ++k) shares(k) += mix * random.uniform(0, 1) / static_cast<double>(shares.size());
+    for (Eigen::Index k = 0; k < shares.size(); ++k)
+      shares(k) += mix * random.uniform(0, 1) / static_cast<double>(shares.size());
     shares /= shares.sum();
     EXPECT_LT(log_determinant(information(setup.space, shares)), bound.log_det);
   }

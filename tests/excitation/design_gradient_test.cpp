@@ -1,7 +1,7 @@
-// The whole of the optimisation problem against automatic differentiation: objective (9) with every criterion and the velocity
-// term, and the limits (10), (11). The oracle is written from the definitions in Eigen's AutoDiffScalar; of the product it takes
-// the kinematics and the regressor, in its own numbers (which tests/dynamics checks against Lagrange's equations), and the scales
-// of the variables.
+// The whole of the optimisation problem against automatic differentiation: objective (9) with every criterion and the
+// velocity term, and the limits (10), (11). The oracle is written from the definitions in Eigen's AutoDiffScalar; of
+// the product it takes the kinematics and the regressor, in its own numbers (which tests/dynamics checks against
+// Lagrange's equations), and the scales of the variables.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -89,7 +89,8 @@ class DesignGradient : public ::testing::Test {
     return local_search(problem, problem.variables_of(series), evaluations, [] { return false; }).best;
   }
 
-  /// Width of the smooth Coulomb sign: a share of the rates' half width, sqrt 3 times the root mean square of 200 states.
+  /// Width of the smooth Coulomb sign: a share of the rates' half width, sqrt 3 times the root mean square of 200
+  /// states.
   [[nodiscard]] Eigen::VectorXd sign_width(double share) const {
     Eigen::VectorXd q(N), qd(N), qdd(N), squares = Eigen::VectorXd::Zero(N);
     for (Eigen::Index k = 0; k < 200; ++k) {
@@ -146,8 +147,8 @@ class DesignGradient : public ::testing::Test {
     // Coefficients are the variables times their scales; the frequency runs from the lowest to the highest.
     const Eigen::MatrixXd scale = problem.series(Eigen::VectorXd::Ones(kVariables)).coefficients;
     const auto variable = [&v](int k) { return Number(v(k), kVariables, k); };
-    const Number omega =
-        Number(2 * std::numbers::pi) * (Number(s.lowest_hz) + Number(s.highest_hz - s.lowest_hz) * variable(kVariables - 1));
+    const Number omega = Number(2 * std::numbers::pi) *
+                         (Number(s.lowest_hz) + Number(s.highest_hz - s.lowest_hz) * variable(kVariables - 1));
     const auto geometry = geometry_of<Number, R>(setup.robot->description());
     const auto columns = layout_columns<R, Limbs::shared>(setup.robot->parameter_options());
     const Eigen::VectorXd width = sign_width(s.sign_share);
@@ -190,8 +191,8 @@ class DesignGradient : public ::testing::Test {
         Numbers row(p);
         for (std::size_t k = 0; k < p; ++k) {
           const auto column = columns[static_cast<std::size_t>(setup.space.base_columns[k])];
-          row[k] =
-              Y(drive, column) / Number(setup.space.torque_scale(drive) * setup.space.column_scale(static_cast<Eigen::Index>(k)));
+          row[k] = Y(drive, column) /
+                   Number(setup.space.torque_scale(drive) * setup.space.column_scale(static_cast<Eigen::Index>(k)));
         }
         for (std::size_t a = 0; a < p; ++a)
           for (std::size_t b = 0; b <= a; ++b) out.M[a][b] += row[a] * row[b] / Number(kSamples);
@@ -310,7 +311,8 @@ TYPED_TEST(DesignGradient, OfObjectiveAndLimitsIsThatOfAutomaticDifferentiation)
         for (std::size_t a = 0; a < M.size(); ++a) {
           for (std::size_t b = 0; b < M.size(); ++b) {
             M[a][b] *= Auto(s.share);
-            if (beside_another) M[a][b] += Auto(s.other_information(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
+            if (beside_another)
+              M[a][b] += Auto(s.other_information(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
           }
         }
         const Auto value = this->criterion(which, M) + Auto(s.velocity_weight) * defined.rms;
@@ -318,8 +320,9 @@ TYPED_TEST(DesignGradient, OfObjectiveAndLimitsIsThatOfAutomaticDifferentiation)
         const double error = (e.gradient - value.derivatives()).cwiseAbs().maxCoeff() / size;
         EXPECT_NEAR(e.value, value.value(), 1e-9 * std::abs(value.value())) << word_of(which);
         EXPECT_LT(error, 1e-9) << word_of(which) << ", point " << seed;
-        this->RecordProperty(std::string(word_of(which)) + "_" + std::to_string(seed) + (beside_another ? "_beside" : ""),
-                             std::to_string(error * 1e12) + "e-12");
+        this->RecordProperty(
+            std::string(word_of(which)) + "_" + std::to_string(seed) + (beside_another ? "_beside" : ""),
+            std::to_string(error * 1e12) + "e-12");
 
         ASSERT_EQ(static_cast<std::size_t>(e.constraints.size()), defined.constraints.size());
         double worst = 0;

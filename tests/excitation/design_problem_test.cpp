@@ -52,7 +52,8 @@ TEST_P(Gradient, OfValueAndConstraintsIsTheSlope) {
   settings.sharpness = 20;
   if (c.other) {
     settings.share = 0.4;
-    settings.other_information = 0.6 * Eigen::MatrixXd::Identity(setup.space.base_parameters(), setup.space.base_parameters());
+    settings.other_information =
+        0.6 * Eigen::MatrixXd::Identity(setup.space.base_parameters(), setup.space.base_parameters());
   }
   const DesignProblem problem(setup.space, limits, settings);
   const Eigen::VectorXd v = random_variables(problem, setup.space, 3);
@@ -80,9 +81,11 @@ TEST_P(Gradient, OfValueAndConstraintsIsTheSlope) {
       return ((16 * b - a) / 15).eval();
     };
     const Eigen::Matrix<double, 1, 1> v0(value[0]), v1(value[1]), v2(value[2]);
-    EXPECT_NEAR(e.gradient(k), extrapolated(v0, v1, v2)(0), 2e-6 * (1 + e.gradient.cwiseAbs().maxCoeff())) << "variable " << k;
+    EXPECT_NEAR(e.gradient(k), extrapolated(v0, v1, v2)(0), 2e-6 * (1 + e.gradient.cwiseAbs().maxCoeff()))
+        << "variable " << k;
     const Eigen::VectorXd slope = extrapolated(constraints[0], constraints[1], constraints[2]);
-    EXPECT_LT((slope - e.jacobian.row(k).transpose()).cwiseAbs().maxCoeff(), 2e-6 * (1 + e.jacobian.cwiseAbs().maxCoeff()))
+    EXPECT_LT((slope - e.jacobian.row(k).transpose()).cwiseAbs().maxCoeff(),
+              2e-6 * (1 + e.jacobian.cwiseAbs().maxCoeff()))
         << "variable " << k;
   }
 }
@@ -137,7 +140,8 @@ TEST(DesignProblem, SmoothLimitsLieInsideTheTrueOnesByLittle) {
     problem.evaluate(random_variables(problem, setup.space, seed), false, e);
     ASSERT_TRUE(e.regular);
     EXPECT_GE(e.constraints.maxCoeff(), e.worst - 1);
-    EXPECT_LE(e.constraints.maxCoeff(), e.worst - 1 + std::log(2.0 * settings.samples / settings.windows) / settings.sharpness);
+    EXPECT_LE(e.constraints.maxCoeff(),
+              e.worst - 1 + std::log(2.0 * settings.samples / settings.windows) / settings.sharpness);
   }
 }
 

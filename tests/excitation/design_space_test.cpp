@@ -36,7 +36,8 @@ TEST_P(AdmissibleStatesOf, KeepEveryLimitAndFillTheBoxes) {
   double largest = 0;
   for (Eigen::Index k = 0; k < states.x.cols(); ++k) {
     state.x = states.x.col(k);
-    ASSERT_EQ(setup.robot->to_drives({state.x.head(n), state.x.segment(n, n), state.x.tail(n)}, q, qd, qdd), Status::ok);
+    ASSERT_EQ(setup.robot->to_drives({state.x.head(n), state.x.segment(n, n), state.x.tail(n)}, q, qd, qdd),
+              Status::ok);
     state.drives << q, qd, qdd;
     for (const Limit& limit : setup.limits->list(setup.robot->description())) {
       const double load = limit_load(limit, usage_of(limit, limited_value(limit, *setup.limits, state)));
@@ -71,7 +72,8 @@ TEST(DesignSpace, ColumnsHaveRootMeanSquareOne) {
   EXPECT_LT((squares.array() / 500 - 1).abs().maxCoeff(), 1e-9);
 }
 
-// With a torque limit that few states at full speed keep, slower ones are found, and the centre holds itself and its friction.
+// With a torque limit that few states at full speed keep, slower ones are found, and the centre holds itself and its
+// friction.
 TEST(DesignSpace, FindsSlowStatesWhereTorqueIsShort) {
   const auto robot = make_robot(testing_support::delta_description("delta3"));
   MotionLimits limits = usual_limits(*robot);
@@ -109,7 +111,8 @@ TEST(DesignSpace, SaysSoWhereTheRangesMeetTheWorkspaceNowhere) {
   MotionLimits limits = usual_limits(*robot);
   limits.region->shape = RegionShape::ball;
   limits.region->radius = 0.1;
-  const Eigen::Vector3d corner = limits.region->centre.array() + 0.09;  // of the box around the ball, which it does not fill
+  // Of the box around the ball, which it does not fill
+  const Eigen::Vector3d corner = limits.region->centre.array() + 0.09;
   limits.z_lower.head<3>() = corner;
   EXPECT_THAT(message_of(*robot, limits), HasSubstr("none lies in the workspace"));
 }

@@ -71,7 +71,8 @@ inline ExcitationSetup excitation_setup(const std::string& type, int states = 10
   setup.limits = std::make_unique<MotionLimits>(usual_limits(*setup.robot));
   Eigen::VectorXd scale = Eigen::VectorXd::Constant(description.drives(), 60);
   if (description.drives() > 3) scale(3) = 4;
-  setup.space = make_design_space(*setup.robot, *setup.limits, find_base_parameters(*setup.robot).independent, scale, states, 1);
+  setup.space =
+      make_design_space(*setup.robot, *setup.limits, find_base_parameters(*setup.robot).independent, scale, states, 1);
   return setup;
 }
 

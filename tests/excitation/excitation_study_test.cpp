@@ -55,8 +55,8 @@ TEST_P(LimitStudy, NoLimitIsExceededBetweenTheSamples) {
   const int n = robot->drives();
   double tightest = 1;
   for (int seed = 1; seed <= seeds(2); ++seed) {
-    const DesignSpace space =
-        make_design_space(*robot, limits, base, Eigen::VectorXd::Constant(n, 20), 300, static_cast<std::uint64_t>(seed));
+    const DesignSpace space = make_design_space(*robot, limits, base, Eigen::VectorXd::Constant(n, 20), 300,
+                                                static_cast<std::uint64_t>(seed));
     ExcitationOptions options;
     options.harmonics = 3;
     options.starts = 1;
@@ -96,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Robots, LimitStudy,
                            return std::string(robot.param).substr(0, std::string(robot.param).find('.'));
                          });
 
-/// Least squares on a simulated log of the samples: mean over the base parameters of the standard deviation that the residual
-/// gives them, as a share of the true value where that is not zero.
+/// Least squares on a simulated log of the samples: mean over the base parameters of the standard deviation that the
+/// residual gives them, as a share of the true value where that is not zero.
 double mean_relative_std(const Robot& robot, const BaseParameters& base, const Eigen::VectorXd& truth,
                          const TrajectorySamples& samples, const Eigen::VectorXd& noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -137,7 +137,8 @@ double mean_relative_std(const Robot& robot, const BaseParameters& base, const E
   return sum / count;
 }
 
-// At equal length and noise the optimised motion halves, at least, the mean relative standard deviation of a random one.
+// At equal length and noise the optimised motion halves, at least, the mean relative standard deviation of a random
+// one.
 TEST(IdentificationStudy, OptimisedMotionHalvesTheStandardDeviation) {
   constexpr double kRate = 200, kDuration = 10;
   const auto robot = make_robot(read_robot_file(data("robots/mujoco_delta4.urdf")));

@@ -67,7 +67,8 @@ TEST(PredictedUncertainty, ScalesWithNoiseAndIsInfiniteWithoutMotion) {
   EXPECT_LT((twice - 2 * once).cwiseAbs().maxCoeff(), 1e-9 * once.maxCoeff());
   samples.qd.setZero();
   samples.qdd.setZero();
-  EXPECT_TRUE(std::isinf(predicted_std(*setup.robot, columns, samples, noise).maxCoeff())) << "no friction shows at rest";
+  EXPECT_TRUE(std::isinf(predicted_std(*setup.robot, columns, samples, noise).maxCoeff()))
+      << "no friction shows at rest";
   EXPECT_THROW((void)predicted_std(*setup.robot, columns, samples, Eigen::VectorXd::Zero(3)), Error);
   EXPECT_THROW((void)predicted_std(*setup.robot, columns, samples, noise, 0), Error);
 }

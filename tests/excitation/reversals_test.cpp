@@ -81,7 +81,8 @@ TEST(Reversals, ConstraintsOfTheSearchHaveTheSlopesTheySay) {
       shifted(k) -= 2 * h;
       problem.evaluate(shifted, false, down);
       const Eigen::VectorXd slope = (up.constraints.tail(n) - down.constraints.tail(n)) / (2 * h);
-      EXPECT_LT((slope - e.jacobian.row(k).tail(n).transpose()).norm(), 1e-5 * (1 + slope.norm())) << type << ", variable " << k;
+      EXPECT_LT((slope - e.jacobian.row(k).tail(n).transpose()).norm(), 1e-5 * (1 + slope.norm()))
+          << type << ", variable " << k;
     }
   }
 }
@@ -98,7 +99,8 @@ TEST(Reversals, TheSearchKeepsEveryDriveAwayFromThem) {
   const auto share_of = [&] {
     const Excitation e = optimize_excitation(setup.space, *setup.limits, bound, options);
     const std::vector<PlanSegment> segments = {{e.segments[0].series, e.segments[0].limits, 1}};
-    return share_away_from_reversals(*setup.robot, sample_plan(*setup.robot, make_plan(*setup.robot, segments, 1000, true), 1000),
+    return share_away_from_reversals(*setup.robot,
+                                     sample_plan(*setup.robot, make_plan(*setup.robot, segments, 1000, true), 1000),
                                      options.reversal_reach_s, 0.003)
         .minCoeff();
   };

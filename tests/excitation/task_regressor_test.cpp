@@ -105,7 +105,8 @@ TYPED_TEST(TaskRegressorTest, DerivativesAreThoseOfAutomaticDifferentiation) {
   Eigen::MatrixXd jacobian(3 * TestFixture::N, 3 * TestFixture::N), expected_jacobian;
   for (int k = 0; k < 20; ++k) {
     const double width = k % 2 == 0 ? 0.3 : 0.0;
-    const Eigen::VectorXd x = this->random_state(), widths = Eigen::VectorXd::Constant(this->regressor->friction_joints(), width);
+    const Eigen::VectorXd x = this->random_state(),
+                          widths = Eigen::VectorXd::Constant(this->regressor->friction_joints(), width);
     Eigen::MatrixXd G(TestFixture::N, this->robot->parameters());
     for (Eigen::Index i = 0; i < G.size(); ++i) G(i) = this->random.uniform(-1, 1);
     ASSERT_EQ(this->regressor->differentiate(x, widths, G, gradient, jacobian), Status::ok);
@@ -117,7 +118,8 @@ TYPED_TEST(TaskRegressorTest, DerivativesAreThoseOfAutomaticDifferentiation) {
 
 TYPED_TEST(TaskRegressorTest, SaysWhenThePoseIsOutOfReach) {
   if constexpr (kHasPlate<TypeParam>) {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(3 * TestFixture::N), drives(3 * TestFixture::N), gradient(3 * TestFixture::N);
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(3 * TestFixture::N), drives(3 * TestFixture::N),
+                    gradient(3 * TestFixture::N);
     x(0) = 5;
     Eigen::MatrixXd Y(TestFixture::N, this->robot->parameters()), jacobian(3 * TestFixture::N, 3 * TestFixture::N);
     EXPECT_EQ(this->regressor->evaluate(x, Eigen::VectorXd(), Y, drives), Status::unreachable);

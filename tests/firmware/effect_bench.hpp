@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// A random robot in the core's form and in the library's, a random motion of it, and what the fit says of effects along that motion.
+/// A random robot in the core's form and in the library's, a random motion of it, and what the fit says of effects
+/// along that motion.
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,8 @@ RobotDescription description_of(const Geometry<double, R>& geometry) {
   return robot;
 }
 
-/// A random robot within the rules of robot files: elbows on the arm's x axis, gravity of this planet in any direction near -z.
+/// A random robot within the rules of robot files: elbows on the arm's x axis, gravity of this planet in any direction
+/// near -z.
 template <class R>
 Geometry<double, R> plausible_geometry(Random& random) {
   Geometry<double, R> geometry = random_geometry<R>(random);
@@ -73,7 +75,8 @@ class EffectBench {
   /// Largest torque of the motion [N m | N].
   [[nodiscard]] double size() const { return signals.torque.cwiseAbs().maxCoeff(); }
 
-  /// Every effect of the list that can act here, at all its places, with a few shapes drawn from the start values of its traits.
+  /// Every effect of the list that can act here, at all its places, with a few shapes drawn from the start values of
+  /// its traits.
   [[nodiscard]] std::vector<Effect> acting_effects() {
     std::vector<Effect> all;
     for (const EffectKind& kind : effect_catalogue()) {
@@ -115,7 +118,9 @@ class EffectBench {
   [[nodiscard]] Eigen::MatrixXd run(Controller& control) const {
     Eigen::MatrixXd torque(kSamples, N);
     for (int k = 0; k < kSamples; ++k) {
-      const auto row = [k](const Eigen::MatrixXd& of) { return Vector<T, N>(of.row(k).transpose().template cast<T>()); };
+      const auto row = [k](const Eigen::MatrixXd& of) {
+        return Vector<T, N>(of.row(k).transpose().template cast<T>());
+      };
       Vector<T, N> tau;
       EXPECT_EQ(control.set_time(static_cast<T>(log.t_s(k))), Status::ok);
       EXPECT_EQ(control.from_drives(row(log.q), row(log.qd), row(log.qdd), tau), Status::ok) << "sample " << k;
@@ -189,7 +194,8 @@ class EffectBench {
     ChangedMachine machine(robot->description());
     visit_effect(effect.id, [&](auto type) {
       using E = decltype(type);
-      if constexpr (kIs<E, MachineChange>) E::change(machine, effect.joint, deltadyn::amplitudes_of(effect), shape_of(effect));
+      if constexpr (kIs<E, MachineChange>)
+        E::change(machine, effect.joint, deltadyn::amplitudes_of(effect), shape_of(effect));
     });
     const auto changed = make_robot(machine.description, robot->parameter_options());
     Eigen::MatrixXd torque(kSamples, N);

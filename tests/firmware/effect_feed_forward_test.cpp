@@ -1,4 +1,5 @@
-// The controller's torques with effects are those of the fit: every effect that can act, at every place, on every robot.
+// The controller's torques with effects are those of the fit: every effect that can act, at every place, on every
+// robot.
 
 #include "deltadyn/firmware/effect_feed_forward.hpp"
 
@@ -43,7 +44,8 @@ TYPED_TEST_SUITE(EffectFeedForwardOf, Robots);
 
 TYPED_TEST(EffectFeedForwardOf, WithoutEffectsIsTheRigidModel) {
   auto control = this->bench_.template control<double, 0>();
-  EXPECT_THAT((this->bench_.template run<double>(control)), IsNear(this->bench_.signals.torque, 1e-13 * this->bench_.size()));
+  EXPECT_THAT((this->bench_.template run<double>(control)),
+              IsNear(this->bench_.signals.torque, 1e-13 * this->bench_.size()));
 }
 
 TYPED_TEST(EffectFeedForwardOf, AgreesWithTheColumnsOfTheFitInDouble) {
@@ -66,11 +68,13 @@ TYPED_TEST(EffectFeedForwardOf, AgreesWithTheColumnsOfTheFitInFloat) {
   for (const Effect& effect : bench.acting_effects()) {
     auto control = bench.template control<float>();
     ASSERT_EQ(control.add(bench.row_of(effect)), EffectRefusal::none) << this->name(effect);
-    EXPECT_THAT((bench.template run<float>(control)), IsNear(bench.expected(effect), 1e-5 * bench.size())) << this->name(effect);
+    EXPECT_THAT((bench.template run<float>(control)), IsNear(bench.expected(effect), 1e-5 * bench.size()))
+        << this->name(effect);
   }
 }
 
-// A change of the machine is linear in its amplitude only to first order; at the step of the fit's difference the rest is small.
+// A change of the machine is linear in its amplitude only to first order; at the step of the fit's difference the rest
+// is small.
 TYPED_TEST(EffectFeedForwardOf, ChangesTheMachineAsTheFitsDifferencesDo) {
   auto& bench = this->bench_;
   for (Effect effect : bench.acting_effects()) {
@@ -78,7 +82,8 @@ TYPED_TEST(EffectFeedForwardOf, ChangesTheMachineAsTheFitsDifferencesDo) {
     effect.amplitude *= 0.01;
     auto control = bench.template control<double>();
     ASSERT_EQ(control.add(bench.row_of(effect)), EffectRefusal::none);
-    const MatrixXd change = bench.template run<double>(control) - bench.signals.torque, columns = bench.by_columns(effect);
+    const MatrixXd change = bench.template run<double>(control) - bench.signals.torque,
+                   columns = bench.by_columns(effect);
     EXPECT_LT((change - columns).norm(), 1e-3 * columns.norm()) << this->name(effect);
   }
 }
@@ -132,10 +137,12 @@ TYPED_TEST(EffectFeedForwardOf, SaysWhyAnEffectCannotAct) {
   EXPECT_EQ(control.add(with([](EffectRow& row) { row.shape[0] = 0; })), EffectRefusal::bad_number);
   EXPECT_EQ(control.add(with([nan](EffectRow& row) { row.amplitude[0] = nan; })), EffectRefusal::bad_number);
   EXPECT_EQ(control.add(with([](EffectRow& row) { row.id = EffectId{-1}; })), EffectRefusal::not_in_list);
-  EXPECT_THAT((bench.template run<double>(control)), IsNear(bench.signals.torque, 1e-13 * bench.size())) << "nothing was added";
+  EXPECT_THAT((bench.template run<double>(control)), IsNear(bench.signals.torque, 1e-13 * bench.size()))
+      << "nothing was added";
   EXPECT_EQ(control.add(this->bristles()), EffectRefusal::none);
   EXPECT_EQ(control.add(this->bristles()), EffectRefusal::no_room);
-  EffectFeedForward<double, TypeParam, Limbs::individual, 1, SomeEffects<effect_named("stribeck")>> few(bench.geometry, bench.p);
+  EffectFeedForward<double, TypeParam, Limbs::individual, 1, SomeEffects<effect_named("stribeck")>> few(bench.geometry,
+                                                                                                        bench.p);
   EXPECT_EQ(few.add(this->bristles()), EffectRefusal::not_in_list);
 }
 
@@ -255,7 +262,8 @@ TYPED_TEST(EffectFeedForwardOf, ReversesSmoothlyOverTheWidth) {
   }
   EXPECT_NEAR(friction(0.1), expected(0.1, 1), 1e-12);
   EXPECT_EQ(friction(0), 0);
-  for (int joint = 0; joint <= control.kTelescopeJoint; ++joint) ASSERT_EQ(control.set_reversal_width(joint, 0.1), Status::ok);
+  for (int joint = 0; joint <= control.kTelescopeJoint; ++joint)
+    ASSERT_EQ(control.set_reversal_width(joint, 0.1), Status::ok);
   EXPECT_EQ(friction(0), 0);
   EXPECT_NEAR(friction(0.1), expected(0.1, std::sqrt(0.5)), 1e-12);
   EXPECT_NEAR(friction(1e-9), 0, 1e-6);

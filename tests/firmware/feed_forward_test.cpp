@@ -1,7 +1,6 @@
 #include "deltadyn/firmware/feed_forward.hpp"
 
 #include <gtest/gtest.h>
-
 #include <limits>
 
 #include "support/matchers.hpp"

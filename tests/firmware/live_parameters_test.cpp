@@ -34,8 +34,8 @@ TYPED_TEST(LiveParametersOf, AFixedPayloadIsThatOfItsPointMasses) {
   for (const double side : {-0.2, 0.2}) {
     const Vector3<double> r = middle + side * Vector3<double>::UnitY();
     InertialVector<double> point;
-    point << 1, r.x(), r.y(), r.z(), r.y() * r.y() + r.z() * r.z(), r.x() * r.x() + r.z() * r.z(), r.x() * r.x() + r.y() * r.y(),
-        -r.x() * r.y(), -r.y() * r.z(), -r.x() * r.z();
+    point << 1, r.x(), r.y(), r.z(), r.y() * r.y() + r.z() * r.z(), r.x() * r.x() + r.z() * r.z(),
+        r.x() * r.x() + r.y() * r.y(), -r.x() * r.y(), -r.y() * r.z(), -r.x() * r.z();
     expected += 0.5 * point;
   }
   EXPECT_THAT((body_at<double>(1, middle, inertia)), IsNear(expected, 1e-15));

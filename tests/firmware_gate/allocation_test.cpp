@@ -1,5 +1,5 @@
-// Runs the core under an allocator that counts. Every allocation of the process passes through the functions below, with or
-// without NDEBUG and whatever Eigen's own switches say.
+// Runs the core under an allocator that counts. Every allocation of the process passes through the functions below,
+// with or without NDEBUG and whatever Eigen's own switches say.
 
 #include <Eigen/Core>
 #include <cerrno>
@@ -156,7 +156,8 @@ TEST_P(CoreCalls, DoublePrecision) {
   expect_sound_and_free_of_heap(run_double, GetParam(), 1e-12);
 }
 
-/// A million set points for the robot with all parts, fewer for the others; no NaN reaches the drives, no call takes heap.
+/// A million set points for the robot with all parts, fewer for the others; no NaN reaches the drives, no call takes
+/// heap.
 void expect_finite_and_free_of_heap(EffectOutcome (*run)(int, long), int robot) {
   const long set_points = std::string(kRobotNames[robot]) == "delta4" ? 1'000'000 : 200'000;
   const AllocationCounter counter;
@@ -179,8 +180,9 @@ TEST_P(CoreCalls, EffectsInDoublePrecision) {
   expect_finite_and_free_of_heap(run_effects_double, GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, CoreCalls, testing::Range(0, kRobots),
-                         [](const testing::TestParamInfo<int>& robot) { return std::string(kRobotNames[robot.param]); });
+INSTANTIATE_TEST_SUITE_P(Robots, CoreCalls, testing::Range(0, kRobots), [](const testing::TestParamInfo<int>& robot) {
+  return std::string(kRobotNames[robot.param]);
+});
 
 }  // namespace
 }  // namespace deltadyn::firmware_gate

@@ -66,7 +66,8 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   TorqueDerivatives<T, N> slopes;
   JointReactions<T, Robot> loads;
   const EquationsOfMotion<T, N> terms = equations_of_motion<Layout>(geometry, motion, p);
-  outcome.ok = outcome.ok && forward_dynamics<Layout, T, Robot>(geometry, motion.posture, motion.qd, tau, p, qdd) == Status::ok &&
+  outcome.ok = outcome.ok &&
+               forward_dynamics<Layout, T, Robot>(geometry, motion.posture, motion.qd, tau, p, qdd) == Status::ok &&
                equations_in_task(geometry, motion, terms, task) == Status::ok &&
                inverse_dynamics_derivatives<Layout>(geometry, motion, p, slopes) == Status::ok &&
                joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok &&
@@ -75,8 +76,10 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   const Vector<T, N> sum = terms.M.lazyProduct(motion.qdd) + terms.C.lazyProduct(motion.qd) + terms.g + terms.f;
   // What the first drive's joint carries, and what its motor takes beside that.
   const Vector3<T> axis = rot_z(motion.posture.limbs[0].azimuth) * geometry.limbs[0].axis_L;
-  const T carried = axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
-  const T motor = friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
+  const T carried =
+      axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
+  const T motor =
+      friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
 
   const auto keep_larger = [](double value, double& kept) {
     if (!(value <= kept)) kept = value;
@@ -122,7 +125,8 @@ Outcome run(T phase) {
   Outcome outcome;
   Vector<T, N> q, z_again;
   Motion<T, Robot> motion;
-  outcome.ok = inverse_kinematics(geometry, z, q) == Status::ok && forward_kinematics(geometry, q, z_again) == Status::ok &&
+  outcome.ok = inverse_kinematics(geometry, z, q) == Status::ok &&
+               forward_kinematics(geometry, q, z_again) == Status::ok &&
                motion_from_task(geometry, z, zd, zdd, motion) == Status::ok;
   if (!outcome.ok) return outcome;
   if constexpr (Robot::kTelescope) z_again(N - 1) = q(N - 1);

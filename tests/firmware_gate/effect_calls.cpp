@@ -36,7 +36,8 @@ template <class E>
 constexpr Shape<double> first_shape() {
   const EffectTraits traits = E::traits();
   Shape<double> shape{};
-  for (std::size_t k = 0; k < traits.shapes.size(); ++k) shape[k] = traits.shapes[k].count > 0 ? traits.shapes[k].start[0] : 1.0;
+  for (std::size_t k = 0; k < traits.shapes.size(); ++k)
+    shape[k] = traits.shapes[k].count > 0 ? traits.shapes[k].start[0] : 1.0;
   return shape;
 }
 
@@ -71,8 +72,8 @@ EffectOutcome run(long set_points) {
   Numbers<T> random;
   Drives q = Drives::Zero(), qd = Drives::Zero(), tau = Drives::Zero();
   outcome.settings = control.set_payload(T(0.5), Vector3<T>(T(0), T(0), T(-0.1))) == Status::ok &&
-                     control.set_friction(0, T(1), T(2)) == Status::ok && control.set_reversal_width(0, T(0.01)) == Status::ok &&
-                     control.reset(q, qd) == Status::ok;
+                     control.set_friction(0, T(1), T(2)) == Status::ok &&
+                     control.set_reversal_width(0, T(0.01)) == Status::ok && control.reset(q, qd) == Status::ok;
   for (long k = 0; k < set_points; ++k) {
     outcome.settings = outcome.settings && control.set_time(T(0.001) * static_cast<T>(k)) == Status::ok;
     Drives z = random.template vector<N>(T(0.5));

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The controller with all effects that can act, behind functions without templates, as core_calls.hpp does it for the rest of the core.
+/// The controller with all effects that can act, behind functions without templates, as core_calls.hpp does it for the
+/// rest of the core.
 
 namespace deltadyn::firmware_gate {
 

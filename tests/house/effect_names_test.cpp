@@ -61,7 +61,8 @@ std::string named_in(const std::string& text, const std::vector<Named>& effects)
     if (std::regex_search(text, std::regex("\\beffects::" + one.type + "\\b"))) return one.type;
     if (text.find("effects/" + one.name + ".hpp") != std::string::npos) return one.name + ".hpp";
     if (kRows.count(one.name) == 0 && text.find('"' + one.name + '"') != std::string::npos) return '"' + one.name + '"';
-    if (kOtherMeaning.count(one.name) == 0 && std::regex_search(text, std::regex("\\b" + one.name + "\\b"))) return one.name;
+    if (kOtherMeaning.count(one.name) == 0 && std::regex_search(text, std::regex("\\b" + one.name + "\\b")))
+      return one.name;
   }
   return {};
 }

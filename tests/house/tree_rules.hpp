@@ -34,12 +34,13 @@ using Findings = std::vector<Finding>;
 
 inline constexpr int kMaxHeaderLines = 400;
 inline constexpr int kMaxSourceLines = 700;
+inline constexpr int kMaxColumns = 120;
 
 /// From the lowest to the highest.
 inline const std::vector<std::string>& floors() {
-  static const std::vector<std::string> names = {"core",           "model",     "kinematics", "effects",    "dynamics",
-                                                 "firmware",       "runtime",   "signal",     "trajectory", "excitation",
-                                                 "identification", "diagnosis", "simulation", "io",         "report"};
+  static const std::vector<std::string> names = {
+      "core",       "model",      "kinematics",     "effects",   "dynamics",   "firmware", "runtime", "signal",
+      "trajectory", "excitation", "identification", "diagnosis", "simulation", "io",       "report"};
   return names;
 }
 
@@ -139,13 +140,15 @@ inline Findings check_floor_includes(const SourceFile& file) {
     if (!std::regex_match(include.target, match, pattern)) {
       const auto resolved = (std::filesystem::path(file.path).parent_path() / include.target).lexically_normal();
       if (include.target.find("..") != std::string::npos && floor_of(resolved.generic_string()) != folder) {
-        findings.push_back({file.path, include.line, "includes '" + include.target + "' around the floors; write deltadyn/..."});
+        findings.push_back(
+            {file.path, include.line, "includes '" + include.target + "' around the floors; write deltadyn/..."});
       }
       continue;
     }
     const int target = match[2].matched ? floor_number(match[1].str()) : static_cast<int>(floors().size());
     if (target < 0 || target > floor) {
-      findings.push_back({file.path, include.line, "the floor '" + folder + "' must not include '" + include.target + "'"});
+      findings.push_back(
+          {file.path, include.line, "the floor '" + folder + "' must not include '" + include.target + "'"});
     }
   }
   return findings;
@@ -178,14 +181,16 @@ inline Findings check_core(const SourceFile& file) {
   }
   static const std::regex pattern(
       R"((^|[^\w])(new|throw|try|catch|dynamic_cast|typeid|malloc|calloc|realloc|free|alloca|goto|Eigen::Dynamic)"
-      R"(|(?:Eigen::)?(?:Matrix|Vector|RowVector|Array)X[X\d]?(?:[ifd]|c[fd])?|std::(?:string|vector|map|function|cout|cerr))(?![\w]))");
+      R"(|(?:Eigen::)?(?:Matrix|Vector|RowVector|Array)X[X\d]?(?:[ifd]|c[fd])?|)"
+      R"(std::(?:string|vector|map|function|cout|cerr))(?![\w]))");
   static const std::regex deletion(R"((^|[^\w=\s])\s*delete\s*(\[\s*\])?\s*\w)");
   const auto lines = lines_of(without_comments(file.text, Literals::blank));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].find('#') != std::string::npos && lines[i].find("include") != std::string::npos) continue;
     std::smatch match;
     if (std::regex_search(lines[i], match, pattern)) {
-      findings.push_back({file.path, static_cast<int>(i) + 1, "the firmware core must not use '" + match[2].str() + "'"});
+      findings.push_back(
+          {file.path, static_cast<int>(i) + 1, "the firmware core must not use '" + match[2].str() + "'"});
     } else if (std::regex_search(lines[i], match, deletion)) {
       findings.push_back({file.path, static_cast<int>(i) + 1, "the firmware core must not use 'delete'"});
     }
@@ -211,7 +216,8 @@ inline Findings check_wrapped_libraries(const SourceFile& file) {
   return findings;
 }
 
-/// Loops on several threads stand in one file, which passes exceptions on; all others call its functions. Tests may do as they like.
+/// Loops on several threads stand in one file, which passes exceptions on; all others call its functions. Tests may do
+/// as they like.
 inline Findings check_threads(const SourceFile& file) {
   if (file.path.compare(0, 6, "tests/") == 0 || file.path == "src/runtime/in_parallel.cpp") return {};
   static const std::regex pattern(R"re(^\s*#\s*pragma\s+omp\b)re");
@@ -225,14 +231,22 @@ inline Findings check_threads(const SourceFile& file) {
   return findings;
 }
 
-/// Headers up to 400 lines, all else up to 700; headers guard themselves.
+/// Headers up to 400 lines, all else up to 700, lines up to 120 characters; headers guard themselves.
 inline Findings check_shape(const SourceFile& file) {
   Findings findings;
   const std::string extension = std::filesystem::path(file.path).extension().string();
   const int limit = extension == ".hpp" ? kMaxHeaderLines : kMaxSourceLines;
   const auto lines = static_cast<int>(lines_of(file.text).size());
   if (lines > limit) {
-    findings.push_back({file.path, 0, std::to_string(lines) + " lines, more than " + std::to_string(limit) + ": split it"});
+    findings.push_back(
+        {file.path, 0, std::to_string(lines) + " lines, more than " + std::to_string(limit) + ": split it"});
+  }
+  const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };  // of a character
+  for (int line = 1; const std::string& text : lines_of(file.text)) {
+    if (std::ranges::count_if(text, is_first_byte) > kMaxColumns) {
+      findings.push_back({file.path, line, "more than " + std::to_string(kMaxColumns) + " characters: break the line"});
+    }
+    ++line;
   }
   if (extension != ".cpp" && file.text.find("#pragma once") == std::string::npos) {
     findings.push_back({file.path, 0, "a header needs #pragma once"});
@@ -249,11 +263,19 @@ inline Findings check(const SourceFile& file) {
   return all;
 }
 
-/// Entries of the top folder that have no place there. Build trees (build, build-x) are never committed and do not count.
+/// Entries of the top folder that have no place there. Build trees (build, build-x) are never committed and do not
+/// count.
 inline Findings check_top_level(const std::vector<std::string>& entries) {
-  static const std::vector<std::string> allowed = {
-      "CMakeLists.txt", "CMakePresets.json", "CMakeUserPresets.json", "LICENSE", "README.md", "data", "include", "src", "tests",
-      "tools"};
+  static const std::vector<std::string> allowed = {"CMakeLists.txt",
+                                                   "CMakePresets.json",
+                                                   "CMakeUserPresets.json",
+                                                   "LICENSE",
+                                                   "README.md",
+                                                   "data",
+                                                   "include",
+                                                   "src",
+                                                   "tests",
+                                                   "tools"};
   Findings findings;
   for (const std::string& entry : entries) {
     const bool dotfile = entry.front() == '.';

@@ -38,9 +38,10 @@ TEST(WithoutComments, BlanksCommentsAndLiteralsAndKeepsLines) {
 }
 
 TEST(FloorIncludes, AFloorMayIncludeItselfAndLowerOnes) {
-  EXPECT_THAT(check_floor_includes(core_header("#include \"deltadyn/kinematics/x.hpp\"\n#include \"deltadyn/core/y.hpp\"\n"
-                                               "#include <Eigen/Core>\n// #include \"deltadyn/io/csv.hpp\"\n")),
-              IsEmpty());
+  EXPECT_THAT(
+      check_floor_includes(core_header("#include \"deltadyn/kinematics/x.hpp\"\n#include \"deltadyn/core/y.hpp\"\n"
+                                       "#include <Eigen/Core>\n// #include \"deltadyn/io/csv.hpp\"\n")),
+      IsEmpty());
 }
 
 TEST(FloorIncludes, AHigherFloorIsFoundWithItsLine) {
@@ -55,7 +56,8 @@ TEST(FloorIncludes, EveryFloorIsKeptFromAllAboveIt) {
   for (const std::string& lower : floors()) {
     for (const std::string& upper : floors()) {
       const bool allowed = floor_number(upper) <= floor_number(lower);
-      EXPECT_EQ(check_floor_includes({"src/" + lower + "/a.cpp", "#include \"deltadyn/" + upper + "/b.hpp\""}).empty(), allowed)
+      EXPECT_EQ(check_floor_includes({"src/" + lower + "/a.cpp", "#include \"deltadyn/" + upper + "/b.hpp\""}).empty(),
+                allowed)
           << lower << " includes " << upper;
     }
   }
@@ -72,9 +74,10 @@ TEST(FloorIncludes, UnknownFoldersUmbrellasAndDetoursAreFound) {
 TEST(Core, BannedHeadersAreFoundOnEveryFloorDownToFirmwareOnly) {
   for (const std::string& floor : floors()) {
     const bool core = floor_number(floor) <= floor_number("firmware");
-    for (const std::string header : {"iostream", "vector", "string", "map", "memory", "functional", "stdexcept", "sstream",
-                                     "fstream", "exception", "new", "cstdlib"}) {
-      EXPECT_THAT(check_core({"include/deltadyn/" + floor + "/a.hpp", "#include <" + header + ">"}), SizeIs(core ? 1 : 0))
+    for (const std::string header : {"iostream", "vector", "string", "map", "memory", "functional", "stdexcept",
+                                     "sstream", "fstream", "exception", "new", "cstdlib"}) {
+      EXPECT_THAT(check_core({"include/deltadyn/" + floor + "/a.hpp", "#include <" + header + ">"}),
+                  SizeIs(core ? 1 : 0))
           << floor << " includes " << header;
     }
   }
@@ -90,11 +93,11 @@ TEST(Core, HeapExceptionsAndRunTimeTypesAreFound) {
 }
 
 TEST(Core, InnocentTextIsLeftAlone) {
-  EXPECT_THAT(
-      check_core(core_header("// throws nothing new, try it\n/* new throw */\nconst char* kText = \"throw new\";\n"
-                             "int new_value = renew(trying);\nFoo(const Foo&) = delete;\nVector<T, 3> v;\nint free_joints;\n"
-                             "#include <cmath>\n#include <type_traits>\n")),
-      IsEmpty());
+  EXPECT_THAT(check_core(core_header(
+                  "// throws nothing new, try it\n/* new throw */\nconst char* kText = \"throw new\";\n"
+                  "int new_value = renew(trying);\nFoo(const Foo&) = delete;\nVector<T, 3> v;\nint free_joints;\n"
+                  "#include <cmath>\n#include <type_traits>\n")),
+              IsEmpty());
 }
 
 TEST(WrappedLibraries, EachHasOneHome) {
@@ -102,10 +105,11 @@ TEST(WrappedLibraries, EachHasOneHome) {
   EXPECT_THAT(check_wrapped_libraries({"src/excitation/search.cpp", "#include <nlopt.hpp>"}), IsEmpty());
   EXPECT_THAT(check_wrapped_libraries({"src/io/urdf.cpp", "#include <urdf_parser/urdf_parser.h>"}), IsEmpty());
   EXPECT_THAT(check_wrapped_libraries({"tests/model/a_test.cpp", "#include <ceres/jet.h>"}), IsEmpty());
-  for (const std::string path : {"include/deltadyn/identification/fit.hpp", "src/report/html.cpp", "tools/delta-model.cpp"}) {
-    EXPECT_THAT(
-        check_wrapped_libraries({path, "#include <ceres/ceres.h>\n#include <nlopt.hpp>\n#include \"urdf_model/model.h\"\n"}),
-        SizeIs(3))
+  for (const std::string path :
+       {"include/deltadyn/identification/fit.hpp", "src/report/html.cpp", "tools/delta-model.cpp"}) {
+    EXPECT_THAT(check_wrapped_libraries(
+                    {path, "#include <ceres/ceres.h>\n#include <nlopt.hpp>\n#include \"urdf_model/model.h\"\n"}),
+                SizeIs(3))
         << path;
   }
 }
@@ -130,15 +134,18 @@ TEST(Shape, LongFilesAndUnguardedHeadersAreFound) {
   EXPECT_THAT(check_shape({"src/io/a.cpp", lines(kMaxSourceLines)}), IsEmpty());
   EXPECT_THAT(check_shape({"src/io/a.cpp", lines(kMaxSourceLines + 1)}), SizeIs(1));
   EXPECT_THAT(check_shape({"include/deltadyn/io/a.hpp", "int x;\n"}), SizeIs(1));
+  const std::string wide = std::string(static_cast<std::size_t>(kMaxColumns - 1), ' ') + "\u00B2";
+  EXPECT_THAT(check_shape({"src/io/a.cpp", wide + "\n"}), IsEmpty());
+  EXPECT_THAT(check_shape({"src/io/a.cpp", wide + " \n"}), SizeIs(1));
 }
 
 TEST(TopLevel, OnlyWhatTheDesignNamesHasAPlace) {
-  EXPECT_THAT(check_top_level({"CMakeLists.txt", "include", "src", "tools", "tests", "data", "README.md", "CMakePresets.json",
-                               "LICENSE", ".gitignore", ".ci", "build", "build-clang"}),
+  EXPECT_THAT(check_top_level({"CMakeLists.txt", "include", "src", "tools", "tests", "data", "README.md",
+                               "CMakePresets.json", "LICENSE", ".gitignore", ".ci", "build", "build-clang"}),
               IsEmpty());
-  EXPECT_THAT(
-      check_top_level({"src", "scripts", "notes.txt", "builder"}),
-      ElementsAre(Field(&Finding::path, "scripts"), Field(&Finding::path, "notes.txt"), Field(&Finding::path, "builder")));
+  EXPECT_THAT(check_top_level({"src", "scripts", "notes.txt", "builder"}),
+              ElementsAre(Field(&Finding::path, "scripts"), Field(&Finding::path, "notes.txt"),
+                          Field(&Finding::path, "builder")));
 }
 
 }  // namespace

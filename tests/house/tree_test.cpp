@@ -23,7 +23,8 @@ TEST(Tree, EveryFileKeepsTheRules) {
 
 TEST(Tree, TopFolderHoldsOnlyWhatTheDesignNames) {
   std::vector<std::string> entries;
-  for (const auto& entry : std::filesystem::directory_iterator(kRoot)) entries.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot))
+    entries.push_back(entry.path().filename().string());
   ASSERT_FALSE(entries.empty());
   EXPECT_EQ(to_string(check_top_level(entries)), "");
 }

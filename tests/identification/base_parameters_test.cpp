@@ -1,11 +1,11 @@
 #include "deltadyn/identification/base_parameters.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <gtest/gtest.h>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/workspace.hpp"
+
 #include "support/descriptions.hpp"
 #include "support/matchers.hpp"
 #include "support/random_robot.hpp"
@@ -22,7 +22,9 @@ struct Count {
   int columns, base;
 };
 
-void PrintTo(const Count& count, std::ostream* stream) { *stream << count.label; }
+void PrintTo(const Count& count, std::ostream* stream) {
+  *stream << count.label;
+}
 
 ParameterOptions options(bool individual_limbs, bool tool) {
   ParameterOptions o;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A pendulum on its drive as bench logs show it: moves with rests between, a coarse encoder, a noisy torque with peaks, both at a few
-/// hundred Hz.
+/// A pendulum on its drive as bench logs show it: moves with rests between, a coarse encoder, a noisy torque with
+/// peaks, both at a few hundred Hz.
 
 #include <cmath>
 #include <numbers>
@@ -24,9 +24,11 @@ struct BenchMove {
 
   [[nodiscard]] double position(double t) const {
     const double phase = 0.9 * static_cast<double>(seed);
-    if (!rests) return 0.75 * std::sin(2.8 * t + phase) + 0.45 * std::sin(6.6 * t + 2 * phase) + 0.18 * std::sin(13.8 * t);
+    if (!rests)
+      return 0.75 * std::sin(2.8 * t + phase) + 0.45 * std::sin(6.6 * t + 2 * phase) + 0.18 * std::sin(13.8 * t);
     // There and back within the first half of every four seconds, rest in the second.
-    const double s = std::min(1.0, std::fmod(t, 4.0) / 2.0), go = s - std::sin(2 * std::numbers::pi * s) / (2 * std::numbers::pi);
+    const double s = std::min(1.0, std::fmod(t, 4.0) / 2.0),
+                 go = s - std::sin(2 * std::numbers::pi * s) / (2 * std::numbers::pi);
     const bool away = static_cast<long>(std::floor(t / 4.0)) % 2 == 0;
     return 3 * (away ? go : 1 - go) + std::pow(std::sin(std::numbers::pi * s), 2) * 0.4 * std::sin(13.2 * t + phase);
   }

@@ -60,7 +60,8 @@ TEST_P(ConsistentFitCases, DataDecideWhatTheySeeWhateverThePrior) {
     const ConsistentFitOptions options = make_options(set, metric);
     const ConsistentFitSummary from_low = fit_consistent_parameters(low, options);
     const ConsistentFitSummary from_high = fit_consistent_parameters(high, options);
-    EXPECT_LT((low.A * (from_low.p - from_high.p)).squaredNorm(), 4 * (options.data_misfit_rise + options.certificate_gap));
+    EXPECT_LT((low.A * (from_low.p - from_high.p)).squaredNorm(),
+              4 * (options.data_misfit_rise + options.certificate_gap));
     // the smallest chi^2 on the consistent set is a property of the data: it is the reference of the choice of lambda
     const ConsistentFitOptions convex = make_options(set, FitMetric::relative);
     const double minimum = fit_consistent_parameters(low, convex).data_cost_min;
@@ -98,8 +99,8 @@ TEST_P(ConsistentFitCases, StaysConsistentWherePlainLeastSquaresDoesNot) {
 
 TEST_P(ConsistentFitCases, VariablesGiveTheParameters) {
   const auto [set, metric] = GetParam();
-  const ConsistentFitSummary summary =
-      fit_consistent_parameters(random_problem(20, kRank, 1e3, 1.2, set == ParameterSet::reduced), make_options(set, metric));
+  const ConsistentFitSummary summary = fit_consistent_parameters(
+      random_problem(20, kRank, 1e3, 1.2, set == ParameterSet::reduced), make_options(set, metric));
   for (int body = 0; body < kBodies; ++body) {
     const InertialVector<double> p = body_of(summary.p, body);
     const LogCholeskyVector<double> pi = summary.pi.segment<10>(10 * body);
@@ -116,8 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{ParameterSet::full, FitMetric::bregman}, Case{ParameterSet::full, FitMetric::riemannian}));
 
 TEST(ConsistentFit, NoFeasiblePointIsLower) {
-  // J written out once more, for the relative metric and the full set; the problem is convex, so that a segment from p to any
-  // consistent point must not go down.
+  // J written out once more, for the relative metric and the full set; the problem is convex, so that a segment from p
+  // to any consistent point must not go down.
   const ConsistentFitProblem problem = random_problem(30, kRank, 100, 0.8, false);
   ConsistentFitOptions options = make_options(ParameterSet::full, FitMetric::relative);
   options.regularization = 0.5;
@@ -128,9 +129,16 @@ TEST(ConsistentFit, NoFeasiblePointIsLower) {
   for (int body = 0; body < kBodies; ++body) {
     const PseudoInertia<double> M = to_pseudo_inertia(body_of(problem.prior, body));
     const double slender = 0.01 * M.topLeftCorner<3, 3>().trace();
-    const double natural[10] = {
-        M(3, 3), std::sqrt(M(0, 0) * M(3, 3)), std::sqrt(M(1, 1) * M(3, 3)), std::sqrt(M(2, 2) * M(3, 3)), slender, slender,
-        slender, std::sqrt(M(0, 0) * M(1, 1)), std::sqrt(M(1, 1) * M(2, 2)), std::sqrt(M(0, 0) * M(2, 2))};
+    const double natural[10] = {M(3, 3),
+                                std::sqrt(M(0, 0) * M(3, 3)),
+                                std::sqrt(M(1, 1) * M(3, 3)),
+                                std::sqrt(M(2, 2) * M(3, 3)),
+                                slender,
+                                slender,
+                                slender,
+                                std::sqrt(M(0, 0) * M(1, 1)),
+                                std::sqrt(M(1, 1) * M(2, 2)),
+                                std::sqrt(M(0, 0) * M(2, 2))};
     for (int k = 0; k < 10; ++k) {
       if (scale(10 * body + k) == 0) scale(10 * body + k) = natural[k];
     }
@@ -163,8 +171,9 @@ TEST(ConsistentFit, IsProvenHoweverSharpTheDataAndHoweverThinTheBodiesEnd) {
       for (const int rank : {20, kRank, 60}) {
         const ConsistentFitProblem problem = random_problem(101, rank, precision, 0.7, set == ParameterSet::reduced);
         const ConsistentFitSummary summary = fit_consistent_parameters(problem, make_options(set, FitMetric::relative));
-        EXPECT_TRUE(summary.converged && summary.certificate.passed) << "precision " << precision << ", rank " << rank << "\n"
-                                                                     << summary.full_report();
+        EXPECT_TRUE(summary.converged && summary.certificate.passed)
+            << "precision " << precision << ", rank " << rank << "\n"
+            << summary.full_report();
       }
     }
   }
@@ -174,8 +183,9 @@ TEST(ConsistentFit, LeastSquaresIsTheFloorOfChiSquare) {
   const ConsistentFitProblem problem = random_problem(33, kRank, 1e3, 0.8, false);
   ConsistentFitOptions options = make_options(ParameterSet::full, FitMetric::relative);
   const ConsistentFitSummary summary = fit_consistent_parameters(problem, options);
-  const Eigen::VectorXd plain =
-      Eigen::BDCSVD<Eigen::MatrixXd>(problem.A, Eigen::ComputeThinU | Eigen::ComputeThinV).setThreshold(1e-10).solve(problem.b);
+  const Eigen::VectorXd plain = Eigen::BDCSVD<Eigen::MatrixXd>(problem.A, Eigen::ComputeThinU | Eigen::ComputeThinV)
+                                    .setThreshold(1e-10)
+                                    .solve(problem.b);
   EXPECT_EQ(summary.data_rank, kRank);
   EXPECT_NEAR(summary.data_cost_free, (problem.A * plain - problem.b).squaredNorm(), 1e-6);
   EXPECT_LE(summary.data_cost_free, summary.data_cost + 1e-9);
@@ -223,14 +233,16 @@ TEST(ConsistentFit, ZeroAndThinPriors) {
   problem.prior.segment<9>(21).setZero();                                      // platform: a mass and nothing else
   problem.prior.segment<10>(10) << 0.25, 0.129, 0, 0, 0, 0.11, 0.11, 0, 0, 0;  // strut: an ideal rod
   for (const FitMetric metric : {FitMetric::relative, FitMetric::bregman, FitMetric::riemannian}) {
-    const ConsistentFitSummary summary = fit_consistent_parameters(problem, make_options(ParameterSet::reduced, metric));
+    const ConsistentFitSummary summary =
+        fit_consistent_parameters(problem, make_options(ParameterSet::reduced, metric));
     EXPECT_TRUE(summary.converged) << summary.full_report();
     expect_consistent(summary);
     EXPECT_TRUE(summary.std.allFinite() && summary.data_share.allFinite() && summary.p.allFinite());
     EXPECT_LT((problem.A * (summary.p - truth)).squaredNorm(), kRank + 6 * std::sqrt(2.0 * kRank));
     EXPECT_THAT(summary.full_report(), HasSubstr("the prior of strut was on the boundary"));
   }
-  const ConsistentFitSummary full = fit_consistent_parameters(problem, make_options(ParameterSet::full, FitMetric::relative));
+  const ConsistentFitSummary full =
+      fit_consistent_parameters(problem, make_options(ParameterSet::full, FitMetric::relative));
   expect_consistent(full);
   EXPECT_TRUE(full.certificate.passed) << full.full_report();
 }
@@ -243,7 +255,8 @@ TEST(ConsistentFit, FrictionThatTheDataDenyGoesToZeroAndStaysPositive) {
   A.col(viscous).setZero();
   A(problem.A.rows(), viscous) = 1e3;
   Eigen::VectorXd b(problem.b.size() + 1);
-  b << problem.b - problem.A.col(viscous) * problem.prior(viscous), -50;  // -0.05 N m s/rad, fifty standard deviations below 0
+  // -0.05 N m s/rad, fifty standard deviations below 0
+  b << problem.b - problem.A.col(viscous) * problem.prior(viscous), -50;
   problem.A = A;
   problem.b = b;
   const ConsistentFitSummary summary = fit_consistent_parameters(problem);
@@ -258,7 +271,8 @@ TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
   NormalDistribution normal;
   const int rows = 400;
   ConsistentFitProblem problem;
-  for (int k = 0; k < kInertialParameters; ++k) problem.parameters.push_back({ParameterKind::inertial, 0, Body::upper_arm, k});
+  for (int k = 0; k < kInertialParameters; ++k)
+    problem.parameters.push_back({ParameterKind::inertial, 0, Body::upper_arm, k});
   for (const ParameterKind kind : {ParameterKind::viscous, ParameterKind::coulomb, ParameterKind::offset})
     problem.parameters.push_back({kind, 1});
   problem.A = Eigen::MatrixXd::Zero(rows, 13);
@@ -279,7 +293,8 @@ TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
   EXPECT_EQ(summary.variables, 4);
   const std::pair<int, double> expected[] = {{0, 95}, {10, 200}, {11, 20}, {12, -3}};
   for (const auto& [i, value] : expected) {
-    EXPECT_NEAR(summary.p(i), value, 5 * summary.std(i)) << parameter_name(problem.parameters[static_cast<std::size_t>(i)]);
+    EXPECT_NEAR(summary.p(i), value, 5 * summary.std(i))
+        << parameter_name(problem.parameters[static_cast<std::size_t>(i)]);
     EXPECT_GT(summary.data_share(i), 0.99);
   }
   EXPECT_TRUE(is_physically_consistent<double>(summary.p.head<10>()));
@@ -318,7 +333,8 @@ TEST(ConsistentFit, UnitsOfLengthDoNotMatter) {
     const Eigen::VectorXd in_metres = fit_consistent_parameters(metre, options).p;
     const Eigen::VectorXd in_millimetres = fit_consistent_parameters(millimetre, options).p.cwiseQuotient(unit);
     EXPECT_LT((metre.A * (in_metres - in_millimetres)).norm(), 0.05);
-    EXPECT_LT((in_metres - in_millimetres).cwiseQuotient(metre.prior.cwiseAbs().cwiseMax(1e-2)).cwiseAbs().maxCoeff(), 0.02);
+    EXPECT_LT((in_metres - in_millimetres).cwiseQuotient(metre.prior.cwiseAbs().cwiseMax(1e-2)).cwiseAbs().maxCoeff(),
+              0.02);
   }
 }
 
@@ -401,7 +417,8 @@ TEST(ConsistentFitRefuses, PriorsThatNoBodyCanHave) {
       {ParameterSet::reduced, "upper_arm.m", 0, "'upper_arm'", "first moments but no mass"},
       {ParameterSet::full, "platform.Ixy", 0.05, "'platform'", "products of inertia"},
       {ParameterSet::reduced, "drive2.viscous", -0.1, "drive2.viscous", "negative"},
-      {ParameterSet::reduced, "strut.mcx", std::numeric_limits<double>::quiet_NaN(), "strut.mcx", "not a finite number"},
+      {ParameterSet::reduced, "strut.mcx", std::numeric_limits<double>::quiet_NaN(), "strut.mcx",
+       "not a finite number"},
   };
   for (const Row& row : rows) {
     ConsistentFitProblem problem = random_problem(50, kRank, 1e3, 1, true);
@@ -450,7 +467,8 @@ TEST(ConsistentFitRefuses, OptionsOutOfRange) {
       {"function_tolerance", [](ConsistentFitOptions& o) { o.function_tolerance = 0; }},
       {"gradient_tolerance", [](ConsistentFitOptions& o) { o.gradient_tolerance = -1e-3; }},
       {"parameter_tolerance", [](ConsistentFitOptions& o) { o.parameter_tolerance = 0; }},
-      {"prior_relative_std", [](ConsistentFitOptions& o) { o.prior_relative_std = std::numeric_limits<double>::quiet_NaN(); }},
+      {"prior_relative_std",
+       [](ConsistentFitOptions& o) { o.prior_relative_std = std::numeric_limits<double>::quiet_NaN(); }},
       {"certificate_gap", [](ConsistentFitOptions& o) { o.certificate_gap = 0; }},
   };
   const ConsistentFitProblem problem = random_problem(52, kRank, 1e3, 1, true);

@@ -19,7 +19,8 @@ PreparedLog noisy(const Robot& robot, bool filter) {
 }
 
 /// Sum of squares over the rows themselves, without any factor.
-double direct_square_error(const Robot& robot, const PreparedLog& log, int drive, RowUse use, const Eigen::VectorXd& p) {
+double direct_square_error(const Robot& robot, const PreparedLog& log, int drive, RowUse use,
+                           const Eigen::VectorXd& p) {
   RowBlock block;
   read_rows(robot, log, 0, log.rows, block);
   double sum = 0;
@@ -37,7 +38,8 @@ TEST(DataFold, HoldsTheSquareErrorOfEveryParameterVector) {
     const PreparedLog log = noisy(*robot, filter);
     const DataFold fold = fold_log(*robot, log);
     std::srand(3);
-    for (const Eigen::VectorXd& p : {delta_truth(*robot), Eigen::VectorXd(Eigen::VectorXd::Random(robot->parameters()))}) {
+    for (const Eigen::VectorXd& p :
+         {delta_truth(*robot), Eigen::VectorXd(Eigen::VectorXd::Random(robot->parameters()))}) {
       for (int j = 0; j < robot->drives(); ++j) {
         const DriveFold& regular = fold.regular[static_cast<std::size_t>(j)];
         const double expected = direct_square_error(*robot, log, j, RowUse::regular, p);
@@ -68,7 +70,8 @@ TEST(DataFold, WeightsScaleRows) {
   const Eigen::VectorXd p = delta_truth(*robot);
   const DataFold plain = fold_log(*robot, log);
   const DataFold quarter = fold_log(*robot, log, 0, &p, [](int, double) { return 0.25; });
-  EXPECT_NEAR(quarter.regular[1].square_error(p), 0.25 * plain.regular[1].square_error(p), 1e-9 * plain.regular[1].tau_square);
+  EXPECT_NEAR(quarter.regular[1].square_error(p), 0.25 * plain.regular[1].square_error(p),
+              1e-9 * plain.regular[1].tau_square);
 }
 
 }  // namespace

@@ -54,13 +54,15 @@ TEST_P(SpringColumn, IsWhatTheArmsLagTakesFromTheRigidModel) {
   const double dt = s.sample_time_s;
   const int n = robot_->drives(), joint = 1;
   const double share = 0.3, c = 1e-7;  // so stiff that first order is exact
-  const MatrixXd column = model.columns(s, effect_id<effects::JointElasticity>, joint, Vector2d(1, share), 1).front().values;
+  const MatrixXd column =
+      model.columns(s, effect_id<effects::JointElasticity>, joint, Vector2d(1, share), 1).front().values;
   ASSERT_EQ(column.cols(), n);
   const double motor = share * s.inertia(joint), arm = s.inertia(joint) - motor;
   // The lag of the arm, k = arm/c, and its differences.
   const VectorXd lag = c / arm * (s.load.col(joint) - motor * s.qdd.col(joint));
   for (Index k = 100; k + 100 < lag.size(); k += 37) {
-    const double lag_d = (lag(k + 1) - lag(k - 1)) / (2 * dt), lag_dd = (lag(k + 1) - 2 * lag(k) + lag(k - 1)) / (dt * dt);
+    const double lag_d = (lag(k + 1) - lag(k - 1)) / (2 * dt),
+                 lag_dd = (lag(k + 1) - 2 * lag(k) + lag(k - 1)) / (dt * dt);
     VectorXd q = s.q.row(k), qd = s.qd.row(k), qdd = s.qdd.row(k);
     const VectorXd rigid = torque(q, qd, qdd);
     q(joint) -= lag(k);
@@ -102,11 +104,12 @@ TEST_P(SpringColumn, CarriesEncoderNoiseAsTheWholeComputationDoes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, SpringColumn, testing::Values("delta3", "delta4", "linear-delta3"), [](const auto& tested) {
-  std::string name = tested.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Robots, SpringColumn, testing::Values("delta3", "delta4", "linear-delta3"),
+                         [](const auto& tested) {
+                           std::string name = tested.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace deltadyn

@@ -31,7 +31,9 @@ class EstimatedAmplitudes : public testing::Test {
     used_.keep_reversals.assign(static_cast<std::size_t>(robot_->drives()), false);
   }
 
-  [[nodiscard]] static Effect stribeck(double amplitude) { return effect(effect_id<effects::Stribeck>, 1, Vector2d(0.25, 2), amplitude); }
+  [[nodiscard]] static Effect stribeck(double amplitude) {
+    return effect(effect_id<effects::Stribeck>, 1, Vector2d(0.25, 2), amplitude);
+  }
   [[nodiscard]] static Effect ripple(double amplitude) {
     Effect out = effect(effect_id<effects::TorqueRipple>, 0, VectorXd::Constant(1, 9), amplitude);
     out.amplitude = Vector2d(amplitude, 0.5 * amplitude);

@@ -55,15 +55,16 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
   const bool turns = robot.drive_kind == DriveKind::revolute;
   const double quarter = std::numbers::pi / 2, degrees = 180 / std::numbers::pi;
   const std::vector<int> same = order(n, {0, 1, 2});
-  const auto q = [&](const std::string& name, std::vector<int> source, std::vector<double> factor, std::vector<double> offset,
-                     std::vector<std::string> keys, double value = 0) {
+  const auto q = [&](const std::string& name, std::vector<int> source, std::vector<double> factor,
+                     std::vector<double> offset, std::vector<std::string> keys, double value = 0) {
     return FaultyLog{name, [=](Log& log) { remap(log.q, source, factor, offset); }, std::move(keys), value};
   };
-  const auto t = [&](const std::string& name, std::vector<int> source, std::vector<double> factor, std::vector<std::string> keys,
-                     double value = 0) {
+  const auto t = [&](const std::string& name, std::vector<int> source, std::vector<double> factor,
+                     std::vector<std::string> keys, double value = 0) {
     return FaultyLog{name, [=](Log& log) { remap(log.tau, source, factor); }, std::move(keys), value};
   };
-  const auto both = [&](const std::string& name, std::vector<double> fq, std::vector<double> ft, std::vector<std::string> keys) {
+  const auto both = [&](const std::string& name, std::vector<double> fq, std::vector<double> ft,
+                        std::vector<std::string> keys) {
     return FaultyLog{name,
                      [=](Log& log) {
                        remap(log.q, same, fq);
@@ -102,7 +103,8 @@ inline std::vector<FaultyLog> faulty_logs(const RobotDescription& robot) {
     out.push_back(q("degrees of drive 1", same, for_one(n, 0, degrees, 1), zeros, {"position_scale"}));
     out.push_back(q("turns", same, for_limbs(n, 0.5 / std::numbers::pi, 1), zeros, {"position_scale"}));
     out.push_back(q("zero a quarter turn off", same, ones, for_limbs(n, quarter, 0), {"position_zero"}));
-    out.push_back(q("angle from the vertical, upwards", same, for_limbs(n, -1, 1), for_limbs(n, quarter, 0), {"position_zero"}));
+    out.push_back(
+        q("angle from the vertical, upwards", same, for_limbs(n, -1, 1), for_limbs(n, quarter, 0), {"position_zero"}));
     out.push_back(q("zero of drive 2 off by 12 degrees", same, ones, for_one(n, 1, 0.2, 0), {"position_zero"}));
     out.push_back(q("positions upwards", same, for_limbs(n, -1, 1), zeros, {"position_sign", "position_zero"}));
   } else {

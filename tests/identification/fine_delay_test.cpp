@@ -40,7 +40,8 @@ Log bristly_log(const Robot& robot, const Eigen::VectorXd& truth, std::uint64_t 
       const double rate = log.qd(k, j), state = bristle.move(k > 0 ? log.q(k, j) - log.q(k - 1, j) : 0.0);
       log.tau(k, j) += coulomb * (damped_bristle(rate, state, kDisplacement, damping_s) - (rate > 0 ? 1.0 : -1.0));
     }
-    if (only_drive < 0 || only_drive == j) log.tau.col(j) = mend_timing(log.tau.col(j), log.sample_time_s(), -delay_s, 0.0);
+    if (only_drive < 0 || only_drive == j)
+      log.tau.col(j) = mend_timing(log.tau.col(j), log.sample_time_s(), -delay_s, 0.0);
   }
   log.qd.resize(0, 0);
   log.qdd.resize(0, 0);

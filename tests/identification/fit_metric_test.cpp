@@ -53,8 +53,10 @@ TEST_P(FitMetricCases, JacobianAgreesWithExtrapolatedDifferences) {
           size = layout.scale(block.column + block.entries[static_cast<std::size_t>(k)]);
         }
         const auto central = [&](double step) -> Eigen::VectorXd {
-          EXPECT_TRUE(metric_residual(block, layout, metric, y + step * Eigen::VectorXd::Unit(y.size(), k), above, nullptr));
-          EXPECT_TRUE(metric_residual(block, layout, metric, y - step * Eigen::VectorXd::Unit(y.size(), k), below, nullptr));
+          EXPECT_TRUE(
+              metric_residual(block, layout, metric, y + step * Eigen::VectorXd::Unit(y.size(), k), above, nullptr));
+          EXPECT_TRUE(
+              metric_residual(block, layout, metric, y - step * Eigen::VectorXd::Unit(y.size(), k), below, nullptr));
           return (above - below) / (2 * step);
         };
         // Richardson: near a small eigenvalue the truncation of plain central differences exceeds the tolerance
@@ -131,7 +133,8 @@ TEST(ConvexFit, TwoStartsMeetAndTheGapNeverUnderstatesTheDistance) {
       int finite = 0;
       for (unsigned seed = 0; seed < 40; ++seed) {
         Eigen::VectorXd other(best.size());
-        for (const Block& block : prepared.layout.blocks) other.segment(block.y, block.fitted()) = moved(block, 0.3, seed);
+        for (const Block& block : prepared.layout.blocks)
+          other.segment(block.y, block.fitted()) = moved(block, 0.3, seed);
         const double share = std::pow(10.0, -0.2 * seed);
         const Eigen::VectorXd y = best + share * (other - best);
         const OptimalityCertificate certificate = prepared.convex.certify(metric, lambda, y);
@@ -140,7 +143,8 @@ TEST(ConvexFit, TwoStartsMeetAndTheGapNeverUnderstatesTheDistance) {
         finite += std::isfinite(certificate.gap) ? 1 : 0;
       }
       EXPECT_GT(finite, 5);
-      EXPECT_GT(prepared.convex.certify(metric, lambda, start.head(best.size())).gap, 1.0) << "a point far off must not pass";
+      EXPECT_GT(prepared.convex.certify(metric, lambda, start.head(best.size())).gap, 1.0)
+          << "a point far off must not pass";
     }
   }
 }

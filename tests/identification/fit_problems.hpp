@@ -78,8 +78,8 @@ inline Eigen::VectorXd values_of(const std::vector<NamedValue>& named) {
   return values;
 }
 
-/// A of the given rank in noise units: a direction of unit relative size is seen with `precision` standard deviations on average,
-/// spread over three decades as in a real regressor; b = A truth + unit noise.
+/// A of the given rank in noise units: a direction of unit relative size is seen with `precision` standard deviations
+/// on average, spread over three decades as in a real regressor; b = A truth + unit noise.
 inline ConsistentFitProblem random_problem(unsigned seed, int rank, double precision, double prior_factor, bool drop,
                                            double noise = 1) {
   const std::vector<NamedValue> truth = delta4_truth();
@@ -100,7 +100,8 @@ inline ConsistentFitProblem random_problem(unsigned seed, int rank, double preci
   for (Eigen::Index i = 0; i < P; ++i) {
     for (int j = 0; j < rank; ++j) square(i, j) = normal(random);
   }
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(square).householderQ() * Eigen::MatrixXd::Identity(P, rank);
+  const Eigen::MatrixXd Q =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(square).householderQ() * Eigen::MatrixXd::Identity(P, rank);
   ConsistentFitProblem problem;
   for (const NamedValue& named : truth) problem.parameters.push_back(parameter_id(named.name).value());
   problem.A = Q * rows;

@@ -50,7 +50,8 @@ TEST(Identify, RecoversWhatTheDataShowFromTwoPriors) {
     EXPECT_TRUE(result.fit.converged);
     EXPECT_EQ(result.base.count(), 37);
     EXPECT_LT(friction_error(*robot, result), 0.01);
-    const Eigen::VectorXd sigmas = (result.base_from_fit - result.base.B * truth).cwiseQuotient(result.base_estimate.std());
+    const Eigen::VectorXd sigmas =
+        (result.base_from_fit - result.base.B * truth).cwiseQuotient(result.base_estimate.std());
     EXPECT_LT(sigmas.cwiseAbs().maxCoeff(), 4.5);
     for (const DriveReport& drive : result.drives) EXPECT_LT(drive.rms, 1.02 * drive.rms_base);
     if (last.size() > 0) {

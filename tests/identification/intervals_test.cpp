@@ -44,8 +44,9 @@ TEST(Intervals, CoverTheTruthAndMeetTheCramerRaoBound) {
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::VectorXd bound =
-      scale.asDiagonal() *
-      Eigen::MatrixXd(scaled.ldlt().solve(Eigen::MatrixXd::Identity(base.count(), base.count()))).diagonal().cwiseProduct(scale);
+      scale.asDiagonal() * Eigen::MatrixXd(scaled.ldlt().solve(Eigen::MatrixXd::Identity(base.count(), base.count())))
+                               .diagonal()
+                               .cwiseProduct(scale);
   ASSERT_GT(bound.minCoeff(), 0);
 
   std::mt19937_64 random(2024);

@@ -1,4 +1,5 @@
-// The gate on logs of single drives on their bench: coarse encoders, rests, peaks in the torque, delays of several samples.
+// The gate on logs of single drives on their bench: coarse encoders, rests, peaks in the torque, delays of several
+// samples.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +72,8 @@ TEST_P(LogGateBench, LeavesATorqueInTimeAlone) {
   }
 }
 
-// With a vibration that the torque does not know of, the sample's own band shows no delay, or a wrong one: the model's band does.
+// With a vibration that the torque does not know of, the sample's own band shows no delay, or a wrong one: the model's
+// band does.
 TEST(LogGateBenchBand, IsThatOfTheModel) {
   std::uint64_t seed = 30;
   for (const double vibration : {5.0, 8.0}) {

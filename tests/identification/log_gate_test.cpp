@@ -68,8 +68,9 @@ const LogFinding* find(const GateResult& result, const std::vector<std::string>&
 }
 
 class LogGate : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Robots, LogGate, testing::Values("delta3", "linear-delta3", "delta4"),
-                         [](const auto& robot) { return std::string(robot.param) == "linear-delta3" ? "linear" : robot.param; });
+INSTANTIATE_TEST_SUITE_P(Robots, LogGate, testing::Values("delta3", "linear-delta3", "delta4"), [](const auto& robot) {
+  return std::string(robot.param) == "linear-delta3" ? "linear" : robot.param;
+});
 
 TEST_P(LogGate, CallsEveryFaultByItsName) {
   const auto robot = make_robot(delta_description(GetParam()));
@@ -99,14 +100,16 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
         const double prior = seed % 2 == 0 ? 0.7 : 1.3;  // 30 % off either way is no fault
         const GateResult result = examine(*robot, recorded(*robot, how), prior);
         for (const LogFinding& f : result.findings) {
-          EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
+          EXPECT_EQ(f.level, FindingLevel::fine)
+              << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
         }
       }
     }
   }
 }
 
-// A spring between base and arm is of the machine: no zero and no factor of the positions, which follow its torque to some extent.
+// A spring between base and arm is of the machine: no zero and no factor of the positions, which follow its torque to
+// some extent.
 TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
   const auto robot = make_robot(delta_description(GetParam()));
   const std::vector<Log> sound = recorded(*robot);
@@ -116,7 +119,8 @@ TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
       const double range = sound[0].q.col(0).maxCoeff() - sound[0].q.col(0).minCoeff();
       const double stiffness = share * sound[0].tau.col(0).cwiseAbs().maxCoeff() / range;
       for (Log& log : logs) {
-        for (Eigen::Index j = 0; j < (all ? 3 : 1); ++j) log.tau.col(j).array() += stiffness * (log.q.col(j).array() - 0.3);
+        for (Eigen::Index j = 0; j < (all ? 3 : 1); ++j)
+          log.tau.col(j).array() += stiffness * (log.q.col(j).array() - 0.3);
       }
       const GateResult result = examine(*robot, logs);
       for (const LogFinding& f : result.findings) {
@@ -153,7 +157,8 @@ TEST_P(LogGate, LeavesPickAndPlaceAndStandstillAlone) {
         }
         const GateResult result = examine(*robot, logs);
         for (const LogFinding& f : result.findings) {
-          EXPECT_EQ(f.level, FindingLevel::fine) << rate << " Hz, noise " << noise << ", seed " << seed << ": " << f.text;
+          EXPECT_EQ(f.level, FindingLevel::fine)
+              << rate << " Hz, noise " << noise << ", seed " << seed << ": " << f.text;
         }
       }
     }
@@ -173,7 +178,8 @@ TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
     const GateResult result = examine(*robot, logs);
     EXPECT_FALSE(result.fault()) << told(result);
     const LogFinding* finding = find(result, {"delay"}, FindingLevel::mended);
-    if (finding == nullptr && std::abs(delay) < 1e-3) finding = find(result, {"lag"}, FindingLevel::mended);  // alike if short
+    if (finding == nullptr && std::abs(delay) < 1e-3)
+      finding = find(result, {"lag"}, FindingLevel::mended);  // alike if short
     ASSERT_NE(finding, nullptr) << delay << "\n" << told(result);
     EXPECT_NEAR(finding->value, delay, 1e-4) << told(result);
     EXPECT_LT(std::abs(finding->value - delay), 4 * finding->std) << told(result);
@@ -225,7 +231,8 @@ TEST_P(LogGate, FindsClocksThatRunApart) {
   constexpr double kRate = 8e-4;
   for (Log& log : logs) {
     const Eigen::VectorXd late = -kRate * (log.t_s.array() - log.t_s(0));
-    for (Eigen::Index j = 0; j < log.drives(); ++j) log.tau.col(j) = mend_delays(log.tau.col(j), log.sample_time_s(), late);
+    for (Eigen::Index j = 0; j < log.drives(); ++j)
+      log.tau.col(j) = mend_delays(log.tau.col(j), log.sample_time_s(), late);
   }
   const GateResult result = examine(*robot, logs);
   const LogFinding* finding = find(result, {"drift"}, FindingLevel::mended);
@@ -356,7 +363,8 @@ TEST(LogGateMirror, NamesBothCausesOfAPlainFault) {
     const GateResult result = examine(*robot, logs);
     const LogFinding* finding = find(result, {"position_sign"}, FindingLevel::fault);
     ASSERT_NE(finding, nullptr) << told(result);
-    EXPECT_NE(finding->text.find("as well explained: the limbs are numbered clockwise"), std::string::npos) << told(result);
+    EXPECT_NE(finding->text.find("as well explained: the limbs are numbered clockwise"), std::string::npos)
+        << told(result);
   }
 }
 
@@ -373,7 +381,8 @@ TEST(LogGateMirror, IsSilentOnSoundLogs) {
       how.unbalance = seed % 3 == 0 ? 0.005 : 0;
       how.seed = ++seed;
       const GateResult result = examine(*robot, recorded(*robot, how));
-      EXPECT_EQ(find(result, {"mirrored"}, FindingLevel::warning), nullptr) << noise << " " << fast_hz << "\n" << told(result);
+      EXPECT_EQ(find(result, {"mirrored"}, FindingLevel::warning), nullptr) << noise << " " << fast_hz << "\n"
+                                                                            << told(result);
     }
   }
 }
@@ -384,7 +393,8 @@ TEST(LogGateDerivatives, AreComparedWithThePositions) {
   const Log sound = synthetic_log(*robot, delta_truth(*robot), synthetic);
   GateOptions options;
   options.given_derivatives = true;
-  EXPECT_FALSE(examine_logs(*robot, {sound}, {}, {}, options).fault()) << told(examine_logs(*robot, {sound}, {}, {}, options));
+  EXPECT_FALSE(examine_logs(*robot, {sound}, {}, {}, options).fault())
+      << told(examine_logs(*robot, {sound}, {}, {}, options));
   const auto text_of = [&](const std::function<void(Log&)>& spoil) {
     Log log = sound;
     spoil(log);
@@ -392,7 +402,8 @@ TEST(LogGateDerivatives, AreComparedWithThePositions) {
     const LogFinding* finding = find(result, {"rate"}, FindingLevel::fault);
     return finding == nullptr ? std::string("nothing") : finding->text;
   };
-  EXPECT_EQ(text_of([](Log& log) { log.qd *= 30 / 3.141592653589793; }), "qd1 is 9.55 times dq1/dt: revolutions per minute?");
+  EXPECT_EQ(text_of([](Log& log) { log.qd *= 30 / 3.141592653589793; }),
+            "qd1 is 9.55 times dq1/dt: revolutions per minute?");
   EXPECT_EQ(text_of([](Log& log) { log.qd.setZero(); }), "qd1 is zero while the drive moves");
   EXPECT_EQ(text_of([](Log& log) { log.qd *= -1; }), "qd1 is -1 times dq1/dt: the sign is wrong");
   EXPECT_EQ(text_of([](Log& log) {

@@ -105,7 +105,8 @@ TEST_F(LogProcessing, PeriodsAreAveragedWithoutLosingTheEnds) {
   options.periods = Periods::ignore;
   EXPECT_FALSE(prepare_log(*robot_, two_periods, options).period_s.has_value());
   options.periods = Periods::detect;
-  EXPECT_FALSE(prepare_log(*robot_, log(6.0), options).period_s.has_value()) << "averaging would lose a third of the log";
+  EXPECT_FALSE(prepare_log(*robot_, log(6.0), options).period_s.has_value())
+      << "averaging would lose a third of the log";
 }
 
 TEST_F(LogProcessing, SaysWhatIsWrong) {

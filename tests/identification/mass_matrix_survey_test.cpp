@@ -35,7 +35,8 @@ TEST(MassMatrixSurvey, ConsistentParametersArePositiveDefinite) {
     EXPECT_GT(survey.min_eigenvalue, 0);
     EXPECT_LE(survey.min_eigenvalue, survey.eigenvalues.minCoeff());
     EXPECT_GE(survey.max_eigenvalue, survey.eigenvalues.maxCoeff());
-    EXPECT_GE(survey.worst_condition, (survey.eigenvalues.rightCols<1>().array() / survey.eigenvalues.col(0).array()).maxCoeff());
+    EXPECT_GE(survey.worst_condition,
+              (survey.eigenvalues.rightCols<1>().array() / survey.eigenvalues.col(0).array()).maxCoeff());
     for (Eigen::Index i = 1; i < survey.eigenvalues.cols(); ++i)
       EXPECT_TRUE((survey.eigenvalues.col(i).array() >= survey.eigenvalues.col(i - 1).array()).all());
   }

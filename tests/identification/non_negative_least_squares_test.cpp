@@ -61,8 +61,8 @@ TEST(NonNegativeLeastSquares, IsTheBestOfAllSetsOfColumns) {
   int bounded = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const Problem problem = random_problem(random, 2 + trial % 6);
-    const auto found =
-        non_negative_least_squares(problem.C.transpose() * problem.C, problem.C.transpose() * problem.r, problem.positive);
+    const auto found = non_negative_least_squares(problem.C.transpose() * problem.C, problem.C.transpose() * problem.r,
+                                                  problem.positive);
     for (Index i = 0; i < found.x.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       EXPECT_TRUE(found.x(i) >= 0 || !problem.positive[at]);

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Logs of a robot at its work: quick moves from point to point with stops in between, where static friction takes any value.
+/// Logs of a robot at its work: quick moves from point to point with stops in between, where static friction takes any
+/// value.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,8 @@ struct PickAndPlace {
   double reach = 0.6;                   ///< of the workspace's radius
 };
 
-/// Moves of minimum jerk between random points. At rest each drive's Coulomb friction holds a share of its load that is drawn anew.
+/// Moves of minimum jerk between random points. At rest each drive's Coulomb friction holds a share of its load that is
+/// drawn anew.
 inline Log pick_and_place_log(const Robot& robot, const Eigen::VectorXd& p, const SyntheticOptions& options,
                               const PickAndPlace& work = {}) {
   const int n = robot.drives();

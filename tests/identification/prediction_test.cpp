@@ -34,7 +34,9 @@ TEST(Prediction, ModelIsInverseDynamicsOfTheState) {
   const Prediction prediction = predict(*robot, log, p);
   Eigen::VectorXd tau(3);
   for (Eigen::Index k = 0; k < prediction.rows(); k += 100) {
-    ASSERT_EQ(robot->inverse_dynamics(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), p, tau), Status::ok);
+    ASSERT_EQ(robot->inverse_dynamics(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(),
+                                      p, tau),
+              Status::ok);
     EXPECT_LT((prediction.model.row(k).transpose() - tau).cwiseAbs().maxCoeff(), 1e-10);
   }
 }

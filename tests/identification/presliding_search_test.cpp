@@ -61,7 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Displacements, Presliding, ::testing::Values(1.5e-3, 4e
 
 class BristleDamping : public ::testing::TestWithParam<std::pair<double, double>> {};
 
-// Its torque about reversals follows the acceleration: unseen, it makes inertia come out too large and the displacement too small.
+// Its torque about reversals follows the acceleration: unseen, it makes inertia come out too large and the displacement
+// too small.
 TEST_P(BristleDamping, IsFoundAndLeavesTheInertiaAlone) {
   const auto robot = axis();
   const auto [displacement, damping_s] = GetParam();
@@ -75,7 +76,8 @@ TEST_P(BristleDamping, IsFoundAndLeavesTheInertiaAlone) {
   }
   const Identification result = identified(*robot, logs);
   ASSERT_EQ(result.presliding.size(), 1U);
-  EXPECT_NEAR(result.presliding[0].damping_s, damping_s, std::max(4 * result.presliding[0].damping_std_s, 0.1 * damping_s));
+  EXPECT_NEAR(result.presliding[0].damping_s, damping_s,
+              std::max(4 * result.presliding[0].damping_std_s, 0.1 * damping_s));
   EXPECT_NEAR(result.presliding[0].displacement, displacement, 0.05 * displacement);
   EXPECT_NEAR(value(*robot, result.fit.p, "upper_arm.Iyy"), 0.4, 0.002);
   EXPECT_NEAR(value(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);

@@ -16,7 +16,8 @@ Eigen::VectorXd noise(std::uint64_t seed, double memory = 0.0) {
   NormalDistribution normal;
   Eigen::VectorXd e(kRows);
   double state = 0;
-  for (Eigen::Index k = 0; k < kRows; ++k) e(k) = state = memory * state + std::sqrt(1 - memory * memory) * normal(random);
+  for (Eigen::Index k = 0; k < kRows; ++k)
+    e(k) = state = memory * state + std::sqrt(1 - memory * memory) * normal(random);
   return e;
 }
 

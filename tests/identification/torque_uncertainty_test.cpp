@@ -10,7 +10,8 @@ namespace {
 
 /// The axis: force = m a + viscous v + Coulomb sign(v).
 struct Axis {
-  std::unique_ptr<Robot> robot = make_robot(read_robot_file(std::string(DELTADYN_SOURCE_DIR) + "/data/robots/emps.urdf"));
+  std::unique_ptr<Robot> robot =
+      make_robot(read_robot_file(std::string(DELTADYN_SOURCE_DIR) + "/data/robots/emps.urdf"));
   BaseParameters base = find_base_parameters(*robot);
   Eigen::VectorXd p = Eigen::VectorXd::Zero(robot->parameters());
 
@@ -64,9 +65,11 @@ TEST(TorqueUncertainty, TakesTheRowsOfTheLogsEvenly) {
 TEST(TorqueUncertainty, RefusesWhatDoesNotFit) {
   Axis axis;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Zero(1, 1), covariance = Eigen::MatrixXd::Identity(3, 3);
-  EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, Eigen::MatrixXd::Identity(2, 2), axis.p, one, one, one), Error);
-  EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, one, one, Eigen::MatrixXd::Zero(2, 1)),
+  EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, Eigen::MatrixXd::Identity(2, 2), axis.p, one, one, one),
                Error);
+  EXPECT_THROW(
+      (void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, one, one, Eigen::MatrixXd::Zero(2, 1)),
+      Error);
   const Eigen::MatrixXd none(0, 1);
   EXPECT_THROW((void)torque_uncertainty(*axis.robot, axis.base, covariance, axis.p, none, none, none), Error);
 }

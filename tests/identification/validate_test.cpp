@@ -43,8 +43,9 @@ TEST(Validate, FiguresAreThoseOfTheRows) {
   }
 }
 
-// With bristles in the model of a drive, the rows near reversals of the telescope and of the drive itself are rows to judge by, as they
-// are in the fit. Where the model does not predict them, and for drives without bristles, they stay out.
+// With bristles in the model of a drive, the rows near reversals of the telescope and of the drive itself are rows to
+// judge by, as they are in the fit. Where the model does not predict them, and for drives without bristles, they stay
+// out.
 TEST(Validate, RowsNearReversalsCountWhereTheModelHoldsThem) {
   const auto robot = make_robot(delta_description("delta4"));
   SyntheticOptions synthetic;

@@ -32,7 +32,8 @@ struct Fitted {
     prior.head(10) << 2, 0, 0, 0, 0.4, 0.4, 0.4, 0, 0, 0;
     prior.tail(2) << 1, 1;
     const Identification found = identify(*robot, logs, prior, {}, IdentificationOptions{});
-    model = {found.fit.p, {}, found.processing.presliding, found.processing.presliding_damping_s, found.processing.ripples};
+    model = {
+        found.fit.p, {}, found.processing.presliding, found.processing.presliding_damping_s, found.processing.ripples};
   }
   static Log log(std::uint64_t seed) {
     AxisLog dirty;
@@ -70,8 +71,8 @@ TEST(ValidateWritten, TakesASmallDelayOutUnlessItIsToStayOrEffectsAreKnown) {
 TEST(HoldsTiming, OfEffectsThatShiftTheTorqueInTime) {
   EXPECT_FALSE(holds_timing({}));
   EXPECT_FALSE(holds_timing({effect(effect_id<effects::Stribeck>, {0.1, 2}, 0.5)}));
-  EXPECT_TRUE(
-      holds_timing({effect(effect_id<effects::Stribeck>, {0.1, 2}, 0.5), effect(effect_id<effects::TimeSkew>, {1e-3}, 1e-3)}));
+  EXPECT_TRUE(holds_timing(
+      {effect(effect_id<effects::Stribeck>, {0.1, 2}, 0.5), effect(effect_id<effects::TimeSkew>, {1e-3}, 1e-3)}));
   EXPECT_TRUE(holds_timing({effect(effect_id<effects::CurrentLag>, {1e-3, 1}, 1e-3)}));
 }
 

@@ -27,7 +27,8 @@ NamedValues nominal(const RobotDescription& robot) {
   NamedValues named;
   for (int k = 0; k < made->parameters(); ++k) {
     const std::string& name = made->parameter_names()[static_cast<std::size_t>(k)];
-    if (name.find("viscous") == std::string::npos && name.find("coulomb") == std::string::npos) named[name] = values.value(k);
+    if (name.find("viscous") == std::string::npos && name.find("coulomb") == std::string::npos)
+      named[name] = values.value(k);
   }
   return named;
 }
@@ -109,7 +110,8 @@ const Case kCases[] = {
     {"FlippedDrives", "delta3", kAside, [](auto& c) { c.flipped_axes = true; }, kNone},
     {"FlippedRails", "linear-delta3", kLinearAside, [](auto& c) { c.flipped_axes = true; }, kNone},
     {"EndFrames", "delta4", kAside, [](auto& c) { c.end_frames = true; }, kNone},
-    {"OneLinkALimb", "delta3", kAside, [](auto& c) { c.one_link_a_limb = true; }, [](auto& f) { f.strut_spacing = 0.1; }},
+    {"OneLinkALimb", "delta3", kAside, [](auto& c) { c.one_link_a_limb = true; },
+     [](auto& f) { f.strut_spacing = 0.1; }},
     {"OneLinkALimbLinear", "linear-delta3", kLinearAside, [](auto& c) { c.one_link_a_limb = true; },
      [](auto& f) { f.strut_spacing = 0.1; }},
     {"PlateFloats", "delta3", kAside, [](auto& c) { c.plate_hangs = PlateHangs::floating; }, kNone},
@@ -163,7 +165,8 @@ TEST_P(Cad, GivesBackTheRobotItWasDrawnFrom) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, Cad, ::testing::ValuesIn(kCases), [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(Table, Cad, ::testing::ValuesIn(kCases),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 /// Without masses only the closure of three like limbs tells the plate's radius.
 TEST(Adopt, NeedsNoMasses) {
@@ -230,8 +233,8 @@ const Ask kAsks[] = {
      kNone, same, "the length of the struts cannot be found", "--strut"},
     {"Plate", [](auto& c) { c.plate_hangs = PlateHangs::fixed_to_base; }, kNone, same, "no strut carries a plate",
      "--plate LINK"},
-    {"PlateUnknown", [](auto& c) { c.plate_hangs = PlateHangs::fixed_to_base; }, [](auto& f) { f.plate = "tray"; }, same,
-     "no link 'tray'", "name a link"},
+    {"PlateUnknown", [](auto& c) { c.plate_hangs = PlateHangs::fixed_to_base; }, [](auto& f) { f.plate = "tray"; },
+     same, "no link 'tray'", "name a link"},
     {"DrivesUnknown", kPlain,
      [](auto& f) {
        f.drives = {"J1", "J2", "J3"};
@@ -240,7 +243,8 @@ const Ask kAsks[] = {
     {"WrongRadius", kPlain, [](auto& f) { f.platform_radius = 0.2; }, same,
      "--platform-radius is 0.2 m, but the pose of the CAD closes with 0.05", "leave the flag out"},
     {"Millimetres", [](auto& c) { c.unit = 1000; }, kNone, same, "looks like millimetres", "--length-unit mm"},
-    {"SpacingGivenTwice", kPlain, [](auto& f) { f.strut_spacing = 0.2; }, same, "--strut-spacing is 0.2 m", "leave the flag out"},
+    {"SpacingGivenTwice", kPlain, [](auto& f) { f.strut_spacing = 0.2; }, same, "--strut-spacing is 0.2 m",
+     "leave the flag out"},
     {"NoMassNoFrameNoPlate",
      [](auto& c) {
        c.plate_hangs = PlateHangs::floating;
@@ -250,7 +254,8 @@ const Ask kAsks[] = {
     {"ASingleArm", kPlain, kNone,
      [](std::string) {
        return std::string(
-           "<robot name=\"a\"><link name=\"b\"/><link name=\"c\"/><joint name=\"j\" type=\"continuous\"><parent link=\"b\"/>"
+           "<robot name=\"a\"><link name=\"b\"/><link name=\"c\"/><joint name=\"j\" type=\"continuous\"><parent "
+           "link=\"b\"/>"
            "<child link=\"c\"/><axis xyz=\"0 0 1\"/></joint></robot>");
      },
      "no base with three drives", "delta-model create axis"},
@@ -276,7 +281,8 @@ TEST_P(CadAsks, ByTheNameOfTheFlag) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, CadAsks, ::testing::ValuesIn(kAsks), [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(Table, CadAsks, ::testing::ValuesIn(kAsks),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace deltadyn

@@ -69,10 +69,10 @@ void expect_same_but_gravity(const RobotDescription& a, const RobotDescription& 
 
 TEST(BaseFrame, FixedJointsBeforeTheRobotTurnGravity) {
   const std::vector<std::vector<FixedJoint>> mounts = {
-      {{Vec(0, 0, 1.5), Vec(3.14159265358979, 0, 0)}},                                       // hangs
-      {{Vec(0.3, -0.2, 1), Vec(0, 0, 0)}},                                                   // stands elsewhere
-      {{Vec(0, 0, 2), Vec(0, 0, 0.7)}},                                                      // limb 1 is not on +x of the world
-      {{Vec(0, 0.1, 2), Vec(0.2, -0.4, 1.1)}},                                               // leans
+      {{Vec(0, 0, 1.5), Vec(3.14159265358979, 0, 0)}},  // hangs
+      {{Vec(0.3, -0.2, 1), Vec(0, 0, 0)}},              // stands elsewhere
+      {{Vec(0, 0, 2), Vec(0, 0, 0.7)}},                 // limb 1 is not on +x of the world
+      {{Vec(0, 0.1, 2), Vec(0.2, -0.4, 1.1)}},          // leans
       {{Vec(0, 0, 1), Vec(1.5707963267948966, 0, 0)}, {Vec(0.1, 0, 0), Vec(0, 0.3, -0.5)}},  // a wall, then a wedge
       {{Vec(0, 0, 1), Vec(0.4, 0, 0)}, {Vec(0, 0, 0), Vec(0, 1, 0)}, {Vec(1, 2, 3), Vec(0, 0, 2)}},
   };
@@ -120,9 +120,10 @@ TEST(BaseFrame, DrivesOnBracketsBelowATurnedRoot) {
     const Vec place = R * limb.p_WD;
     const auto origin = text.find("<origin", at), end = text.find("/>", origin);
     text.replace(origin, end + 2 - origin, "<origin xyz=\"0 0 0\" rpy=\"0 0 0\"/>");
-    text.insert(at, fmt::format("<link name=\"bracket{0}\"/><joint name=\"b{0}\" type=\"fixed\"><parent link=\"base\"/><child "
-                                "link=\"bracket{0}\"/><origin xyz=\"{1} {2} {3}\" rpy=\"{4} {5} {6}\"/></joint>",
-                                i, place.x(), place.y(), place.z(), rpy.z(), rpy.y(), rpy.x()));
+    text.insert(
+        at, fmt::format("<link name=\"bracket{0}\"/><joint name=\"b{0}\" type=\"fixed\"><parent link=\"base\"/><child "
+                        "link=\"bracket{0}\"/><origin xyz=\"{1} {2} {3}\" rpy=\"{4} {5} {6}\"/></joint>",
+                        i, place.x(), place.y(), place.z(), rpy.z(), rpy.y(), rpy.x()));
   }
   const RobotDescription read = robot_from_urdf(text, "robot.urdf");
   expect_same_but_gravity(read, robot);

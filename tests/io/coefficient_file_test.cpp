@@ -24,8 +24,9 @@ TEST(CoefficientFile, HoldsExactlyWhatWasGiven) {
     segments.push_back(series);
   }
   write_coefficients(folder.path("c.csv"), segments, robot);
-  EXPECT_THAT(folder.read("c.csv"), HasSubstr("segment,harmonic,frequency_hz,x_sin_m,x_cos_m,y_sin_m,y_cos_m,z_sin_m,z_cos_m,"
-                                              "psi_sin_rad,psi_cos_rad\n1,0,"));
+  EXPECT_THAT(folder.read("c.csv"),
+              HasSubstr("segment,harmonic,frequency_hz,x_sin_m,x_cos_m,y_sin_m,y_cos_m,z_sin_m,z_cos_m,"
+                        "psi_sin_rad,psi_cos_rad\n1,0,"));
   const CsvTable table = read_csv(folder.path("c.csv"));
   ASSERT_EQ(table.rows(), 5U);  // harmonics 0 and 1, then 0 to 3
   for (std::size_t row = 0; row < table.rows(); ++row) {

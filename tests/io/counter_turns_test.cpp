@@ -21,7 +21,8 @@ using namespace testing;
 constexpr double kPi = std::numbers::pi;
 constexpr double kCountsPerRad = 20.0 * 8192.0 / (2.0 * kPi);
 
-/// 16 bits of counts of a motor behind a gear of 20, whose encoder has 8192 counts in a turn. `start` [rad] is added to the motion.
+/// 16 bits of counts of a motor behind a gear of 20, whose encoder has 8192 counts in a turn. `start` [rad] is added to
+/// the motion.
 Log counted(double lower, double upper, double start, double swing, double offset = 0, double sign = 1) {
   const TemporaryFolder folder;
   RobotDescription robot = one_drive();
@@ -42,23 +43,28 @@ Log counted(double lower, double upper, double start, double swing, double offse
 
 double largest_error(const Log& log, double start, double swing) {
   double largest = 0;
-  for (int k = 0; k < kMotionRows; ++k) largest = std::max(largest, std::abs(log.q(k, 0) - start - swing * position(0.001 * k)));
+  for (int k = 0; k < kMotionRows; ++k)
+    largest = std::max(largest, std::abs(log.q(k, 0) - start - swing * position(0.001 * k)));
   return largest;
 }
 
-// One map serves all logs of a machine: the fast one that jumps, the slow one that does not, and those that start elsewhere.
+// One map serves all logs of a machine: the fast one that jumps, the slow one that does not, and those that start
+// elsewhere.
 TEST(CounterTurns, TheLimitsOfTheRobotFileTellTheTurn) {
   for (const double start : {-0.1, 0.4, 0.6}) {
     for (const double swing : {1.0, 0.1, -0.05}) {
       for (const double sign : {1.0, -1.0}) {
-        EXPECT_LT(largest_error(counted(-0.9, 1.6, start, swing, 0, sign), start, swing), 3e-5) << start << " " << swing;
-        EXPECT_LT(largest_error(counted(-0.9, 1.6, start, swing, 30000, sign), start, swing), 3e-5) << start << " " << swing;
+        EXPECT_LT(largest_error(counted(-0.9, 1.6, start, swing, 0, sign), start, swing), 3e-5)
+            << start << " " << swing;
+        EXPECT_LT(largest_error(counted(-0.9, 1.6, start, swing, 30000, sign), start, swing), 3e-5)
+            << start << " " << swing;
       }
     }
   }
   const Log jumping = counted(-0.9, 1.6, 0, -1.0);
-  EXPECT_THAT(jumping.notes, Contains(HasSubstr("1 jump was taken out; 1 turn of 65536 was subtracted, so that it moves inside "
-                                                "the limits of the robot file, -0.9 to 1.6 rad")));
+  EXPECT_THAT(jumping.notes,
+              Contains(HasSubstr("1 jump was taken out; 1 turn of 65536 was subtracted, so that it moves inside "
+                                 "the limits of the robot file, -0.9 to 1.6 rad")));
   const Log still = counted(-0.9, 1.6, -0.3, 0.1);
   EXPECT_THAT(still.notes, Contains(HasSubstr("'Position [cnt]': 1 turn of 65536 was subtracted")));
 }
@@ -67,7 +73,8 @@ TEST(CounterTurns, WhereSeveralTurnsFitOrNoneTheFirstValueIsTakenAndSaidUnlessAn
   EXPECT_THAT(counted(-50, 50, 0.1, 1.0).notes, Contains(HasSubstr("turns of the counter fit the limits")));
   EXPECT_THAT(counted(-50, 50, 0.1, 1.0).notes, Contains(HasSubstr("give offset = 65536 [cnt] times")));
   EXPECT_THAT(counted(-0.1, 0.1, 0.1, 1.0).notes, Contains(HasSubstr("the first value taken as it is (offset")));
-  EXPECT_THAT(counted(-HUGE_VAL, HUGE_VAL, 0.1, 1.0).notes, Contains(HasSubstr("the first value taken as it is (offset")));
+  EXPECT_THAT(counted(-HUGE_VAL, HUGE_VAL, 0.1, 1.0).notes,
+              Contains(HasSubstr("the first value taken as it is (offset")));
   for (const double limit : {50.0, 0.1, HUGE_VAL}) {
     EXPECT_THAT(counted(-limit, limit, 0.1, 1.0, 20).notes, Not(Contains(HasSubstr("as it is"))));
     EXPECT_THAT(counted(-limit, limit, 0.1, 1.0, 20).notes, Contains(HasSubstr("1 jump was taken out")));

@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 
 TEST(Csv, ReadsCommentsBlanksByteOrderMarkAndWindowsLineEnds) {
   const TemporaryFolder folder;
-  const std::string path =
-      folder.write("a.csv", "\xEF\xBB\xBF# made by hand\r\nname, value ,unit\r\n\r\na, +1.5e-3 ,kg\r\n# note\r\nb,-2,\r\n");
+  const std::string path = folder.write(
+      "a.csv", "\xEF\xBB\xBF# made by hand\r\nname, value ,unit\r\n\r\na, +1.5e-3 ,kg\r\n# note\r\nb,-2,\r\n");
   const CsvTable table = read_csv(path);
   EXPECT_THAT(table.columns(), ElementsAre("name", "value", "unit"));
   ASSERT_EQ(table.rows(), 2u);

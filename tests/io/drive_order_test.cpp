@@ -41,7 +41,8 @@ TEST_P(JointNamesTest, OfABagTellTheDrivesOrTheOrderIsSaidToBeThatOfTheMessage) 
   {
     Bag bag(folder.path("log.db3"));
     bag.topic(1, "/joint_states", "sensor_msgs/msg/JointState");
-    for (int k = 0; k < 50; ++k) bag.message(1, 1000000LL * k + 7, joint_state(1000000LL * (k + 1), joints, values, values));
+    for (int k = 0; k < 50; ++k)
+      bag.message(1, 1000000LL * k + 7, joint_state(1000000LL * (k + 1), joints, values, values));
   }
   const RobotDescription robot = robot_with_yaw();
   const Log log = LogImport({folder.path("log.db3")}, robot, {}).log().log;
@@ -71,14 +72,20 @@ INSTANTIATE_TEST_SUITE_P(
         Joints{"AllLetters", {"driveB", "driveD", "driveA", "driveC"}, {2, 4, 1, 3}},
         Joints{"AxesOfAMachineTool", {"c-axis", "z-axis", "x-axis", "y-axis"}, {4, 3, 1, 2}},
         Joints{"DifferentWords", {"drive-2", "joint_3", "limb1", "yaw"}, {2, 3, 1, 4}},
-        Joints{"NamesOfTheRobotFile", {"strut1a_y", "drive3", "drive4", "strut2a_y", "drive1", "drive2"}, {0, 3, 4, 0, 1, 2}},
+        Joints{"NamesOfTheRobotFile",
+               {"strut1a_y", "drive3", "drive4", "strut2a_y", "drive1", "drive2"},
+               {0, 3, 4, 0, 1, 2}},
         Joints{"OneIsLeft", {"limb2", "limb3", "limb1", "spindle"}, {2, 3, 1, 4}, "'spindle' is left over"},
-        Joints{"YawCountsAsFirst", {"yaw_1", "arm_4", "arm_2", "arm_3"}, {4, 3, 1, 2}, "by its number 'yaw_1' would be drive 1"},
+        Joints{"YawCountsAsFirst",
+               {"yaw_1", "arm_4", "arm_2", "arm_3"},
+               {4, 3, 1, 2},
+               "by its number 'yaw_1' would be drive 1"},
         Joints{"NumbersWithGaps", {"j30", "j10", "j20", "j40"}, {3, 1, 2, 4}, "do not run from 1 or 0"},
         Joints{"NoOrder",
                {"left", "right", "rear", "top"},
                {1, 2, 3, 4},
-               "'left' as drive 1, 'right' as drive 2, 'rear' as drive 3, 'top' as drive 4: their names tell no order, so that "
+               "'left' as drive 1, 'right' as drive 2, 'rear' as drive 3, 'top' as drive 4: their names tell no order, "
+               "so that "
                "of the message is taken; check it, and where it is wrong set drive = in a column map"}),
     [](const auto& one) { return std::string(one.param.name); });
 
@@ -88,12 +95,13 @@ TEST(DriveOrder, ColumnsAreReadByTheirNamesOrAskedFor) {
   const RobotDescription robot = robot_with_yaw();
   const auto import = [&](const std::vector<std::string>& joints) {
     std::string head = "__time";
-    for (const std::string& joint : joints) head += fmt::format(",/joint_states/{0}/effort,/joint_states/{0}/position", joint);
+    for (const std::string& joint : joints)
+      head += fmt::format(",/joint_states/{0}/effort,/joint_states/{0}/position", joint);
     const auto row = [](int, double t) { return fmt::format("{:.3f},12,2,14,4,13,3,11,1\n", 1.7e9 + t); };
     return LogImport({folder.write("log.csv", recorded(head + "\n", row))}, robot, {});
   };
-  for (const auto& joints :
-       {std::vector<std::string>{"limb2_joint", "yaw", "limb3_joint", "limb1_joint"}, {"arm_b", "tool", "arm_c", "arm_a"}}) {
+  for (const auto& joints : {std::vector<std::string>{"limb2_joint", "yaw", "limb3_joint", "limb1_joint"},
+                             {"arm_b", "tool", "arm_c", "arm_a"}}) {
     const Log log = import(joints).log().log;
     for (int drive = 0; drive < 4; ++drive) {
       EXPECT_EQ(log.q(9, drive), drive + 1) << joints[0];

@@ -50,7 +50,8 @@ TEST_F(EffectFile, ReadsBackWhatItWrote) {
 }
 
 TEST_F(EffectFile, TakesTheAliasAndTheBareNumberOfADrive) {
-  const auto effects = read_effects(write("effect,joint,parameter,value,unit\ntorque_offset,3,offset,0.5,N*m\n"), robot_);
+  const auto effects =
+      read_effects(write("effect,joint,parameter,value,unit\ntorque_offset,3,offset,0.5,N*m\n"), robot_);
   ASSERT_EQ(effects.size(), 1u);
   EXPECT_EQ(effects[0].id, effect_id<effects::AsymmetricCoulomb>);
   EXPECT_EQ(effects[0].joint, 2);
@@ -76,8 +77,10 @@ TEST_F(EffectFile, RefusesWhatItDoesNotKnow) {
   refuses(header + "stribeck,drive1,friction,1,N,\n", "unit 'N'");
   refuses(header + "stribeck,drive1,friction,1,N*m,\n",
           "line 2: rate of stribeck at drive1 is missing\n  mend: add a row stribeck,drive1,rate,VALUE,rad/s,");
-  refuses(header + "hose_force,drive1,force_x,1,N,\n", "line 2, column joint: the effect hose_force cannot act at 'drive1'");
-  refuses(header + "torque_offset,drive1,offset,1,N*m,\ntorque_offset,drive1,offset,1,N*m,\n", "there twice, first in line 2");
+  refuses(header + "hose_force,drive1,force_x,1,N,\n",
+          "line 2, column joint: the effect hose_force cannot act at 'drive1'");
+  refuses(header + "torque_offset,drive1,offset,1,N*m,\ntorque_offset,drive1,offset,1,N*m,\n",
+          "there twice, first in line 2");
   refuses("effect,joint,value,unit\n", "column 'parameter' is missing");
 }
 

@@ -33,7 +33,8 @@ TEST(RippleRows, ReadBackAsTheyWere) {
   EXPECT_TRUE(match_parameters(read, {"drive1.coulomb"}).warnings.empty());
 }
 
-// One unit everywhere: waves a turn, or a metre of a sliding drive. Files that count rad, as the law does, are read as they are.
+// One unit everywhere: waves a turn, or a metre of a sliding drive. Files that count rad, as the law does, are read as
+// they are.
 TEST(RippleRows, CountWavesATurnOrAMetre) {
   const RobotDescription robot = testing_support::delta_description("delta4"),
                          linear = testing_support::delta_description("linear-delta3");

@@ -49,7 +49,8 @@ MapDefaults defaults(const std::function<void(MapDefaults&)>& change) {
 std::vector<Form> forms() {
   const MapDefaults none;
   const auto si = [](char mark) {
-    return [mark](int, double t) { return fmt::format("{1:.3f}{0}{2:.9f}{0}{3:.7f}\n", mark, t, position(t), torque(t)); };
+    return
+        [mark](int, double t) { return fmt::format("{1:.3f}{0}{2:.9f}{0}{3:.7f}\n", mark, t, position(t), torque(t)); };
   };
   std::vector<Form> all;
   all.push_back({"Brackets", recorded("Time [s],q1 [rad],tau1 [Nm]\n", si(',')), none});
@@ -57,8 +58,8 @@ std::vector<Form> forms() {
   all.push_back({"Tabs", recorded("Time [s]\tPosition [rad]\tTorque [Nm]\n", si('\t')), none});
   all.push_back({"Blanks", recorded("# t [s]  q1 [rad]  tau1 [Nm]\n", si(' ')), none});
   all.push_back({"BomAndQuotes", recorded("\xEF\xBB\xBF\"t_s\",\"q1_rad\",\"tau1_Nm\"\r\n", si(',')), none});
-  all.push_back(
-      {"DecimalComma", recorded("t_s;q1_rad;tau1_Nm\r\n", [&](int k, double t) { return with_comma(si(';')(k, t)); }), none});
+  all.push_back({"DecimalComma",
+                 recorded("t_s;q1_rad;tau1_Nm\r\n", [&](int k, double t) { return with_comma(si(';')(k, t)); }), none});
   all.push_back({"QuotedDecimalComma",
                  recorded("\"t (s)\",\"q1 (rad)\",\"tau1 (Nm)\"\n",
                           [](int, double t) {
@@ -67,22 +68,24 @@ std::vector<Form> forms() {
                                    with_comma(fmt::format("\"{:.7f}\"\n", torque(t)));
                           }),
                  none});
-  all.push_back(
-      {"PreambleAndUnitRow",
-       recorded("Recorder 7;\nRate;1000;Hz\n\nZeit;Istposition;Drehmoment\n[ms];[\xC2\xB0];[mNm]\n",
-                [](int k, double t) { return fmt::format("{};{:.8f};{:.5f}\n", k, kDegrees * position(t), 1e3 * torque(t)); }),
-       none});
-  all.push_back(
-      {"FooterAndTrailingSeparator",
-       recorded("t_us;pos_deg;trq_Nm;\n",
-                [](int k, double t) { return fmt::format("{};{:.8f};{:.7f};\n", 1000 * k, kDegrees * position(t), torque(t)); }) +
-           "EOF\n",
-       none});
+  all.push_back({"PreambleAndUnitRow",
+                 recorded("Recorder 7;\nRate;1000;Hz\n\nZeit;Istposition;Drehmoment\n[ms];[\xC2\xB0];[mNm]\n",
+                          [](int k, double t) {
+                            return fmt::format("{};{:.8f};{:.5f}\n", k, kDegrees * position(t), 1e3 * torque(t));
+                          }),
+                 none});
+  all.push_back({"FooterAndTrailingSeparator",
+                 recorded("t_us;pos_deg;trq_Nm;\n",
+                          [](int k, double t) {
+                            return fmt::format("{};{:.8f};{:.7f};\n", 1000 * k, kDegrees * position(t), torque(t));
+                          }) +
+                     "EOF\n",
+                 none});
   all.push_back({"FileTimeAndPermille",
                  recorded("Time,q1_deg,trq1_permille\n",
                           [](int k, double t) {
-                            return fmt::format("{},{:.8f},{:.4f}\n", 132959733843760000LL + 10000LL * k, kDegrees * position(t),
-                                               1e3 * torque(t) / 2.5);
+                            return fmt::format("{},{:.8f},{:.4f}\n", 132959733843760000LL + 10000LL * k,
+                                               kDegrees * position(t), 1e3 * torque(t) / 2.5);
                           }),
                  defaults([](MapDefaults& d) { d.rated_torque = {2.5}; })});
   all.push_back({"EpochOfRos",
@@ -109,23 +112,26 @@ std::vector<Form> forms() {
                             return fmt::format("{};{:.8f};{:.7f}\n", stamp, kDegrees * position(t), torque(t));
                           }),
                  none});
-  all.push_back({"NoTimeColumn",
-                 recorded("ActPos,ActTorque\n",
-                          [](int, double t) { return fmt::format("{:.8f},{:.7f}\n", kDegrees * position(t), torque(t)); }),
-                 defaults([](MapDefaults& d) {
-                   d.rate_hz = 1000;
-                   d.position_unit = "deg";
-                   d.torque_unit = "Nm";
-                 })});
   all.push_back(
-      {"Halscope",
-       recorded("# Sampling period is 1000000 ns\njoint.0.pos-fb;lcec.0.torque\n# Position: 0.000000;0.000000\n# Scale: 0;0\n",
-                [](int, double t) { return fmt::format("{:.8f};{:.4f}\n", kDegrees * position(t), 1e3 * torque(t) / 2.5); }),
+      {"NoTimeColumn",
+       recorded("ActPos,ActTorque\n",
+                [](int, double t) { return fmt::format("{:.8f},{:.7f}\n", kDegrees * position(t), torque(t)); }),
        defaults([](MapDefaults& d) {
+         d.rate_hz = 1000;
          d.position_unit = "deg";
-         d.torque_unit = "permille";
-         d.rated_torque = {2.5};
+         d.torque_unit = "Nm";
        })});
+  all.push_back({"Halscope",
+                 recorded("# Sampling period is 1000000 ns\njoint.0.pos-fb;lcec.0.torque\n# Position: "
+                          "0.000000;0.000000\n# Scale: 0;0\n",
+                          [](int, double t) {
+                            return fmt::format("{:.8f};{:.4f}\n", kDegrees * position(t), 1e3 * torque(t) / 2.5);
+                          }),
+                 defaults([](MapDefaults& d) {
+                   d.position_unit = "deg";
+                   d.torque_unit = "permille";
+                   d.rated_torque = {2.5};
+                 })});
   all.push_back({"CountsOfAMotorThatWrap",
                  recorded("Time [s],Position [cnt],Active Current [A]\n",
                           [](int, double t) {
@@ -197,13 +203,15 @@ TEST(LogImport, BringsUnequalRatesToOneGridWithoutPhaseError) {
     const double t = 0.00025 * k;
     torques += fmt::format("{:.5f},{:.9f}\n", t, torque(t) + std::sin(2.0 * std::numbers::pi * 1600.0 * t));
   }
-  const ImportedLog two = LogImport({folder.write("q.csv", positions), folder.write("tau.csv", torques)}, robot, {}).log();
+  const ImportedLog two =
+      LogImport({folder.write("q.csv", positions), folder.write("tau.csv", torques)}, robot, {}).log();
   EXPECT_THAT(two.taken.back().how, HasSubstr("low pass"));
   ASSERT_EQ(two.log.samples(), kMotionRows);
   for (int k = 20; k < kMotionRows - 20; ++k) ASSERT_NEAR(two.log.tau(k, 0), torque(0.001 * k), 2e-3) << k;
 }
 
-// Groups with time columns of their own, as spreadsheets and scopes export them: the slow one ends early, below it fields are empty.
+// Groups with time columns of their own, as spreadsheets and scopes export them: the slow one ends early, below it
+// fields are empty.
 TEST(LogImport, ColumnsBelongToTheTimeColumnToTheirLeft) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
@@ -225,7 +233,8 @@ TEST(LogImport, ColumnsBelongToTheTimeColumnToTheirLeft) {
   }
 }
 
-// A slow channel in TwinCAT's fast group, filled up with its last value: only the rows where it was sampled are its data.
+// A slow channel in TwinCAT's fast group, filled up with its last value: only the rows where it was sampled are its
+// data.
 TEST(LogImport, FilledUpRepeatsAreNoData) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
@@ -255,7 +264,8 @@ TEST(LogImport, MapGivesSourceUnitSignScaleOffsetAndDelay) {
   const std::string map = folder.write(
       "map.toml",
       "[time]\nsource = \"a\"\nunit = \"ms\"\n[[channel]]\ndrive = 1\nquantity = \"position\"\nsource = \"b\"\nunit = "
-      "\"deg\"\nsign = -1\noffset = -30\n[[channel]]\ndrive = 1\nquantity = \"torque\"\nsource = 3\nunit = \"Nm\"\nscale = "
+      "\"deg\"\nsign = -1\noffset = -30\n[[channel]]\ndrive = 1\nquantity = \"torque\"\nsource = 3\nunit = "
+      "\"Nm\"\nscale = "
       "2\ndelay_s = 0.003\n");
   ImportOptions options;
   options.map_file = map;
@@ -282,11 +292,12 @@ TEST(LogImport, TellsDrivesApartByTheNumberThatDiffersCountedFromZeroOrOne) {
     // In a mixed order, with the machine's own number in every name.
     std::string head = "Time [s]";
     for (const int drive : {2, 0, 1})
-      head +=
-          fmt::format(",Robot4.Axis{0}.ActPos [rad],Robot4.Axis{0}.SetPos [rad],Robot4.Axis{0}.ActTorque [Nm]", drive + first);
+      head += fmt::format(",Robot4.Axis{0}.ActPos [rad],Robot4.Axis{0}.SetPos [rad],Robot4.Axis{0}.ActTorque [Nm]",
+                          drive + first);
     const std::string text = recorded(head + "\n", [](int, double t) {
       std::string line = fmt::format("{:.3f}", t);
-      for (const int drive : {2, 0, 1}) line += fmt::format(",{:.6f},9,{:.6f}", position(t) + drive, torque(t) + 10 * drive);
+      for (const int drive : {2, 0, 1})
+        line += fmt::format(",{:.6f},9,{:.6f}", position(t) + drive, torque(t) + 10 * drive);
       return line + "\n";
     });
     const Log log = LogImport({folder.write("log.csv", text)}, robot, {}).log().log;
@@ -301,7 +312,8 @@ TEST(LogImport, SlidingDriveWithASpindle) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive(DriveKind::prismatic);
   const std::string text = recorded("Time [s],Motor angle [deg],Motor torque [Nm]\n", [](int, double t) {
-    return fmt::format("{:.3f},{:.9f},{:.9f}\n", t, position(t) / 0.01 * 360.0, torque(t) * 0.01 / (2.0 * std::numbers::pi));
+    return fmt::format("{:.3f},{:.9f},{:.9f}\n", t, position(t) / 0.01 * 360.0,
+                       torque(t) * 0.01 / (2.0 * std::numbers::pi));
   });
   ImportOptions options;
   const std::string file = folder.write("log.csv", text);
@@ -341,7 +353,8 @@ TEST_P(ImportRefusalTest, NamesTheNextStep) {
   const TemporaryFolder folder;
   const RobotDescription robot = drives(GetParam().drives);
   const std::string text = recorded(GetParam().head, [](int, double t) {
-    return fmt::format(fmt::runtime(GetParam().row), fmt::arg("t", t), fmt::arg("q", position(t)), fmt::arg("tau", torque(t))) +
+    return fmt::format(fmt::runtime(GetParam().row), fmt::arg("t", t), fmt::arg("q", position(t)),
+                       fmt::arg("tau", torque(t))) +
            "\n";
   });
   const std::string words = words_of_error([&] { (void)LogImport({folder.write("log.csv", text)}, robot, {}).log(); });
@@ -362,10 +375,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "{t},{q},{q},{tau}",
                 1,
                 {"'motor angle [rad]'", "'arm angle [rad]'", "map"}},
-        Refused{"OnlyCommanded", "t_s,target position [rad],torque [Nm]\n", "{t},{q},{tau}", 1, {"only a commanded position"}},
+        Refused{"OnlyCommanded",
+                "t_s,target position [rad],torque [Nm]\n",
+                "{t},{q},{tau}",
+                1,
+                {"only a commanded position"}},
+        Refused{"CurrentWithoutConstant",
+                "t_s,q1_rad,current1_A\n",
+                "{t},{q},{tau}",
+                1,
+                {"torque constant", "--torque-constant"}},
         Refused{
-            "CurrentWithoutConstant", "t_s,q1_rad,current1_A\n", "{t},{q},{tau}", 1, {"torque constant", "--torque-constant"}},
-        Refused{"PercentWithoutRated", "t_s,q1_rad,torque [%]\n", "{t},{q},{tau}", 1, {"rated torque", "--rated-torque"}},
+            "PercentWithoutRated", "t_s,q1_rad,torque [%]\n", "{t},{q},{tau}", 1, {"rated torque", "--rated-torque"}},
         Refused{"CountsWithoutTurn",
                 "t_s,position [cnt],torque [Nm]\n",
                 "{t},{q},{tau}",
@@ -376,7 +397,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "{t},{q},{q},{q},{tau},{tau},{tau}",
                 2,
                 {"'q1 [rad]', 'q2 [rad]', 'q3 [rad]'"}},
-        Refused{"TimeOfUnknownUnit", "time,q1_rad,tau1_Nm\n", "{t:.0f}e3,{q},{tau}", 1, {"usual step is 1000", "--time-unit"}},
+        Refused{"TimeOfUnknownUnit",
+                "time,q1_rad,tau1_Nm\n",
+                "{t:.0f}e3,{q},{tau}",
+                1,
+                {"usual step is 1000", "--time-unit"}},
         Refused{"WordsInAColumn",
                 "t_s,q1 [rad],torque [Nm]\n",
                 "{t},{q},on",
@@ -392,7 +417,8 @@ TEST(LogImport, NamesOfALogOfTheseToolsMeanTheirDrive) {
   const std::string file = folder.write("a.csv", recorded("t_s;q3_rad;q1_rad;q2_rad;tau3_Nm;tau1_Nm;tau2_Nm\n", row));
   const RobotDescription two = drives(2);
   const Log log = LogImport({file}, two, {}).log().log;
-  EXPECT_THAT(log.notes, Contains(HasSubstr("2 drives, so as position 'q1_rad', 'q2_rad' were taken; 'q3_rad' is not used")));
+  EXPECT_THAT(log.notes,
+              Contains(HasSubstr("2 drives, so as position 'q1_rad', 'q2_rad' were taken; 'q3_rad' is not used")));
   EXPECT_THAT(log.notes, Contains(HasSubstr("as torque 'tau1_Nm', 'tau2_Nm' were taken; 'tau3_Nm' is not used")));
   EXPECT_EQ(log.q(5, 0), 2.0);
   EXPECT_EQ(log.q(5, 1), 3.0);
@@ -406,7 +432,8 @@ TEST(LogImport, PrefersTorqueToCurrentAndMeasuredToCommandedAndSaysWhenItTakesAC
   const RobotDescription robot = one_drive();
   const auto row = [](int, double t) { return fmt::format("{:.3f},{:.9f},7,8,9\n", t, position(t)); };
   const LogImport both(
-      {folder.write("a.csv", recorded("t_s,actual position [rad],current [A],torque [Nm],position [cnt]\n", row))}, robot, {});
+      {folder.write("a.csv", recorded("t_s,actual position [rad],current [A],torque [Nm],position [cnt]\n", row))},
+      robot, {});
   EXPECT_EQ(both.log().log.tau(3, 0), 8.0);
   EXPECT_NEAR(both.log().log.q(3, 0), position(0.003), 1e-8);
   const LogImport command({folder.write("b.csv", recorded("t_s,q1 [rad],x,torque command [Nm],y\n", row))}, robot, {});
@@ -450,8 +477,8 @@ TEST(LogImport, DamagedFilesAreReadOrRefusedButNeverCrash) {
 TEST(LogImport, FilesWithTheSameColumnsAreRecordingsOfTheirOwn) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
-  const std::string text =
-      recorded("t_s,q1_rad,tau1_Nm\n", [](int, double t) { return fmt::format("{},{},{}\n", t, position(t), torque(t)); });
+  const std::string text = recorded("t_s,q1_rad,tau1_Nm\n",
+                                    [](int, double t) { return fmt::format("{},{},{}\n", t, position(t), torque(t)); });
   const std::string words = words_of_error([&] {
     (void)LogImport({folder.write("a.csv", text), folder.write("b.csv", text)}, robot, {});
   });
@@ -476,17 +503,20 @@ TEST(LogImport, MapTextOfAnIncompleteGuessNamesEveryColumnAndIsAMap) {
 TEST(LogImport, MapTextHoldsABlockForEveryColumnThatIsNotTaken) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
-  const std::string text = recorded("t_s,left [deg],right [Nm],heat\n",
-                                    [](int, double t) { return fmt::format("{},{},{},20\n", t, position(t), torque(t)); });
+  const std::string text = recorded("t_s,left [deg],right [Nm],heat\n", [](int, double t) {
+    return fmt::format("{},{},{},20\n", t, position(t), torque(t));
+  });
   const std::string file = folder.write("log.csv", text);
   std::string map = LogImport({file}, robot, {}).map_text();
-  const std::string block = "# [[channel]]\n# drive = DRIVE\n# quantity = QUANTITY\n# source = \"heat\"\n# unit = \"UNIT\"\n";
+  const std::string block =
+      "# [[channel]]\n# drive = DRIVE\n# quantity = QUANTITY\n# source = \"heat\"\n# unit = \"UNIT\"\n";
   ASSERT_THAT(map, HasSubstr(block));
   // Filled in, the block is a channel.
   std::string filled = block;
   for (const auto& [from, to] :
        {std::pair<std::string, std::string>{"# ", ""}, {"DRIVE", "1"}, {"QUANTITY", "\"velocity\""}, {"UNIT", "rpm"}}) {
-    for (auto at = filled.find(from); at != std::string::npos; at = filled.find(from)) filled.replace(at, from.size(), to);
+    for (auto at = filled.find(from); at != std::string::npos; at = filled.find(from))
+      filled.replace(at, from.size(), to);
   }
   map.replace(map.find(block), block.size(), filled);
   const ColumnMap back = read_column_map(folder.write("map.toml", map), robot);
@@ -501,9 +531,9 @@ TEST(LogImport, MapTextMarksTheConstantsThatAreOpen) {
   struct Case {
     const char *head, *line;
   };
-  for (const auto& [head, line] :
-       {Case{"t_s,q1 [rad],current1 [A]\n", "torque_constant_Nm_A"}, Case{"t_s,q1 [rad],torque1 [%]\n", "rated_torque_Nm"},
-        Case{"t_s,q1 [cnt],torque1 [Nm]\n", "counts_per_turn"}}) {
+  for (const auto& [head, line] : {Case{"t_s,q1 [rad],current1 [A]\n", "torque_constant_Nm_A"},
+                                   Case{"t_s,q1 [rad],torque1 [%]\n", "rated_torque_Nm"},
+                                   Case{"t_s,q1 [cnt],torque1 [Nm]\n", "counts_per_turn"}}) {
     const std::string file = folder.write(
         "log.csv", recorded(head, [](int, double t) { return fmt::format("{},{},{}\n", t, position(t), torque(t)); }));
     std::string map = LogImport({file}, robot, {}).map_text();
@@ -520,8 +550,8 @@ TEST(LogImport, MapTextMarksTheConstantsThatAreOpen) {
 TEST(LogImport, MapTextOfColumnsWithoutNamesBeginsWithTheTime) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
-  const std::string file =
-      folder.write("log.csv", recorded("", [](int k, double t) { return fmt::format("{},{},{}\n", k, position(t), torque(t)); }));
+  const std::string file = folder.write(
+      "log.csv", recorded("", [](int k, double t) { return fmt::format("{},{},{}\n", k, position(t), torque(t)); }));
   std::string map = LogImport({file}, robot, {}).map_text();
   EXPECT_THAT(map, HasSubstr("\n[time]\nsource = \"column1\"\n# unit = \"UNIT\"   # STILL OPEN"));
   EXPECT_THAT(map, Not(HasSubstr("# source = \"column1\"")));
@@ -566,10 +596,11 @@ TEST(LogImport, RateIsThatOfTheRowsAndNotOfTheUsualInterval) {
 }
 
 TEST(LogImport, NextStepNamesTheMapThatIsThere) {
-  for (const char* mend : {"write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs",
-                           "name the column q1_rad; or write a column map (--map)\n",
-                           "say which in a column map (delta-log import --map-out map.toml begins one)\n",
-                           "give delta-log import --rated-torque, or rated_torque_Nm in a column map (--map)"}) {
+  for (const char* mend :
+       {"write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs",
+        "name the column q1_rad; or write a column map (--map)\n",
+        "say which in a column map (delta-log import --map-out map.toml begins one)\n",
+        "give delta-log import --rated-torque, or rated_torque_Nm in a column map (--map)"}) {
     EXPECT_THAT(mend_in_map(mend, "m.toml"), HasSubstr("m.toml"));
     EXPECT_THAT(mend_in_map(mend, "m.toml"), Not(HasSubstr("column map"))) << mend;
   }
@@ -594,9 +625,10 @@ TEST(LogImport, SaysThatTheScalesOfTheScopesScreenWereNotApplied) {
   options.map_file = map;
   const Log log = LogImport({file}, robot, options).log().log;
   EXPECT_NEAR(log.q(50, 0), 0.5, 1e-12);
-  EXPECT_THAT(log.notes,
-              Contains(HasSubstr("'ActPos': ScaleFactor -1, Offset 1, Unit ScaleFactor 1 and Unit Offset 0 of the header are "
-                                 "of the Scope's display")));
+  EXPECT_THAT(
+      log.notes,
+      Contains(HasSubstr("'ActPos': ScaleFactor -1, Offset 1, Unit ScaleFactor 1 and Unit Offset 0 of the header are "
+                         "of the Scope's display")));
   EXPECT_THAT(log.notes, Contains(HasSubstr("the unit Nm is of the display, too, and was not taken")));
 }
 

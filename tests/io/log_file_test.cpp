@@ -95,13 +95,24 @@ INSTANTIATE_TEST_SUITE_P(
                "t_s,q1_m,tau1_N",
                false,
                {"q1_rad is missing", "q1_m", "prismatic drive"}},
-        BadLog{
-            "RevoluteForPrismatic", DriveKind::prismatic, "t_s,q1_deg,tau1_N", false, {"q1_m is missing", "q1_deg", "revolute"}},
-        BadLog{
-            "OtherSpelling", DriveKind::revolute, "t_s,Q_1,tau1_Nm", false, {"q1_rad is missing", "has Q_1", "q1_rad or q1_deg"}},
-        BadLog{"OtherNumber", DriveKind::revolute, "t_s,q10_rad,tau1_Nm", false, {"q1_rad is missing", "t_s, q10_rad, tau1_Nm"}},
+        BadLog{"RevoluteForPrismatic",
+               DriveKind::prismatic,
+               "t_s,q1_deg,tau1_N",
+               false,
+               {"q1_m is missing", "q1_deg", "revolute"}},
+        BadLog{"OtherSpelling",
+               DriveKind::revolute,
+               "t_s,Q_1,tau1_Nm",
+               false,
+               {"q1_rad is missing", "has Q_1", "q1_rad or q1_deg"}},
+        BadLog{"OtherNumber",
+               DriveKind::revolute,
+               "t_s,q10_rad,tau1_Nm",
+               false,
+               {"q1_rad is missing", "t_s, q10_rad, tau1_Nm"}},
         BadLog{"NoTorque", DriveKind::revolute, "t_s,q1_rad,x", false, {"tau1_Nm is missing"}},
-        BadLog{"NoTime", DriveKind::revolute, "x,q1_rad,tau1_Nm", false, {"t_s is missing", "has x, q1_rad", "--rate-hz"}},
+        BadLog{
+            "NoTime", DriveKind::revolute, "x,q1_rad,tau1_Nm", false, {"t_s is missing", "has x, q1_rad", "--rate-hz"}},
         BadLog{"NoRates", DriveKind::revolute, "t_s,q1_rad,tau1_Nm", true, {"qd1_rad_s is missing"}}),
     [](const auto& information) { return std::string(information.param.name); });
 
@@ -120,7 +131,8 @@ TEST(LogFile, TorqueMayBeMissingIfNotNeeded) {
   const TemporaryFolder folder;
   LogReadOptions options;
   options.need_torque = false;
-  const Log log = read_log(folder.write("log.csv", log_text("t_s,q1_rad,x", 1000, 1.0)), axis(DriveKind::revolute), options);
+  const Log log =
+      read_log(folder.write("log.csv", log_text("t_s,q1_rad,x", 1000, 1.0)), axis(DriveKind::revolute), options);
   EXPECT_EQ(log.tau.size(), 0);
   EXPECT_EQ(log.samples(), 1000);
 }

@@ -18,16 +18,19 @@ TEST(LogUnits, KnowsUnitsInTheSpellingsOfRecorders) {
   for (const Row& row :
        {Row{"[deg]", Quantity::position, Dimension::angle, kPi / 180},
         Row{"\xC2\xB0", Quantity::position, Dimension::angle, kPi / 180},
-        Row{"1/min", Quantity::velocity, Dimension::angle, kPi / 30}, Row{"rad_s2", Quantity::acceleration, Dimension::angle, 1},
+        Row{"1/min", Quantity::velocity, Dimension::angle, kPi / 30},
+        Row{"rad_s2", Quantity::acceleration, Dimension::angle, 1},
         Row{"rad/s^2", Quantity::acceleration, Dimension::angle, 1},
-        Row{"deg/sec", Quantity::velocity, Dimension::angle, kPi / 180}, Row{"(mNm)", Quantity::torque, Dimension::moment, 1e-3},
-        Row{"N m", Quantity::torque, Dimension::moment, 1}, Row{"N*m", Quantity::torque, Dimension::moment, 1},
-        Row{"N\xC2\xB7m", Quantity::torque, Dimension::moment, 1}, Row{"kN", Quantity::torque, Dimension::force, 1e3},
-        Row{"Arms", Quantity::torque, Dimension::current, 1}, Row{"0.1 %", Quantity::torque, Dimension::share_of_rated, 1e-3},
+        Row{"deg/sec", Quantity::velocity, Dimension::angle, kPi / 180},
+        Row{"(mNm)", Quantity::torque, Dimension::moment, 1e-3}, Row{"N m", Quantity::torque, Dimension::moment, 1},
+        Row{"N*m", Quantity::torque, Dimension::moment, 1}, Row{"N\xC2\xB7m", Quantity::torque, Dimension::moment, 1},
+        Row{"kN", Quantity::torque, Dimension::force, 1e3}, Row{"Arms", Quantity::torque, Dimension::current, 1},
+        Row{"0.1 %", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"\xE2\x80\xB0", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"[0/00]", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"cnt", Quantity::position, Dimension::counts, 1}, Row{"counts/s", Quantity::velocity, Dimension::counts, 1},
-        Row{"mm", Quantity::position, Dimension::length, 1e-3}, Row{"rev", Quantity::position, Dimension::angle, 2 * kPi}}) {
+        Row{"mm", Quantity::position, Dimension::length, 1e-3},
+        Row{"rev", Quantity::position, Dimension::angle, 2 * kPi}}) {
     const auto unit = log_unit(row.text);
     ASSERT_TRUE(unit.has_value()) << row.text;
     EXPECT_EQ(unit->quantity, row.quantity) << row.text;
@@ -46,8 +49,8 @@ TEST(LogUnits, SplitsNameAndUnit) {
     const char *column, *stem, *unit;
   };
   for (const Row& row :
-       {Row{"q1 [rad]", "q1", "rad"}, Row{"Torque (Nm)", "Torque", "Nm"}, Row{"q1_rad_s", "q1", "rad_s"}, Row{"t / s", "t", "s"},
-        Row{"PL.CMD([Axis1] Position command)[deg]", "PL.CMD([Axis1] Position command)", "deg"},
+       {Row{"q1 [rad]", "q1", "rad"}, Row{"Torque (Nm)", "Torque", "Nm"}, Row{"q1_rad_s", "q1", "rad_s"},
+        Row{"t / s", "t", "s"}, Row{"PL.CMD([Axis1] Position command)[deg]", "PL.CMD([Axis1] Position command)", "deg"},
         Row{"position[0]", "position[0]", ""}, Row{"Drive A", "Drive A", ""}, Row{"pos_in", "pos_in", ""},
         Row{"actual_q_0", "actual_q_0", ""}, Row{"I1_A", "I1", "A"}, Row{"Speed, rpm", "Speed", "rpm"},
         Row{"Moment in mNm", "Moment", "mNm"}}) {

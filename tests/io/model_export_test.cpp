@@ -57,7 +57,8 @@ TEST(ModelExport, CarriesFrictionRotorAndOffsetToMujoco) {
   EXPECT_THAT(model.text, HasSubstr("damping=\"1.25\" frictionloss=\"3.5\" armature=\"0.0625\""));
   EXPECT_THAT(model.text, HasSubstr("frictionloss=\"4.25\""));
   EXPECT_THAT(model.text, HasSubstr("armature=\"0.03125\""));
-  EXPECT_THAT(model.text, HasSubstr("<general name=\"drive2\" joint=\"drive2\" biastype=\"affine\" biasprm=\"-0.75 0 0\""));
+  EXPECT_THAT(model.text,
+              HasSubstr("<general name=\"drive2\" joint=\"drive2\" biastype=\"affine\" biasprm=\"-0.75 0 0\""));
   EXPECT_THAT(model.text, HasSubstr("<motor name=\"drive1\" joint=\"drive1\"/>"));
 }
 
@@ -77,7 +78,8 @@ TEST(ModelExport, PutsTheRotorOnTheAxisInUrdf) {
   const std::string text = export_urdf(*sample.robot, sample.p).text;
   ASSERT_EQ(document.Parse(text.c_str()), tinyxml2::XML_SUCCESS);
   const auto* link = document.FirstChildElement("robot")->FirstChildElement("link");
-  while (link != nullptr && std::string(link->Attribute("name")) != "upper_arm1") link = link->NextSiblingElement("link");
+  while (link != nullptr && std::string(link->Attribute("name")) != "upper_arm1")
+    link = link->NextSiblingElement("link");
   ASSERT_NE(link, nullptr);
   const auto* inertial = link->FirstChildElement("inertial");
   const double m = inertial->FirstChildElement("mass")->DoubleAttribute("value");
@@ -105,7 +107,8 @@ TEST(ModelExport, ListsWhatItLeavesOut) {
   const Effect stribeck = effect_of("stribeck", 1, 2.0), rotor = effect_of("rotor_inertia", 0, 1.0);
   const ExportedModel mjcf = export_mjcf(*sample.robot, sample.p, {stribeck, rotor});
   ASSERT_THAT(mjcf.left_out, SizeIs(1));
-  EXPECT_THAT(mjcf.left_out[0], AllOf(HasSubstr("effect stribeck at drive2"), HasSubstr("friction, offsets and rotors only")));
+  EXPECT_THAT(mjcf.left_out[0],
+              AllOf(HasSubstr("effect stribeck at drive2"), HasSubstr("friction, offsets and rotors only")));
   EXPECT_THAT(mjcf.text, AllOf(HasSubstr(mjcf.left_out[0]), HasSubstr("armature=\"1.0625\"")));
   const ExportedModel urdf = export_urdf(*sample.robot, sample.p, {stribeck});
   ASSERT_THAT(urdf.left_out, SizeIs(3));  // the effect, the offset, the loops for plain readers
@@ -125,11 +128,12 @@ TEST(ModelExport, HandsEffectsToTheController) {
                                             effect_of("hose_force", -1, 4.0), effect_of("rotor_inertia", 0, 1.0)});
   EXPECT_EQ(some.effects, 3);
   EXPECT_THAT(some.left_out, IsEmpty());
-  EXPECT_THAT(some.text,
-              AllOf(HasSubstr("<deltadyn/firmware/effect_feed_forward.hpp>"), HasSubstr("kEffectCount = 3;"),
-                    HasSubstr("{deltadyn::effect_named(\"stribeck\"), 1, {0.5, 0.5}, {2}},  // at drive2: friction [N*m]"),
-                    HasSubstr("SomeEffects<deltadyn::effect_named(\"stribeck\"), deltadyn::effect_named(\"hose_force\")>"),
-                    HasSubstr("{deltadyn::effect_named(\"hose_force\"), -1, {}, {4, 4, 4, 4, 4, 4}}")));
+  EXPECT_THAT(
+      some.text,
+      AllOf(HasSubstr("<deltadyn/firmware/effect_feed_forward.hpp>"), HasSubstr("kEffectCount = 3;"),
+            HasSubstr("{deltadyn::effect_named(\"stribeck\"), 1, {0.5, 0.5}, {2}},  // at drive2: friction [N*m]"),
+            HasSubstr("SomeEffects<deltadyn::effect_named(\"stribeck\"), deltadyn::effect_named(\"hose_force\")>"),
+            HasSubstr("{deltadyn::effect_named(\"hose_force\"), -1, {}, {4, 4, 4, 4, 4, 4}}")));
 }
 
 TEST(ModelExport, SaysWhyAControllerCannotTakeAnEffect) {
@@ -145,10 +149,12 @@ TEST(ModelExport, SaysWhyAControllerCannotTakeAnEffect) {
     const ExportedModel header = export_header(*sample.robot, sample.p, {effect});
     EXPECT_EQ(header.effects, 0);
     ASSERT_THAT(header.left_out, SizeIs(1));
-    EXPECT_THAT(header.left_out[0], AllOf(HasSubstr(std::string(effect_kind(effect.id).name)), HasSubstr(message(refusal))));
+    EXPECT_THAT(header.left_out[0],
+                AllOf(HasSubstr(std::string(effect_kind(effect.id).name)), HasSubstr(message(refusal))));
     EXPECT_THAT(header.text, AllOf(HasSubstr(header.left_out[0]), Not(HasSubstr("kEffects"))));
   }
-  const ExportedModel many = export_header(*sample.robot, sample.p, std::vector<Effect>(70, effect_of("stribeck", 0, 0.1)));
+  const ExportedModel many =
+      export_header(*sample.robot, sample.p, std::vector<Effect>(70, effect_of("stribeck", 0, 0.1)));
   EXPECT_EQ(many.effects, 64);
   ASSERT_THAT(many.left_out, SizeIs(6));
   EXPECT_THAT(many.left_out[5], HasSubstr(message(EffectRefusal::no_room)));

@@ -73,14 +73,16 @@ TEST(ParameterFile, NamesTheEffectsThatItBelongsTo) {
 
   table.effects = kEffectsNotWritten;
   write_parameters(folder.path("q.csv"), table);
-  EXPECT_THAT(missing_effects(read_parameters(folder.path("q.csv")), ""), HasSubstr("delta-diagnose again with --effects-out"));
+  EXPECT_THAT(missing_effects(read_parameters(folder.path("q.csv")), ""),
+              HasSubstr("delta-diagnose again with --effects-out"));
 }
 
 TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
   const TemporaryFolder folder;
-  const ParameterTable table = read_parameters(folder.write(
-      "p.csv",
-      "unit,value,name\nkg,1.5,upper_arm.m\nkg,2.5,upper_arm2.m\nkg m2,0.1,strut.Ixx\nN m s,3,drive1.viscous\nkg,9,gripper.m\n"));
+  const ParameterTable table =
+      read_parameters(folder.write("p.csv",
+                                   "unit,value,name\nkg,1.5,upper_arm.m\nkg,2.5,upper_arm2.m\nkg m2,0.1,strut.Ixx\nN m "
+                                   "s,3,drive1.viscous\nkg,9,gripper.m\n"));
   const ParameterMatch match =
       match_parameters(table, {"upper_arm1.m", "upper_arm2.m", "strut3.Ixx", "drive1.viscous", "drive1.coulomb"},
                        {"kg", "kg", "kg*m^2", "N*m*s/rad", "N*m"});
@@ -92,7 +94,8 @@ TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
 
 TEST(ParameterFile, RefusesLimbValuesWhereTheSharedOneIsWanted) {
   const TemporaryFolder folder;
-  const ParameterTable table = read_parameters(folder.write("p.csv", "name,value,unit\nupper_arm1.m,1,kg\nstrut.m,1,kg\n"));
+  const ParameterTable table =
+      read_parameters(folder.write("p.csv", "name,value,unit\nupper_arm1.m,1,kg\nstrut.m,1,kg\n"));
   try {
     (void)values(table, {"upper_arm.m", "strut.m"});
     FAIL();
@@ -132,7 +135,8 @@ TEST_P(BadParametersTest, IsRefusedWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Table, BadParametersTest,
     ::testing::Values(
-        BadParameters{"Twice", "name,value,unit\nstrut.m,1,kg\nstrut.m,2,kg\n", {"p.csv, line 3", "already given in line 2"}},
+        BadParameters{
+            "Twice", "name,value,unit\nstrut.m,1,kg\nstrut.m,2,kg\n", {"p.csv, line 3", "already given in line 2"}},
         BadParameters{"WrongUnit", "name,value,unit\nstrut.m,100,g\n", {"p.csv, line 2, column unit", "'g'", "kg"}},
         BadParameters{"NoUnitColumn", "name,value\nstrut.m,1\n", {"column unit is missing"}},
         BadParameters{"Text", "name,value,unit\nstrut.m,heavy,kg\n", {"line 2, column value", "'heavy'"}},
@@ -156,7 +160,9 @@ TEST(ParameterOptionsOf, FindsTheColumnsThatAFileWasWrittenFor) {
   for (const bool individual : {false, true}) {
     for (const bool tool : {false, true}) {
       const ParameterOptions written{individual, tool, tool ? std::vector<int>{1, 4} : std::vector<int>{}, individual};
-      const auto columns_of = [&](const ParameterOptions& options) { return make_robot(robot, options)->parameter_names(); };
+      const auto columns_of = [&](const ParameterOptions& options) {
+        return make_robot(robot, options)->parameter_names();
+      };
       ParameterTable table;
       for (const std::string& name : columns_of(written)) table.entries.push_back({name, 1.0, ""});
       EXPECT_EQ(columns_of(parameter_options_of(table, robot)), columns_of(written));

@@ -43,7 +43,8 @@ inline RobotDescription drives(int count) {
 }
 
 /// `head`, then a line for each ms: `row(k, t)`.
-inline std::string recorded(const std::string& head, const std::function<std::string(int, double)>& row, int rows = kMotionRows) {
+inline std::string recorded(const std::string& head, const std::function<std::string(int, double)>& row,
+                            int rows = kMotionRows) {
   std::string text = head;
   for (int k = 0; k < rows; ++k) text += row(k, 0.001 * k);
   return text;

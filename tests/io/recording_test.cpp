@@ -31,7 +31,8 @@ std::string error_of(const std::string& path, const RecordingOptions& options = 
   return "no error";
 }
 
-/// A small export of TwinCAT Scope: two groups, the slow one ends early, decimal comma in the header, point in the rows.
+/// A small export of TwinCAT Scope: two groups, the slow one ends early, decimal comma in the header, point in the
+/// rows.
 std::string twincat(char separator, char decimal, bool quoted) {
   const auto join = [&](std::initializer_list<const char*> fields) {
     std::string line;
@@ -60,8 +61,8 @@ std::string twincat(char separator, char decimal, bool quoted) {
 
 TEST(Recording, TwinCatGroupsOfTheirOwnRates) {
   const TemporaryFolder folder;
-  for (const auto& [separator, decimal, quoted] :
-       {std::tuple('\t', '.', false), std::tuple('\t', ',', false), std::tuple(';', ',', false), std::tuple(',', '.', true)}) {
+  for (const auto& [separator, decimal, quoted] : {std::tuple('\t', '.', false), std::tuple('\t', ',', false),
+                                                   std::tuple(';', ',', false), std::tuple(',', '.', true)}) {
     const Recording recording = read_recording(folder.write("scope.csv", twincat(separator, decimal, quoted)));
     SCOPED_TRACE(recording.form);
     EXPECT_THAT(recording.form, HasSubstr("TwinCAT"));
@@ -120,7 +121,8 @@ TEST(Recording, MissingNumbersInTheSpellingsOfTheWorld) {
   EXPECT_EQ(channel(recording, "y").text, "RUN");
 }
 
-// --- rosbag2 ------------------------------------------------------------------------------------------------------------------
+// --- rosbag2
+// ------------------------------------------------------------------------------------------------------------------
 
 TEST(Rosbag2, JointsByNameInWhateverOrderTheMessagesHaveThem) {
   const TemporaryFolder folder;
@@ -152,8 +154,8 @@ TEST(Rosbag2, JointsByNameInWhateverOrderTheMessagesHaveThem) {
   }
 }
 
-// The publisher's clock is the better one: where only the receipts are out of order, messages are sorted by its stamps; a clock that
-// was set back in between is left aside.
+// The publisher's clock is the better one: where only the receipts are out of order, messages are sorted by its stamps;
+// a clock that was set back in between is left aside.
 TEST(Rosbag2, StampsOfTheHeadersWinOverReceiptsOutOfOrder) {
   const TemporaryFolder folder;
   for (const bool set_back : {false, true}) {
@@ -164,7 +166,8 @@ TEST(Rosbag2, StampsOfTheHeadersWinOverReceiptsOutOfOrder) {
       for (int k = 0; k < 40; ++k) {
         const std::int64_t stamp = 1650000000000000000 + 1000000LL * k;
         const std::int64_t received = stamp + (k == 20 ? 2500000 : 100000);  // behind the two that follow
-        bag.message(1, received, joint_state(stamp - (set_back && k > 30 ? 5000000000LL : 0), {"x"}, {1.0 * k}, {1.0 * k}));
+        bag.message(1, received,
+                    joint_state(stamp - (set_back && k > 30 ? 5000000000LL : 0), {"x"}, {1.0 * k}, {1.0 * k}));
       }
     }
     const Recording recording = read_recording(path);
@@ -175,7 +178,8 @@ TEST(Rosbag2, StampsOfTheHeadersWinOverReceiptsOutOfOrder) {
       EXPECT_NEAR(time.t_s(39), 0.039, 1e-9);
       continue;
     }
-    EXPECT_THAT(recording.notes[0], HasSubstr("1 message was received out of order; they are taken in the order of the stamps"));
+    EXPECT_THAT(recording.notes[0],
+                HasSubstr("1 message was received out of order; they are taken in the order of the stamps"));
     for (int k = 0; k < 40; ++k) {
       EXPECT_NEAR(time.t_s(k), 0.001 * k, 1e-9);
       EXPECT_EQ(channel(recording, "/joint_states/x/position").values(k), k);

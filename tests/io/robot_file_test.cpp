@@ -179,9 +179,12 @@ TEST(RobotFile, InertialIsAboutTheCentreOfMass) {
   RandomRobot random(10);
   const RobotDescription robot = random.delta("delta3");
   // A rod of 2 kg from 0 to 1 m along x: I about the origin 2/3, about the centre 2/12.
-  const std::string text = robot_to_urdf(
-      robot,
-      {{"strut.m", 2}, {"strut.mcx", 1}, {"strut.Iyy", 2.0 / 3}, {"strut.Izz", 2.0 / 3}, {"strut.Ixx", 0.25}, {"strut3.m", 4}});
+  const std::string text = robot_to_urdf(robot, {{"strut.m", 2},
+                                                 {"strut.mcx", 1},
+                                                 {"strut.Iyy", 2.0 / 3},
+                                                 {"strut.Izz", 2.0 / 3},
+                                                 {"strut.Ixx", 0.25},
+                                                 {"strut3.m", 4}});
   EXPECT_THAT(text, HasSubstr("<mass value=\"2\"/>"));
   EXPECT_THAT(text, HasSubstr("<mass value=\"4\"/>"));
   EXPECT_THAT(text, HasSubstr("<origin xyz=\"0.5 0 0\""));
@@ -203,7 +206,8 @@ TEST(RobotFile, WritesWholeFilesAndReadsThemBack) {
   EXPECT_THROW((void)read_robot_file(std::filesystem::temp_directory_path().string()), Error);
 }
 
-/// One way to break a good file: replace the n-th occurrence of `from` by `to`; the message must hold every word of `says`.
+/// One way to break a good file: replace the n-th occurrence of `from` by `to`; the message must hold every word of
+/// `says`.
 struct Break {
   const char* name;
   const char* type;
@@ -239,26 +243,37 @@ TEST_P(RobotFileBroken, IsRefusedWithTheLinkAndTheRule) {
 }
 
 constexpr const char* kLoop2b =
-    "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 0 "
+    "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin "
+    "xyz=\"1.25 0 "
     "0\"";
 
 const Break kBreaks[] = {
-    {"DriveAxis", "delta3", "<axis xyz=\"0 1 0\"", "<axis xyz=\"1 0 0\"", {"joint drive1", "wrong axis", "must have (0, 1, 0)"}},
+    {"DriveAxis",
+     "delta3",
+     "<axis xyz=\"0 1 0\"",
+     "<axis xyz=\"1 0 0\"",
+     {"joint drive1", "wrong axis", "must have (0, 1, 0)"}},
     {"DriveAxisSign", "delta3", "<axis xyz=\"0 1 0\"", "<axis xyz=\"0 -1 0\"", {"joint drive1", "wrong axis"}},
     {"StrutAxis", "delta3", "<axis xyz=\"0 0 1\"", "<axis xyz=\"1 0 0\"", {"joint strut1a_z", "wrong axis"}},
     {"UnequalStruts",
      "delta3",
      kLoop2b,
-     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.26 0 "
+     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin "
+     "xyz=\"1.26 0 "
      "0\"",
      {"strut2b", "unequal struts of limb 2", "1.26"}},
     {"StrutEndOffAxis",
      "delta3",
      kLoop2b,
-     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin xyz=\"1.25 "
+     "<loop name=\"strut2b_end\" type=\"spherical\">\n        <predecessor link=\"strut2b\">\n            <origin "
+     "xyz=\"1.25 "
      "0.01 0\"",
      {"strut2b", "+x of the strut"}},
-    {"TagsDoNotMatch", "delta3", "<loop name=\"strut3a_end\"", "<note name=\"strut3a_end\"", {"line", "not well-formed"}},
+    {"TagsDoNotMatch",
+     "delta3",
+     "<loop name=\"strut3a_end\"",
+     "<note name=\"strut3a_end\"",
+     {"line", "not well-formed"}},
     {"LoopType",
      "delta3",
      "<loop name=\"strut3a_end\" type=\"spherical\"",
@@ -269,17 +284,33 @@ const Break kBreaks[] = {
      "<predecessor link=\"strut2b\"",
      "<predecessor link=\"strut9\"",
      {"strut2b_end", "unknown link 'strut9'"}},
-    {"LoopTwice", "delta3", "<predecessor link=\"strut2b\"", "<predecessor link=\"strut2a\"", {"strut2a", "closed already"}},
-    {"LoopNotOnPlate", "delta3", "<successor link=\"platform\"", "<successor link=\"base\"", {"strut1b_end", "is the plate"}},
+    {"LoopTwice",
+     "delta3",
+     "<predecessor link=\"strut2b\"",
+     "<predecessor link=\"strut2a\"",
+     {"strut2a", "closed already"}},
+    {"LoopNotOnPlate",
+     "delta3",
+     "<successor link=\"platform\"",
+     "<successor link=\"base\"",
+     {"strut1b_end", "is the plate"}},
     {"UnknownParent",
      "delta3",
      "<parent link=\"strut2a_knuckle\"",
      "<parent link=\"elbow\"",
      {"joint strut2a_z", "unknown parent link 'elbow'"}},
-    {"TwoParents", "delta3", "<child link=\"strut2a_knuckle\"", "<child link=\"strut1a_knuckle\"", {"already hangs on joint"}},
+    {"TwoParents",
+     "delta3",
+     "<child link=\"strut2a_knuckle\"",
+     "<child link=\"strut1a_knuckle\"",
+     {"already hangs on joint"}},
     {"DriveName", "delta3", "name=\"drive2\"", "name=\"motor2\"", {"motor2", "drive1 to drive3"}},
     {"TwoJointsOfOneName", "delta3", "name=\"drive2\"", "name=\"drive1\"", {"two joints of this name"}},
-    {"DrivesOfTwoKinds", "delta3", "name=\"drive2\" type=\"continuous\"", "name=\"drive2\" type=\"prismatic\"", {"drive2"}},
+    {"DrivesOfTwoKinds",
+     "delta3",
+     "name=\"drive2\" type=\"continuous\"",
+     "name=\"drive2\" type=\"prismatic\"",
+     {"drive2"}},
     {"NotANumber", "delta3", "<origin xyz=\"1.25 0 0\"", "<origin xyz=\"long 0 0\"", {"long"}},
     {"Type", "delta3", "type=\"delta3\"", "type=\"delta4\"", {"says type delta4", "make a delta3"}},
     {"Coupling", "delta3", "<deltadyn", "<coupling name=\"c\"/><deltadyn", {"coupling c"}},
@@ -287,7 +318,11 @@ const Break kBreaks[] = {
     {"UnknownAttribute", "delta3", "elbow=\"+1\"", "elbov=\"+1\"", {"'elbov' is not known"}},
     {"Gravity", "delta3", "xyz_m_s2=\"0 0 -9.81\"", "xyz_m_s2=\"0 0\"", {"gravity", "three numbers"}},
     {"TelescopeAxis", "delta4", "<axis xyz=\"0 0 -1\"", "<axis xyz=\"0 1 0\"", {"joint telescope", "wrong axis"}},
-    {"ToolLoopType", "delta4", "name=\"tool_axis\" type=\"revolute\"", "name=\"tool_axis\" type=\"spherical\"", {"tool_axis"}},
+    {"ToolLoopType",
+     "delta4",
+     "name=\"tool_axis\" type=\"revolute\"",
+     "name=\"tool_axis\" type=\"spherical\"",
+     {"tool_axis"}},
     {"RootElement", "delta3", "<robot name", "<machine name", {"not well-formed"}},
 };
 
@@ -319,7 +354,8 @@ TEST(RobotFile, MissingPartsAreNamed) {
   expect_refused(without(delta3, "<joint name=\"strut2b_z\"", "</joint>"), {"root"});
   expect_refused(without(without(delta3, "<joint name=\"strut2b_z\"", "</joint>"), "<link name=\"strut2b\"", "</link>"),
                  {"strut2b_end", "unknown link 'strut2b'"});
-  const std::string stub = without(without(delta3, "<joint name=\"strut2b_z\"", "</joint>"), "<link name=\"strut2b\"", "</link>");
+  const std::string stub =
+      without(without(delta3, "<joint name=\"strut2b_z\"", "</joint>"), "<link name=\"strut2b\"", "</link>");
   expect_refused(without(stub, "<loop name=\"strut2b_end\"", "</loop>"), {"strut2b_knuckle", "0 moving joints"});
   expect_refused("", {"empty"});
   expect_refused("t_s,q1_rad\n0,1\n", {"robot.urdf", "XML"});

@@ -40,8 +40,8 @@ class CdrWriter {
   bool little_;
 };
 
-inline std::string joint_state(std::int64_t stamp_ns, const std::vector<std::string>& names, const std::vector<double>& q,
-                               const std::vector<double>& tau, bool little = true) {
+inline std::string joint_state(std::int64_t stamp_ns, const std::vector<std::string>& names,
+                               const std::vector<double>& q, const std::vector<double>& tau, bool little = true) {
   CdrWriter cdr(little);
   cdr.put(static_cast<std::int32_t>(stamp_ns / 1000000000));
   cdr.put(static_cast<std::uint32_t>(stamp_ns % 1000000000));
@@ -61,7 +61,8 @@ class Bag {
     sqlite3* raw = nullptr;
     if (sqlite3_open(path.c_str(), &raw) != SQLITE_OK) throw std::runtime_error("no database");
     database_.reset(raw);
-    run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, offered_qos_profiles "
+    run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, "
+        "offered_qos_profiles "
         "TEXT)");
     run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)");
     run("BEGIN");
@@ -74,8 +75,8 @@ class Bag {
   }
   void message(int topic, std::int64_t received_ns, const std::string& data) {
     sqlite3_stmt* statement = nullptr;
-    sqlite3_prepare_v2(database_.get(), "INSERT INTO messages(topic_id, timestamp, data) VALUES(?1, ?2, ?3)", -1, &statement,
-                       nullptr);
+    sqlite3_prepare_v2(database_.get(), "INSERT INTO messages(topic_id, timestamp, data) VALUES(?1, ?2, ?3)", -1,
+                       &statement, nullptr);
     sqlite3_bind_int(statement, 1, topic);
     sqlite3_bind_int64(statement, 2, received_ns);
     sqlite3_bind_blob(statement, 3, data.data(), static_cast<int>(data.size()), SQLITE_TRANSIENT);

@@ -18,8 +18,9 @@ TEST(Summary, KeepsOrderAndReplacesValues) {
   summary.add("base_parameters", 34L);
   summary.write("");
   summary.write(folder.path("s.csv"));
-  EXPECT_EQ(folder.read("s.csv"),
-            "key,value,unit\nbase_parameters,34,\nrms_residual_drive1,0.30000000000000004,N*m\nverdict,named; and sure,\n");
+  EXPECT_EQ(
+      folder.read("s.csv"),
+      "key,value,unit\nbase_parameters,34,\nrms_residual_drive1,0.30000000000000004,N*m\nverdict,named; and sure,\n");
   EXPECT_EQ(read_csv(folder.path("s.csv")).number(1, 1), 0.1 + 0.2);
 }
 

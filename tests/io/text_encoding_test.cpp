@@ -41,7 +41,8 @@ TEST(TextEncoding, Windows1252IsReadAndItsMapIsUtf8ThatReadsBack) {
 TEST(TextEncoding, AMapThatAnEditorSavedInWindows1252IsRead) {
   const TemporaryFolder folder;
   const RobotDescription robot = one_drive();
-  const std::string text = "[[channel]]\ndrive = 1\nquantity = \"position\"\nsource = \"Lage [\xB0]\"\nunit = \"\xB0\"\n";
+  const std::string text =
+      "[[channel]]\ndrive = 1\nquantity = \"position\"\nsource = \"Lage [\xB0]\"\nunit = \"\xB0\"\n";
   const ColumnMap map = read_column_map(folder.write("map.toml", text), robot);
   EXPECT_EQ(map.channels.at(0).source, "Lage [\xC2\xB0]");
   // UTF-8 is what it is, also in its longest forms.

@@ -60,8 +60,9 @@ TEST(TrajectoryFile, ReadsBackExactlyWhatItWrote) {
   const TrajectorySamples written = motion(*robot);
   write_trajectory(folder.path("t.csv"), written, robot->description(), "made by a test");
   const TrajectorySamples read = read_trajectory(folder.path("t.csv"), *robot);
-  EXPECT_THAT(folder.read("t.csv"), HasSubstr("t_s,x_m,y_m,z_m,psi_rad,xd_m_s,yd_m_s,zd_m_s,psid_rad_s,xdd_m_s2,ydd_m_s2,"
-                                              "zdd_m_s2,psidd_rad_s2,q1_rad,q2_rad"));
+  EXPECT_THAT(folder.read("t.csv"),
+              HasSubstr("t_s,x_m,y_m,z_m,psi_rad,xd_m_s,yd_m_s,zd_m_s,psid_rad_s,xdd_m_s2,ydd_m_s2,"
+                        "zdd_m_s2,psidd_rad_s2,q1_rad,q2_rad"));
   for (const auto& [a, b] : {std::pair{read.z, written.z},
                              {read.zd, written.zd},
                              {read.zdd, written.zdd},
@@ -82,13 +83,15 @@ TEST(TrajectoryFile, ComputesWhatIsMissing) {
   const auto is_position = [](const std::string& name) {
     return name == "x_m" || name == "y_m" || name == "z_m" || name == "psi_rad" || name == "t_s";
   };
-  for (const std::string& text : {with_columns(folder.path("t.csv"), is_drive), with_columns(folder.path("t.csv"), is_task)}) {
+  for (const std::string& text :
+       {with_columns(folder.path("t.csv"), is_drive), with_columns(folder.path("t.csv"), is_task)}) {
     const TrajectorySamples read = read_trajectory(folder.write("part.csv", text), *robot);
     EXPECT_THAT(read.zdd, IsNear(written.zdd, 1e-8));
     EXPECT_THAT(read.qdd, IsNear(written.qdd, 1e-8));
     EXPECT_THAT(read.q, IsNear(written.q, 1e-10));
   }
-  const TrajectorySamples read = read_trajectory(folder.write("z.csv", with_columns(folder.path("t.csv"), is_position)), *robot);
+  const TrajectorySamples read =
+      read_trajectory(folder.write("z.csv", with_columns(folder.path("t.csv"), is_position)), *robot);
   EXPECT_THAT(read.zd, IsNear(written.zd, 1e-8));
   EXPECT_THAT(read.zdd, IsNear(written.zdd, 2e-5));
 }

@@ -26,8 +26,8 @@ class ForwardKinematics : public ::testing::Test {
   Random random{2};
 };
 
-using Cases = ::testing::Types<Case<Delta3, double>, Case<LinearDelta3, double>, Case<Delta4, double>, Case<Delta3, float>,
-                               Case<LinearDelta3, float>, Case<Delta4, float>>;
+using Cases = ::testing::Types<Case<Delta3, double>, Case<LinearDelta3, double>, Case<Delta4, double>,
+                               Case<Delta3, float>, Case<LinearDelta3, float>, Case<Delta4, float>>;
 TYPED_TEST_SUITE(ForwardKinematics, Cases);
 
 TYPED_TEST(ForwardKinematics, UndoesInverseKinematics) {

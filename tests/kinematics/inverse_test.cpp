@@ -23,8 +23,8 @@ class InverseKinematics : public ::testing::Test {
 using Robots = ::testing::Types<Delta3, LinearDelta3, Delta4, TurningPlate>;
 TYPED_TEST_SUITE(InverseKinematics, Robots);
 
-// Scanning the loop equation finds two drive positions for each limb; elbow +1 is the one that turns the arm less far down
-// (elbow outwards) or leaves the carriage behind, -1 the other.
+// Scanning the loop equation finds two drive positions for each limb; elbow +1 is the one that turns the arm less far
+// down (elbow outwards) or leaves the carriage behind, -1 the other.
 TYPED_TEST(InverseKinematics, FindsTheDrivePositionOfEitherElbow) {
   for (int trial = 0; trial < 20; ++trial) {
     auto geometry = random_geometry<TypeParam>(this->random);
@@ -36,7 +36,8 @@ TYPED_TEST(InverseKinematics, FindsTheDrivePositionOfEitherElbow) {
     for (auto& limb : geometry.limbs) limb.elbow = -1;
     ASSERT_EQ(inverse_kinematics(geometry, task.z, inner), Status::ok);
     for (int i = 0; i < TypeParam::kLimbs; ++i) {
-      // One turn that begins below every outer position, so that the inner one follows; the library wraps it to (-pi, pi].
+      // One turn that begins below every outer position, so that the inner one follows; the library wraps it to (-pi,
+      // pi].
       constexpr double kTurn = 6.283185307179586;
       const auto roots = oracles::drive_roots(mechanism, static_cast<std::size_t>(i), y, -1.2L, -1.2L + kTurn);
       ASSERT_EQ(roots.size(), 2U);

@@ -37,8 +37,9 @@ TYPED_TEST(MotionOf, TaskRatesAreThoseOfTheLoopEquations) {
   constexpr int P = kPlateCoordinates<TypeParam>;
   for (int trial = 0; trial < 100; ++trial) {
     this->draw();
-    const auto y = oracles::plate(oracle_of(this->geometry), in_time(this->motion.posture.q, this->motion.qd, this->motion.qdd),
-                                  numbers(this->task.z));
+    const auto y =
+        oracles::plate(oracle_of(this->geometry), in_time(this->motion.posture.q, this->motion.qd, this->motion.qdd),
+                       numbers(this->task.z));
     auto z = this->task.z, zd = this->task.zd, zdd = this->task.zdd;
     for (int k = 0; k < P; ++k) {
       const auto& coordinate = y[static_cast<std::size_t>(k)];
@@ -58,9 +59,11 @@ TYPED_TEST(MotionOf, TaskRatesAreThoseOfTheLoopEquations) {
 TYPED_TEST(MotionOf, DriveRatesUndoTaskRates) {
   for (int trial = 0; trial < 100; ++trial) {
     this->draw();
-    set_drive_rates<double, TypeParam>(this->geometry, this->task.zd, this->task.zdd, this->motion);  // any numbers will do
+    // Any numbers will do
+    set_drive_rates<double, TypeParam>(this->geometry, this->task.zd, this->task.zdd, this->motion);
     auto qd = this->task.zd, qdd = this->task.zdd;
-    ASSERT_EQ(drive_rates(this->geometry, this->motion.posture, this->motion.zd, this->motion.zdd, qd, qdd), Status::ok);
+    ASSERT_EQ(drive_rates(this->geometry, this->motion.posture, this->motion.zd, this->motion.zdd, qd, qdd),
+              Status::ok);
     EXPECT_THAT(qd, IsNear(this->task.zd, 1e-12 * this->size(this->task.zdd)));
     EXPECT_THAT(qdd, IsNear(this->task.zdd, 1e-11 * this->size(this->task.zdd)));
   }
@@ -76,7 +79,8 @@ TYPED_TEST(MotionFromDrives, TaskAndDrivesLeadToTheSameMotion) {
   for (int trial = 0; trial < 100; ++trial) {
     this->draw();
     Motion<double, TypeParam> back;
-    ASSERT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, this->motion.qd, this->motion.qdd, back), Status::ok);
+    ASSERT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, this->motion.qd, this->motion.qdd, back),
+              Status::ok);
     const double scale = this->size(this->motion.qdd);
     EXPECT_THAT(back.posture.z, IsNear(this->task.z, 1e-13));
     EXPECT_THAT(back.zd, IsNear(this->task.zd, 1e-12 * scale));
@@ -127,8 +131,10 @@ TYPED_TEST(MotionOf, RefusesRatesThatAreNotFinite) {
     EXPECT_EQ(motion_from_task(this->geometry, this->task.z, rates, this->task.zdd, out), Status::out_of_range);
     EXPECT_EQ(motion_from_task(this->geometry, this->task.z, this->task.zd, rates, out), Status::out_of_range);
     if constexpr (!TypeParam::kPlateTurns) {
-      EXPECT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, rates, this->task.zdd, out), Status::out_of_range);
-      EXPECT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, this->task.zd, rates, out), Status::out_of_range);
+      EXPECT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, rates, this->task.zdd, out),
+                Status::out_of_range);
+      EXPECT_EQ(motion_from_drives(this->geometry, this->motion.posture.q, this->task.zd, rates, out),
+                Status::out_of_range);
     }
   }
 }
@@ -137,9 +143,10 @@ TYPED_TEST(MotionOf, IsTheSameInSinglePrecision) {
   for (int trial = 0; trial < 50; ++trial) {
     this->draw();
     Motion<float, TypeParam> coarse;
-    ASSERT_EQ(motion_from_task<float>(cast_geometry<float>(this->geometry), this->task.z.template cast<float>(),
-                                      this->task.zd.template cast<float>(), this->task.zdd.template cast<float>(), coarse),
-              Status::ok);
+    ASSERT_EQ(
+        motion_from_task<float>(cast_geometry<float>(this->geometry), this->task.z.template cast<float>(),
+                                this->task.zd.template cast<float>(), this->task.zdd.template cast<float>(), coarse),
+        Status::ok);
     EXPECT_THAT(coarse.posture.q, IsNear(this->motion.posture.q, 1e-5));
     EXPECT_THAT(coarse.qd, IsNear(this->motion.qd, 1e-5 * this->size(this->motion.qd)));
     EXPECT_THAT(coarse.qdd, IsNear(this->motion.qdd, 1e-4 * this->size(this->motion.qdd)));

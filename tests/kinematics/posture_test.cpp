@@ -56,7 +56,8 @@ TYPED_TEST(PostureOf, HasThePlateJacobianOfTheLoopEquations) {
       for (int k = 0; k < P; ++k) expected(k, i) = static_cast<double>(y[static_cast<std::size_t>(k)].slope);
     }
     EXPECT_THAT(this->posture.J_plate, IsNear(expected, 1e-12 * (1 + expected.norm())));
-    EXPECT_THAT(task_jacobian(this->posture).template topRows<P>().eval(), IsNear(expected, 1e-12 * (1 + expected.norm())));
+    EXPECT_THAT(task_jacobian(this->posture).template topRows<P>().eval(),
+                IsNear(expected, 1e-12 * (1 + expected.norm())));
   }
 }
 
@@ -68,8 +69,9 @@ TYPED_TEST(PostureOf, HasTheStrutAnglesAndTheirJacobians) {
     const auto angles = [&](int limb, const oracles::Numbers& q) {
       const auto i = static_cast<std::size_t>(limb);
       const auto y = oracles::plate(mechanism, q, numbers(this->task.z));
-      const oracles::Vec3<Real> w = oracles::turn<Real>(2, -mechanism.limbs[i].azimuth) *
-                                    (oracles::attachment_point(mechanism, i, y) - oracles::elbow_point(mechanism, i, q[i]));
+      const oracles::Vec3<Real> w =
+          oracles::turn<Real>(2, -mechanism.limbs[i].azimuth) *
+          (oracles::attachment_point(mechanism, i, y) - oracles::elbow_point(mechanism, i, q[i]));
       return std::pair<Real, Real>(std::atan2(-w.z(), w.x()), std::asin(w.y() / w.norm()));
     };
     for (int limb = 0; limb < TypeParam::kLimbs; ++limb) {
@@ -140,15 +142,17 @@ TEST(AssemblePosture, IsSingularWithAllStrutsInOnePlane) {
 }
 
 TEST(AssemblePosture, IsSingularWithAStrutAlongTheLimbsAxis) {
-  // Struts one, two, three along x, y, z of the base: the loops are as regular as can be, but limb 2 has its strut on its own y.
+  // Struts one, two, three along x, y, z of the base: the loops are as regular as can be, but limb 2 has its strut on
+  // its own y.
   Geometry<double, LinearDelta3> geometry;
   for (int i = 0; i < 3; ++i) {
     geometry.limbs[i].strut = 1;
     geometry.limbs[i].axis_L = Vector3<double>::Unit(i);
   }
   Posture<double, LinearDelta3> posture;
-  EXPECT_EQ((assemble_posture<double, LinearDelta3>(geometry, Vector3<double>(-1, -1, -1), Vector3<double>::Zero(), posture)),
-            Status::singular);
+  EXPECT_EQ(
+      (assemble_posture<double, LinearDelta3>(geometry, Vector3<double>(-1, -1, -1), Vector3<double>::Zero(), posture)),
+      Status::singular);
 }
 
 TEST(DriveRates, IsSingularWhereArmAndStrutAreInLine) {
@@ -160,8 +164,9 @@ TEST(DriveRates, IsSingularWhereArmAndStrutAreInLine) {
   Posture<double, Delta3> posture;
   ASSERT_EQ((assemble_posture<double, Delta3>(geometry, Vector3<double>::Constant(q), z, posture)), Status::ok);
   Vector3<double> qd, qdd;
-  EXPECT_EQ((drive_rates<double, Delta3>(geometry, posture, Vector3<double>::UnitZ(), Vector3<double>::Zero(), qd, qdd)),
-            Status::singular);
+  EXPECT_EQ(
+      (drive_rates<double, Delta3>(geometry, posture, Vector3<double>::UnitZ(), Vector3<double>::Zero(), qd, qdd)),
+      Status::singular);
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ InertialVector<T> cloud_body(std::mt19937& random, int points) {
   for (int i = 0; i < points; ++i) {
     const double m = mass(random), x = place(random), y = place(random), z = place(random);
     InertialVector<double> point;
-    point << m, m * x, m * y, m * z, m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y), -m * x * y, -m * y * z,
-        -m * x * z;
+    point << m, m * x, m * y, m * z, m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y), -m * x * y,
+        -m * y * z, -m * x * z;
     p += point;
   }
   return p.cast<T>();

@@ -50,7 +50,8 @@ TEST(LogCholeskyPrintedEquation, DiffersFromTheProductWhereTheHeaderSays) {
   std::mt19937 random(12);
   const LogCholeskyVector<double> pi = random_variables<double>(random);
   const InertialVector<double> p = from_log_cholesky(pi);
-  const double scale = std::exp(2.0 * pi(0)), e1 = std::exp(2.0 * pi(1)), e2 = std::exp(2.0 * pi(2)), e3 = std::exp(2.0 * pi(3));
+  const double scale = std::exp(2.0 * pi(0)), e1 = std::exp(2.0 * pi(1)), e2 = std::exp(2.0 * pi(2)),
+               e3 = std::exp(2.0 * pi(3));
   const double s12 = pi(4), s23 = pi(5), s13 = pi(6);
   EXPECT_NEAR(p(inertial::kIxx), scale * (s12 * s12 + s23 * s23 + s13 * s13 + e2 + e3), 1e-12);
   EXPECT_NEAR(p(inertial::kIyy), scale * (s13 * s13 + s23 * s23 + e1 + e3), 1e-12);
@@ -75,8 +76,8 @@ TYPED_TEST(LogCholeskyTest, InverseIsExactBothWays) {
     const InertialVector<T> p = from_log_cholesky(pi);
     ASSERT_EQ(to_log_cholesky(p, back), Status::ok);
     // the way back loses the digits that the condition of U costs
-    const T condition =
-        (T(1) + pi.template tail<6>().squaredNorm()) * std::exp(T(2) * (pi.template segment<3>(1).cwiseAbs().maxCoeff() + T(1)));
+    const T condition = (T(1) + pi.template tail<6>().squaredNorm()) *
+                        std::exp(T(2) * (pi.template segment<3>(1).cwiseAbs().maxCoeff() + T(1)));
     const T epsilon = std::numeric_limits<T>::epsilon();
     EXPECT_LT((back - pi).norm(), T(200) * epsilon * condition * condition);
     EXPECT_LT((from_log_cholesky(back) - p).norm(), T(200) * epsilon * condition * p.norm());
@@ -109,7 +110,8 @@ TYPED_TEST(LogCholeskyTest, JacobianAgreesWithAutomaticDifferentiation) {
     const Vector<Jet, 10> p = from_log_cholesky<Jet>(variables);
     const Matrix<T, 10, 10> J = log_cholesky_jacobian(pi);
     for (int i = 0; i < 10; ++i) {
-      EXPECT_LT((J.row(i).transpose() - p(i).v).norm(), T(20) * std::numeric_limits<T>::epsilon() * J.norm()) << "row " << i;
+      EXPECT_LT((J.row(i).transpose() - p(i).v).norm(), T(20) * std::numeric_limits<T>::epsilon() * J.norm())
+          << "row " << i;
     }
   }
 }

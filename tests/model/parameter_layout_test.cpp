@@ -14,8 +14,9 @@ template <class R, Limbs kSharing>
 struct Of : ParameterLayout<R, kSharing> {
   using Robot = R;
 };
-using Layouts = ::testing::Types<Of<Delta3, Limbs::shared>, Of<Delta3, Limbs::individual>, Of<LinearDelta3, Limbs::individual>,
-                                 Of<Delta4, Limbs::shared>, Of<Delta4, Limbs::individual>, Of<Axis, Limbs::shared>>;
+using Layouts =
+    ::testing::Types<Of<Delta3, Limbs::shared>, Of<Delta3, Limbs::individual>, Of<LinearDelta3, Limbs::individual>,
+                     Of<Delta4, Limbs::shared>, Of<Delta4, Limbs::individual>, Of<Axis, Limbs::shared>>;
 TYPED_TEST_SUITE(Layout, Layouts);
 
 TYPED_TEST(Layout, GivesEveryColumnToOneParameter) {

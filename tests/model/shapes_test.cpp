@@ -38,9 +38,11 @@ TEST(Shapes, HollowCylinderIsTheLimitOfManyPoints) {
         const double share = (i + 0.5) / n;
         const double radius = std::sqrt(inner * inner + share * (outer * outer - inner * inner));
         const double angle = 2 * shapes::kPi<double> * j / n;
-        cloud.add(mass / (n * n * n), Vec(radius * std::cos(angle), radius * std::sin(angle), length * ((k + 0.5) / n - 0.5)));
+        cloud.add(mass / (n * n * n),
+                  Vec(radius * std::cos(angle), radius * std::sin(angle), length * ((k + 0.5) / n - 0.5)));
       }
-  EXPECT_LT(largest(shapes::hollow_cylinder<double>(mass, outer, inner, length) - cloud.p), 3e-5 * mass * length * length);
+  EXPECT_LT(largest(shapes::hollow_cylinder<double>(mass, outer, inner, length) - cloud.p),
+            3e-5 * mass * length * length);
 }
 
 TEST(Shapes, TurnedAndMovedCloudsAgree) {
@@ -48,9 +50,10 @@ TEST(Shapes, TurnedAndMovedCloudsAgree) {
   UniformDistribution uniform(-1, 1);
   const auto vector = [&] { return Vec(uniform(generator), uniform(generator), uniform(generator)); };
   for (int k = 0; k < 100; ++k) {
-    const Eigen::Matrix3d R = Eigen::Quaterniond(uniform(generator), uniform(generator), uniform(generator), uniform(generator))
-                                  .normalized()
-                                  .toRotationMatrix();
+    const Eigen::Matrix3d R =
+        Eigen::Quaterniond(uniform(generator), uniform(generator), uniform(generator), uniform(generator))
+            .normalized()
+            .toRotationMatrix();
     const Vec p_AB = vector();
     Cloud in_B, turned, moved;
     for (int i = 0; i < 5; ++i) {
@@ -66,7 +69,9 @@ TEST(Shapes, TurnedAndMovedCloudsAgree) {
 }
 
 TEST(Shapes, RodBetweenTwoPoints) {
-  const auto slender_rod = [](const Vec& from, const Vec& to) { return shapes::hollow_cylinder<double>(2, 0, 0, from, to); };
+  const auto slender_rod = [](const Vec& from, const Vec& to) {
+    return shapes::hollow_cylinder<double>(2, 0, 0, from, to);
+  };
   const Ten rod = slender_rod(Vec::Zero(), Vec(0.9, 0, 0));
   Ten expected = Ten::Zero();
   expected(inertial::kM) = 2;
@@ -93,38 +98,45 @@ TEST(Shapes, PartsAdd) {
   const double big = shapes::cylinder_mass(density, 0.05, 0.0, length);
   const double small = shapes::cylinder_mass(density, 0.04, 0.0, length);
   EXPECT_NEAR(big, 2700 * 3.14159265358979 * 0.0025 * 0.2, 1e-10);
-  const Ten tube = shapes::hollow_cylinder<double>(shapes::cylinder_mass(density, 0.05, 0.04, length), 0.05, 0.04, length);
-  EXPECT_LT(
-      largest(shapes::solid_cylinder<double>(big, 0.05, length) - shapes::solid_cylinder<double>(small, 0.04, length) - tube),
-      1e-13);
+  const Ten tube =
+      shapes::hollow_cylinder<double>(shapes::cylinder_mass(density, 0.05, 0.04, length), 0.05, 0.04, length);
+  EXPECT_LT(largest(shapes::solid_cylinder<double>(big, 0.05, length) -
+                    shapes::solid_cylinder<double>(small, 0.04, length) - tube),
+            1e-13);
 }
 
 TEST(Shapes, BodiesWithThicknessArePhysicallyConsistent) {
-  EXPECT_TRUE(
-      is_physically_consistent<double>(shapes::hollow_cylinder<double>(1, 0.02, 0.01, Vec(0.1, 0, 0.2), Vec(0.3, 0.5, 0))));
+  EXPECT_TRUE(is_physically_consistent<double>(
+      shapes::hollow_cylinder<double>(1, 0.02, 0.01, Vec(0.1, 0, 0.2), Vec(0.3, 0.5, 0))));
   EXPECT_FALSE(is_physically_consistent<double>(shapes::solid_cylinder<double>(1, 0, Vec::Zero(), Vec::UnitX())));
 }
 
 TEST(Shapes, WorkInSinglePrecision) {
-  const auto p = shapes::hollow_cylinder<float>(0.6F, 0.014F, 0.008F, Vector3<float>::Zero(), Vector3<float>(0, 0, 0.78F));
+  const auto p =
+      shapes::hollow_cylinder<float>(0.6F, 0.014F, 0.008F, Vector3<float>::Zero(), Vector3<float>(0, 0, 0.78F));
   EXPECT_NEAR(p(inertial::kMcz), 0.234F, 1e-6F);
 }
 
-// --- Table I of the paper, columns "RG simple" and "RG geom" -------------------------------------------------------------------
+// --- Table I of the paper, columns "RG simple" and "RG geom"
+// -------------------------------------------------------------------
 //
 // Follow from the lengths, radii and formulas that VIII.A states (the masses are the table's own):
 //   telescope upper    m = 0.900, m c = -0.315, Ixx = Iyy = 0.147, Izz = 28.8e-6        both columns
 //   telescope lower    m = 0.600, m c =  0.234, Ixx = Iyy = 0.122, Izz = 78.0e-6        both columns
-//   strut              m c = 0.111, Iyy = Izz = 0.082                                 RG simple (m = 0.200, uniform over 1106 mm)
+//   strut              m c = 0.111, Iyy = Izz = 0.082                                 RG simple (m = 0.200, uniform
+//   over 1106 mm)
 // Follow once a radius or mass is chosen that the paper does not state; the tests say which:
 //   upper arm          m c = 0.250, Iyy = 0.084    RG simple: 1 kg, 500 mm, wall 3 mm, outer radius from 20 mm up
 //   strut              Ixx = 0.003e-3              RG simple: wall 1 mm, outer radius 4.4 mm
-//   strut              m = 0.249, Ixx = 0.032e-3   RG geom: half of the mass is a carbon tube with wall 1 mm; 1585 kg/m^3
+//   strut              m = 0.249, Ixx = 0.032e-3   RG geom: half of the mass is a carbon tube with wall 1 mm; 1585
+//   kg/m^3
 //                                                  and 11.8 mm outer radius give both numbers
 // Do not follow:
-//   upper arm, RG geom: m c = 0.101, Iyy = 0.127. Their ratio is 1.26 m, longer than any arm of 500 mm: Iyy must hold a part near
+//   upper arm, RG geom: m c = 0.101, Iyy = 0.127. Their ratio is 1.26 m, longer than any arm of 500 mm: Iyy must hold a
+//   part near
 //     the drive axis (gear, motor) that the text does not mention.
-//   strut, RG geom: m c = 0.129, Iyy = Izz = 0.109. A strut with equal sockets has m c = 0.249 x 0.553 = 0.138, whatever the
+//   strut, RG geom: m c = 0.129, Iyy = Izz = 0.109. A strut with equal sockets has m c = 0.249 x 0.553 = 0.138,
+//   whatever the
 //     sockets' length; the table's centre of mass lies at 0.518 m, as if the ball joints were 1036 mm apart.
 //   platform: 0.800 (a guess) and 1.000 (two cylinders of aluminium whose sizes are not given).
 

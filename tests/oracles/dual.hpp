@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Forward differentiation by dual numbers, to be nested for higher derivatives: Dual<Dual<Real>> carries a mixed second one.
+/// Forward differentiation by dual numbers, to be nested for higher derivatives: Dual<Dual<Real>> carries a mixed
+/// second one.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -25,7 +26,9 @@ struct Dual {
   friend Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
   friend Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
   friend Dual operator-(const Dual& a) { return {-a.value, -a.slope}; }
-  friend Dual operator*(const Dual& a, const Dual& b) { return {a.value * b.value, a.value * b.slope + a.slope * b.value}; }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return {a.value * b.value, a.value * b.slope + a.slope * b.value};
+  }
   friend Dual operator/(const Dual& a, const Dual& b) {
     const S ratio = a.value / b.value;
     return {ratio, (a.slope - ratio * b.slope) / b.value};
@@ -73,7 +76,15 @@ struct NumTraits<oracles::Dual<S>> : GenericNumTraits<oracles::Dual<S>> {
   using NonInteger = Real;
   using Nested = Real;
   using Literal = Real;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 2, AddCost = 2, MulCost = 4 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 2,
+    AddCost = 2,
+    MulCost = 4
+  };
 };
 
 }  // namespace Eigen

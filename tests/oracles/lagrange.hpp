@@ -95,7 +95,8 @@ inline Rubbing rubbing(const Mechanism& m, const Numbers& q, const Numbers& qd, 
 }
 
 /// Friction torques: force of each rubbing joint times its gain (principle of virtual power).
-inline Numbers friction_torque(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd, const Numbers& guess) {
+inline Numbers friction_torque(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd,
+                               const Numbers& guess) {
   const Rubbing joints = rubbing(m, q, qd, guess);
   Numbers torque(m.drives(), 0);
   for (std::size_t j = 0; j < joints.rate.size(); ++j) {
@@ -107,7 +108,8 @@ inline Numbers friction_torque(const Mechanism& m, const Load& load, const Numbe
 }
 
 /// Power that friction turns to heat.
-inline Real friction_power(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd, const Numbers& guess) {
+inline Real friction_power(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd,
+                           const Numbers& guess) {
   const Numbers torque = friction_torque(m, load, q, qd, guess);
   Real power = 0;
   for (std::size_t i = 0; i < torque.size(); ++i) power += torque[i] * qd[i];
@@ -138,8 +140,8 @@ inline Real mass_matrix_entry(const Mechanism& m, const Load& load, const Number
 }
 
 /// Drive torques of a motion.
-inline Numbers drive_torque(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd, const Numbers& qdd,
-                            const Numbers& guess) {
+inline Numbers drive_torque(const Mechanism& m, const Load& load, const Numbers& q, const Numbers& qd,
+                            const Numbers& qdd, const Numbers& guess) {
   const std::size_t n = m.drives();
   Numbers torque = friction_torque(m, load, q, qd, guess);
   const Numbers gravity = gravity_torque(m, load, q, guess);

@@ -14,7 +14,8 @@ Mechanism axis(bool prismatic) {
   Mechanism m;
   m.prismatic = prismatic;
   m.gravity = V(0, 0, -9.81L);
-  m.limbs.push_back({0.4L, V(0.1L, 0.2L, 0.3L), prismatic ? V(0, 0, 1) : V(0, 1, 0), V(0.5L, 0, 0), 0, 0, V(0, 0, 0), 0});
+  m.limbs.push_back(
+      {0.4L, V(0.1L, 0.2L, 0.3L), prismatic ? V(0, 0, 1) : V(0, 1, 0), V(0.5L, 0, 0), 0, 0, V(0, 0, 0), 0});
   return m;
 }
 
@@ -26,8 +27,8 @@ Mechanism delta() {
   m.bar_bottom = V(0.02L, -0.01L, 0.04L);
   for (int i = 0; i < 3; ++i) {
     const Real a = 2.1L * i;
-    m.limbs.push_back(
-        {a, turn<Real>(2, a) * V(0.2L, 0, 0), V(0, 1, 0), V(0.4L, 0, 0), 1.0L, 0.1L, turn<Real>(2, a) * V(0.05L, 0, 0), 0});
+    m.limbs.push_back({a, turn<Real>(2, a) * V(0.2L, 0, 0), V(0, 1, 0), V(0.4L, 0, 0), 1.0L, 0.1L,
+                       turn<Real>(2, a) * V(0.05L, 0, 0), 0});
   }
   return m;
 }
@@ -44,7 +45,8 @@ TEST(Dual, GivesFirstAndMixedSecondDerivatives) {
   const auto second = f(Dual<Dual<Real>>(Dual<Real>(x, 1), Dual<Real>(1, 0)));
   const Real h = 1e-5L;
   EXPECT_NEAR(static_cast<double>(first.slope), static_cast<double>((f(x + h) - f(x - h)) / (2 * h)), 1e-9);
-  EXPECT_NEAR(static_cast<double>(second.slope.slope), static_cast<double>((f(x + h) - 2 * f(x) + f(x - h)) / (h * h)), 1e-8);
+  EXPECT_NEAR(static_cast<double>(second.slope.slope), static_cast<double>((f(x + h) - 2 * f(x) + f(x - h)) / (h * h)),
+              1e-8);
   EXPECT_EQ(second.value.slope, second.slope.value);
 }
 
@@ -70,13 +72,16 @@ TEST(Plate, ClosesTheLoopsWithItsDerivatives) {
   std::vector<Dual<Dual<Real>>> moving;
   const Numbers qd = {1, -2, 0.5L};
   for (std::size_t k = 0; k < 3; ++k) moving.push_back({Dual<Real>(q[k], qd[k]), Dual<Real>(qd[k], 0)});
-  const auto along = [&](Real t) { return plate(m, Numbers{q[0] + t * qd[0], q[1] + t * qd[1], q[2] + t * qd[2]}, guess); };
+  const auto along = [&](Real t) {
+    return plate(m, Numbers{q[0] + t * qd[0], q[1] + t * qd[1], q[2] + t * qd[2]}, guess);
+  };
   const auto y = plate(m, moving, guess);
   const auto before = along(-h), now = along(0), after = along(h);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_LT(std::abs(loop_error(m, k, q[k], now)), 1e-17L);
     EXPECT_NEAR(static_cast<double>(y[k].slope.value), static_cast<double>((after[k] - before[k]) / (2 * h)), 1e-8);
-    EXPECT_NEAR(static_cast<double>(y[k].slope.slope), static_cast<double>((after[k] - 2 * now[k] + before[k]) / (h * h)), 1e-7);
+    EXPECT_NEAR(static_cast<double>(y[k].slope.slope),
+                static_cast<double>((after[k] - 2 * now[k] + before[k]) / (h * h)), 1e-7);
   }
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 
 /// \file
-/// A Delta-like mechanism as loop equations and body poses, written from the drawing and sharing no code with the library.
+/// A Delta-like mechanism as loop equations and body poses, written from the drawing and sharing no code with the
+/// library.
 ///
-/// The plate is found by Newton's iteration on |A_i(y) - E_i(q_i)|^2 = L_i^2, orientations from directions and cross products: no
-/// joint angle, no rate and no Jacobian of the library appears. Every function takes nested dual numbers.
+/// The plate is found by Newton's iteration on |A_i(y) - E_i(q_i)|^2 = L_i^2, orientations from directions and cross
+/// products: no joint angle, no rate and no Jacobian of the library appears. Every function takes nested dual numbers.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -25,7 +26,8 @@ using Numbers = std::vector<Real>;
 
 struct Limb {
   Real azimuth = 0;
-  Vec3<Real> drive, axis, elbow;  ///< drive origin in the base frame; axis and elbow (at coordinate 0) in the limb frame
+  /// Drive origin in the base frame; axis and elbow (at coordinate 0) in the limb frame
+  Vec3<Real> drive, axis, elbow;
   Real strut = 0, spacing = 0;
   Vec3<Real> attachment;  ///< from the origin of the plate part, in the base frame
   int part = 0;
@@ -202,8 +204,8 @@ S bar_length(const Mechanism& m, const std::vector<S>& y) {
   return sqrt(S(w.dot(w)));
 }
 
-/// Poses of all bodies: for each limb the upper arm and its two struts, then the parts of the plate, the tool, the upper and the
-/// lower part of the bar.
+/// Poses of all bodies: for each limb the upper arm and its two struts, then the parts of the plate, the tool, the
+/// upper and the lower part of the bar.
 template <class S>
 std::vector<Pose<S>> poses(const Mechanism& m, const std::vector<S>& q, const Numbers& guess) {
   const std::vector<S> y = plate(m, q, guess);
@@ -223,8 +225,8 @@ std::vector<Pose<S>> poses(const Mechanism& m, const std::vector<S>& q, const Nu
     const Vec3<S> A = attachment_point(m, i, y);
     const Vec3<S> y_L = R_L.col(1);
     for (const Real side : {0.5L, -0.5L}) {
-      // Each strut between its own two ball joints. It turns about y of the limb and about its own z, so z stays at right angles
-      // to y of the limb.
+      // Each strut between its own two ball joints. It turns about y of the limb and about its own z, so z stays at
+      // right angles to y of the limb.
       const Vec3<S> offset = lift<S>(Vec3<Real>(0, side * limb.spacing, 0));
       const Vec3<S> from = E + R_L * offset;
       const Vec3<S> to = A + R_L * offset;
@@ -249,7 +251,8 @@ std::vector<Pose<S>> poses(const Mechanism& m, const std::vector<S>& q, const Nu
   return bodies;
 }
 
-/// All drive coordinates in [lower, upper] that close limb i at plate coordinates y, ascending: sign changes, then bisection.
+/// All drive coordinates in [lower, upper] that close limb i at plate coordinates y, ascending: sign changes, then
+/// bisection.
 inline Numbers drive_roots(const Mechanism& m, std::size_t i, const Numbers& y, Real lower, Real upper) {
   constexpr int kSteps = 500;
   Numbers roots;

@@ -1,8 +1,8 @@
 /// \file
 /// Writes robots, parameters, states and a closed-loop motion for the tests against other people's simulators:
 ///     peer_cases FOLDER
-/// For each type: TYPE.urdf, TYPE_params.csv, TYPE_states.csv (drives, joints of the tree, torques, mass matrix), TYPE_motion.csv.
-/// For the delta4 effects and a trajectory, too: delta4_effects.csv, delta4_trajectory.csv.
+/// For each type: TYPE.urdf, TYPE_params.csv, TYPE_states.csv (drives, joints of the tree, torques, mass matrix),
+/// TYPE_motion.csv. For the delta4 effects and a trajectory, too: delta4_effects.csv, delta4_trajectory.csv.
 
 #include <cmath>
 #include <cstdio>
@@ -144,7 +144,8 @@ class Case {
       Eigen::VectorXd q, qd, qdd, tau(N);
       sampler.next(q, qd, qdd);
       Eigen::MatrixXd M(N, N);
-      if (robot_->inverse_dynamics(q, qd, qdd, values_, tau) != Status::ok || robot_->mass_matrix(q, values_, M) != Status::ok)
+      if (robot_->inverse_dynamics(q, qd, qdd, values_, tau) != Status::ok ||
+          robot_->mass_matrix(q, values_, M) != Status::ok)
         throw std::runtime_error("a state is not regular");
       Posture<double, R> posture;
       if (posture_from_drives<double, R>(geometry_, q, posture) != Status::ok) throw std::runtime_error("no posture");
@@ -155,19 +156,22 @@ class Case {
       for (const auto& limb : posture.limbs)
         file.print(",{},{}", std::atan2(limb.beta.sin, limb.beta.cos), std::atan2(limb.gamma.sin, limb.gamma.cos));
       const auto& bar = posture.telescope;
-      if (R::kTelescope) file.print(",{},{},{}", std::atan2(bar.a.sin, bar.a.cos), std::atan2(bar.b.sin, bar.b.cos), bar.length);
+      if (R::kTelescope)
+        file.print(",{},{},{}", std::atan2(bar.a.sin, bar.a.cos), std::atan2(bar.b.sin, bar.b.cos), bar.length);
       file.write("\n");
     }
     file.commit();
   }
 
-  /// Feed-forward and a digital PD controller at 1 kHz on a fast motion, integrated by Runge and Kutta in steps of 20 us.
+  /// Feed-forward and a digital PD controller at 1 kHz on a fast motion, integrated by Runge and Kutta in steps of 20
+  /// us.
   void write_motion() {
     const WorkspaceSampler sampler(*robot_);
     const auto set_point = [&](double t, Eigen::VectorXd& q, Eigen::VectorXd& qd, Eigen::VectorXd& tau) {
       const TaskState task = task_at(sampler, t);
       Eigen::VectorXd qdd(N);
-      if (robot_->to_drives(task, q, qd, qdd) != Status::ok || robot_->inverse_dynamics(q, qd, qdd, values_, tau) != Status::ok)
+      if (robot_->to_drives(task, q, qd, qdd) != Status::ok ||
+          robot_->inverse_dynamics(q, qd, qdd, values_, tau) != Status::ok)
         throw std::runtime_error("the motion leaves the workspace");
     };
     OutputFile file(path("_motion.csv"));
@@ -192,7 +196,8 @@ class Case {
       file.write("\n");
       Drives tau = feed + stiffness * (reference - q) + damping * (rate - qd);
       if (R::kTelescope)
-        tau(N - 1) = feed(N - 1) + stiffness / 100 * (reference(N - 1) - q(N - 1)) + damping / 100 * (rate(N - 1) - qd(N - 1));
+        tau(N - 1) =
+            feed(N - 1) + stiffness / 100 * (reference(N - 1) - q(N - 1)) + damping / 100 * (rate(N - 1) - qd(N - 1));
       for (int step = 0; step < kSubsteps; ++step) advance(kTick / kSubsteps, tau, q, qd);
     }
     file.commit();

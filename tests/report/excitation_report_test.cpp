@@ -62,9 +62,9 @@ TEST(ExcitationReport, ShowsPathLimitsAndWhatWillBeIdentified) {
   const auto headings = testing::texts(page, "h2");
   for (const char* heading : {"Path", "Limits", "What the motion will identify", "Settings"})
     EXPECT_THAT(headings, ::testing::Contains(HasSubstr(heading)));
-  EXPECT_THAT(page,
-              AllOf(HasSubstr("seen at an angle"), HasSubstr("From above"), HasSubstr("segment 2"), HasSubstr("drive 2 velocity"),
-                    HasSubstr("D-efficiency"), HasSubstr("lower half ball of radius 0.35 m"), HasSubstr("&lt;t&gt;.csv")));
+  EXPECT_THAT(page, AllOf(HasSubstr("seen at an angle"), HasSubstr("From above"), HasSubstr("segment 2"),
+                          HasSubstr("drive 2 velocity"), HasSubstr("D-efficiency"),
+                          HasSubstr("lower half ball of radius 0.35 m"), HasSubstr("&lt;t&gt;.csv")));
   // A row for every limit and for every base parameter.
   std::size_t cells = 0;
   for (const std::string& text : testing::texts(page, "td")) {

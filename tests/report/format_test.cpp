@@ -52,11 +52,12 @@ TEST_P(FormatWithUncertainty, EndsAtTheUncertaintysSecondDigit) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, FormatWithUncertainty,
-    ::testing::Values(UncertaintyCase{1.23449, 0.0123, "1.234 ± 0.012"}, UncertaintyCase{-1.23449, 0.0123, "-1.234 ± 0.012"},
-                      UncertaintyCase{1.0, 0.0996, "1.00 ± 0.10"}, UncertaintyCase{95.114, 1.34, "95.1 ± 1.3"},
-                      UncertaintyCase{203.4, 12.0, "203 ± 12"}, UncertaintyCase{1234.5, 120.0, "1230 ± 120"},
-                      UncertaintyCase{0.0004, 1.2, "0.0 ± 1.2"}, UncertaintyCase{-0.0004, 1.2, "0.0 ± 1.2"},
-                      UncertaintyCase{0.0, 0.0123, "0.000 ± 0.012"}, UncertaintyCase{1.2345e-5, 1.2e-7, "(1.234 ± 0.012) × 10⁻⁵"},
+    ::testing::Values(UncertaintyCase{1.23449, 0.0123, "1.234 ± 0.012"},
+                      UncertaintyCase{-1.23449, 0.0123, "-1.234 ± 0.012"}, UncertaintyCase{1.0, 0.0996, "1.00 ± 0.10"},
+                      UncertaintyCase{95.114, 1.34, "95.1 ± 1.3"}, UncertaintyCase{203.4, 12.0, "203 ± 12"},
+                      UncertaintyCase{1234.5, 120.0, "1230 ± 120"}, UncertaintyCase{0.0004, 1.2, "0.0 ± 1.2"},
+                      UncertaintyCase{-0.0004, 1.2, "0.0 ± 1.2"}, UncertaintyCase{0.0, 0.0123, "0.000 ± 0.012"},
+                      UncertaintyCase{1.2345e-5, 1.2e-7, "(1.234 ± 0.012) × 10⁻⁵"},
                       UncertaintyCase{1.2e-9, 3.4e-5, "(0.0 ± 3.4) × 10⁻⁵"},
                       UncertaintyCase{2.5e7, 1.5e5, "(2.500 ± 0.015) × 10⁷"}, UncertaintyCase{1.25, 0.0, "1.25"},
                       UncertaintyCase{1.23456, kNaN, "1.235"}, UncertaintyCase{1.23456, -1.0, "1.235"},

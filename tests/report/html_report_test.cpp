@@ -86,7 +86,8 @@ TEST(HtmlReport, IdsOfSeveralPlotsDoNotClash) {
   EXPECT_GT(ids.size(), 30u);
   EXPECT_EQ(unique.size(), ids.size());
   for (const char* attribute : {"href", "xlink:href"})
-    for (const std::string& target : attributes(page, attribute)) EXPECT_TRUE(unique.contains(target.substr(1))) << target;
+    for (const std::string& target : attributes(page, attribute))
+      EXPECT_TRUE(unique.contains(target.substr(1))) << target;
 }
 
 TEST(HtmlReport, VerdictIsSaidByClassAndBySign) {
@@ -95,7 +96,8 @@ TEST(HtmlReport, VerdictIsSaidByClassAndBySign) {
   EXPECT_THAT(attributes(page(Verdict::caution), "class"), Contains("verdict caution"));
   EXPECT_THAT(attributes(page(Verdict::bad), "class"), Contains("verdict bad"));
   std::set<std::string> signs;
-  for (const Verdict verdict : {Verdict::good, Verdict::caution, Verdict::bad}) signs.insert(texts(page(verdict), "span")[0]);
+  for (const Verdict verdict : {Verdict::good, Verdict::caution, Verdict::bad})
+    signs.insert(texts(page(verdict), "span")[0]);
   EXPECT_EQ(signs.size(), 3u);
 }
 
@@ -136,8 +138,10 @@ TEST(HtmlReport, ContentsAppearFromThreeSectionsOn) {
 }
 
 TEST(HtmlReport, DetailsHoldTheirParts) {
-  const std::string page =
-      HtmlReport("r").details("more", [](HtmlReport& inside) { inside.paragraph("inside"); }).paragraph("outside").str();
+  const std::string page = HtmlReport("r")
+                               .details("more", [](HtmlReport& inside) { inside.paragraph("inside"); })
+                               .paragraph("outside")
+                               .str();
   ASSERT_EQ(texts(page, "details").size(), 1u);
   EXPECT_THAT(texts(page, "details")[0], HasSubstr("inside"));
   EXPECT_THAT(texts(page, "details")[0], Not(HasSubstr("outside")));

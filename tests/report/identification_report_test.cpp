@@ -236,8 +236,9 @@ TEST(PriorGaps, SayWhatToMeasure) {
     made.independent = {0, 1, 4};
     return made;
   }();
-  EXPECT_THAT(parameter_visibility(base), ::testing::ElementsAre(Visibility::alone, Visibility::combined, Visibility::combined,
-                                                                 Visibility::hidden, Visibility::alone));
+  EXPECT_THAT(parameter_visibility(base),
+              ::testing::ElementsAre(Visibility::alone, Visibility::combined, Visibility::combined, Visibility::hidden,
+                                     Visibility::alone));
   ConsistentFitSummary fit;
   for (const char* name : {"drive2.viscous", "tool.m", "telescope_lower.mcz", "platform.Ixx", "strut.Ixx"})
     fit.parameters.push_back(parameter_id(name).value());
@@ -279,7 +280,8 @@ TEST_P(IdentificationReportOf, GivesAWholePage) {
   const std::string page = page_of(run);
   EXPECT_LT(page.size(), kLargestPage);
   EXPECT_THAT(texts(page, "h1"), ::testing::ElementsAre("Identification of " + run.robot->description().name));
-  EXPECT_THAT(texts(page, "h2"), ::testing::IsSupersetOf({"Checks", "Parameters", "Base parameters", "What to measure next"}));
+  EXPECT_THAT(texts(page, "h2"),
+              ::testing::IsSupersetOf({"Checks", "Parameters", "Base parameters", "What to measure next"}));
   const std::vector<std::string> cells = texts(page, "td");
   for (const std::string& name : run.robot->parameter_names())
     EXPECT_THAT(cells, Contains(name)) << "every parameter is in some table";
@@ -323,7 +325,8 @@ TEST(IdentificationReport, NotesOfTheLogAndOfTheFitAreShown) {
   SyntheticRun run = copy_of(good_run());
   run.identification.notes = {"made_up.csv, line 7: <repaired>"};
   run.identification.fit.notes = {"the prior was moved"};
-  EXPECT_THAT(texts(page_of(run), "li"), ::testing::IsSupersetOf({"made_up.csv, line 7: <repaired>", "the prior was moved"}));
+  EXPECT_THAT(texts(page_of(run), "li"),
+              ::testing::IsSupersetOf({"made_up.csv, line 7: <repaired>", "the prior was moved"}));
 }
 
 TEST(IdentificationReport, PartsOfAnotherRobotAreRefused) {

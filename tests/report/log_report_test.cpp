@@ -23,13 +23,14 @@ LogFinding finding(FindingLevel level, const std::string& key, const std::string
 
 TEST(LogReport, VerdictAndWordsAgree) {
   const LogFinding fault = finding(FindingLevel::fault, "unexplained", "x"),
-                   warning = finding(FindingLevel::warning, "delay", "y"), mended = finding(FindingLevel::mended, "gaps", "z"),
-                   fine = finding(FindingLevel::fine, "step", "w");
+                   warning = finding(FindingLevel::warning, "delay", "y"),
+                   mended = finding(FindingLevel::mended, "gaps", "z"), fine = finding(FindingLevel::fine, "step", "w");
   EXPECT_EQ(check_verdict_in_words({fine}), "no fault was found");
   EXPECT_EQ(check_verdict_in_words({fine, mended}), "no fault was found, 1 finding mended");
   EXPECT_EQ(check_verdict_in_words({warning, warning, mended}),
             "these logs can be used with care: no fault was found, 2 warnings, 1 finding mended");
-  EXPECT_EQ(check_verdict_in_words({fault, warning}), "a model from these logs is not to be trusted: 1 fault, 1 warning");
+  EXPECT_EQ(check_verdict_in_words({fault, warning}),
+            "a model from these logs is not to be trusted: 1 fault, 1 warning");
   EXPECT_EQ(verdict_of({fault, warning}), Verdict::bad);
 }
 

@@ -43,7 +43,8 @@ PlotSpec simple() {
 /// Sets an environment variable until the end of the test.
 class EnvironmentGuard {
  public:
-  EnvironmentGuard(const char* name, const std::string& value) : name_(name), old_(std::getenv(name) ? std::getenv(name) : "") {
+  EnvironmentGuard(const char* name, const std::string& value)
+      : name_(name), old_(std::getenv(name) ? std::getenv(name) : "") {
     ::setenv(name, value.c_str(), 1);
   }
   EnvironmentGuard(const EnvironmentGuard&) = delete;

@@ -26,12 +26,14 @@ struct Case {
 
   [[nodiscard]] Assessment assess() const { return assess_validation(*robot, validation); }
   [[nodiscard]] std::string page() const {
-    return validation_report(*robot, validation, p, {"robot.urdf", {"made_up.csv"}, "params.csv", "delta-validate robot.urdf"});
+    return validation_report(*robot, validation, p,
+                             {"robot.urdf", {"made_up.csv"}, "params.csv", "delta-validate robot.urdf"});
   }
 };
 
 /// Predicts logs of a machine with the nominal parameters by those times `scale`.
-Case make_case(const std::string& robot_name, double noise, double scale = 1.0, const HiddenTorque& hidden = {}, int logs = 1) {
+Case make_case(const std::string& robot_name, double noise, double scale = 1.0, const HiddenTorque& hidden = {},
+               int logs = 1) {
   Case out;
   out.robot = shipped_robot(robot_name);
   const Eigen::VectorXd truth = nominal_parameters(*out.robot, PartShapes(out.robot->description())).value;
@@ -60,12 +62,13 @@ TEST(StructureInWords, SaysWhetherItIsWorthActingOn) {
   left.drive = 1;
   left.coordinate = "velocity";
   left.of_torque = 0.034;
-  EXPECT_EQ(
-      structure_in_words(left),
-      "structure is left in the residual of drive\u00A02 (slow.csv), following its velocity: 3.4 % of the torque in this log");
+  EXPECT_EQ(structure_in_words(left),
+            "structure is left in the residual of drive\u00A02 (slow.csv), following its velocity: 3.4 % of the torque "
+            "in this log");
   left.of_torque = 0.0047;
   left.coordinate = "time";
-  EXPECT_THAT(structure_in_words(left), HasSubstr("slow waves that follow none of its coordinates: 0.47 % of the torque"));
+  EXPECT_THAT(structure_in_words(left),
+              HasSubstr("slow waves that follow none of its coordinates: 0.47 % of the torque"));
   EXPECT_THAT(structure_in_words(left), HasSubstr("small: delta-diagnose may name it"));
 }
 
@@ -114,7 +117,8 @@ TEST_P(ValidationReportOf, GivesAWholePage) {
   EXPECT_THAT(page, HasSubstr("delta-validate robot.urdf"));
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryType, ValidationReportOf, ::testing::Values("delta3", "linear_delta3", "mujoco_delta4", "emps"));
+INSTANTIATE_TEST_SUITE_P(EveryType, ValidationReportOf,
+                         ::testing::Values("delta3", "linear_delta3", "mujoco_delta4", "emps"));
 
 TEST(ValidationReport, ParametersOfAnotherRobotAreRefused) {
   Case made = make_case("delta3", 0.01);

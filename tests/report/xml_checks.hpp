@@ -17,7 +17,8 @@ inline void for_each_element(const std::string& xml, const std::function<void(co
   ASSERT_EQ(document.Parse(xml.data(), xml.size()), tinyxml2::XML_SUCCESS) << document.ErrorStr();
   const std::function<void(const tinyxml2::XMLElement&)> walk = [&](const tinyxml2::XMLElement& element) {
     visit(element);
-    for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) walk(*child);
+    for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+      walk(*child);
   };
   ASSERT_NE(document.RootElement(), nullptr);
   walk(*document.RootElement());

@@ -35,8 +35,8 @@ TEST(ParameterId, SaysWhatAColumnIs) {
 }
 
 TEST(ParameterId, OfNamesThatNoRobotHasIsNothing) {
-  for (const char* name : {"", ".", "m", "elbow.m", "drive1.stiffness", "friction", "drive.viscous", "telescope1.viscous",
-                           "strut02.m", "strut99999999999.m", "strut.m.m", "2.m"}) {
+  for (const char* name : {"", ".", "m", "elbow.m", "drive1.stiffness", "friction", "drive.viscous",
+                           "telescope1.viscous", "strut02.m", "strut99999999999.m", "strut.m.m", "2.m"}) {
     EXPECT_FALSE(parameter_id(name)) << name;
   }
 }

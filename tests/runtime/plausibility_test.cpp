@@ -35,7 +35,8 @@ RobotDescription robot_of_size(const std::string& type, double size) {
   return delta_description(type, lengths);
 }
 
-void set_limits(RobotDescription& robot, double lower, double upper, double velocity, double acceleration, double unit = 1) {
+void set_limits(RobotDescription& robot, double lower, double upper, double velocity, double acceleration,
+                double unit = 1) {
   for (DriveLimits& limits : robot.limits) {
     limits.lower = lower * unit;
     limits.upper = upper * unit;
@@ -167,7 +168,8 @@ TEST(Plausibility, GramsAreSeenAtEverySize) {
         for (const Body body : {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper}) {
           if (what != deltadyn::name(body)) continue;
           const InertialVector<double> p = nominal.value.segment<kInertialParameters>(k);
-          EXPECT_NO_THROW(plausibility::require_body(description, body, p, what, "p.csv")) << type << " " << arm << " " << what;
+          EXPECT_NO_THROW(plausibility::require_body(description, body, p, what, "p.csv"))
+              << type << " " << arm << " " << what;
           EXPECT_THROW(plausibility::require_body(description, body, 1000 * p, what, "p.csv"), Error)
               << type << " " << arm << " " << what << " of " << p(0) << " kg in grams";
           InertialVector<double> moments = p;
@@ -203,7 +205,8 @@ TEST(Plausibility, JointParameters) {
   EXPECT_NO_THROW(plausibility::require_joint_parameter(ParameterKind::viscous, 200, "drive1.viscous", ""));
   EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::viscous, -0.1, "drive1.viscous", ""), Error);
   EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::coulomb, -4, "drive1.coulomb", ""), Error);
-  EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::coulomb, std::nan(""), "drive1.coulomb", ""), Error);
+  EXPECT_THROW(plausibility::require_joint_parameter(ParameterKind::coulomb, std::nan(""), "drive1.coulomb", ""),
+               Error);
   EXPECT_NO_THROW(plausibility::require_joint_parameter(ParameterKind::offset, -3, "drive1.offset", ""));
 }
 

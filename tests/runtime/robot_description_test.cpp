@@ -33,7 +33,8 @@ TEST(DriveLimits, AreUnlimitedUnlessGiven) {
 }
 
 TEST(RobotDescription, GoodOnesPass) {
-  for (const char* type : {"delta3", "linear-delta3", "delta4"}) EXPECT_NO_THROW(delta_description(type).validate("r")) << type;
+  for (const char* type : {"delta3", "linear-delta3", "delta4"})
+    EXPECT_NO_THROW(delta_description(type).validate("r")) << type;
   EXPECT_NO_THROW(axis_description(DriveKind::revolute).validate("r"));
   EXPECT_NO_THROW(axis_description(DriveKind::prismatic).validate("r"));
 }
@@ -66,17 +67,20 @@ const DescriptionFault kFaults[] = {
     {"Gravity", "delta3", [](auto& r) { r.gravity.x() = kNaN; }, "gravity"},
     {"Azimuth", "delta3", [](auto& r) { r.limbs[1].azimuth = kNaN; }, "limb 2: the azimuth"},
     {"Axis", "delta3", [](auto& r) { r.limbs[0].axis_L = Vector3<double>::UnitZ(); }, "+y of its limb frame"},
-    {"AxisLength", "linear-delta3", [](auto& r) { r.limbs[2].axis_L *= 2; }, "limb 3: the axis of the drive has length 2"},
+    {"AxisLength", "linear-delta3", [](auto& r) { r.limbs[2].axis_L *= 2; },
+     "limb 3: the axis of the drive has length 2"},
     {"ArmNegative", "delta3", [](auto& r) { r.limbs[0].p_DE_0.x() = -0.1; }, "length of the upper arm"},
     {"ArmZero", "delta3", [](auto& r) { r.limbs[0].p_DE_0.x() = 0; }, "length of the upper arm"},
     {"ArmTilted", "delta3", [](auto& r) { r.limbs[0].p_DE_0.z() = 0.1; }, "+x of the upper arm"},
     {"Strut", "delta3", [](auto& r) { r.limbs[2].strut = 0; }, "limb 3: the strut length is 0"},
-    {"StrutInfinite", "delta3", [](auto& r) { r.limbs[2].strut = std::numeric_limits<double>::infinity(); }, "strut length"},
+    {"StrutInfinite", "delta3", [](auto& r) { r.limbs[2].strut = std::numeric_limits<double>::infinity(); },
+     "strut length"},
     {"Spacing", "delta3", [](auto& r) { r.limbs[1].strut_spacing = -1; }, "distance of the two struts"},
     {"Elbow", "delta3", [](auto& r) { r.limbs[1].elbow = 0; }, "elbow posture"},
     {"Part", "delta3", [](auto& r) { r.limbs[1].part = 1; }, "plate part 1"},
     {"Attachment", "delta3", [](auto& r) { r.limbs[1].p_BA.y() = kNaN; }, "attachment"},
-    {"Limits", "delta3", [](auto& r) { r.limits[1].lower = 1, r.limits[1].upper = -1; }, "drive 2: the lower position limit"},
+    {"Limits", "delta3", [](auto& r) { r.limits[1].lower = 1, r.limits[1].upper = -1; },
+     "drive 2: the lower position limit"},
     {"Velocity", "delta3", [](auto& r) { r.limits[2].velocity = 0; }, "drive 3: the velocity limit"},
     {"Effort", "delta3", [](auto& r) { r.limits[2].effort = kNaN; }, "effort limit"},
     {"Acceleration", "delta3", [](auto& r) { r.limits[2].acceleration = -1; }, "acceleration limit"},

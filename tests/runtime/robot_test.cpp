@@ -105,9 +105,10 @@ TEST(Robot, GivesTheTermsOfTheEquationsOfMotion) {
 
 TEST(Robot, NamesItsColumnsInTheOrderOfTheRegressor) {
   const auto axis = make_robot(axis_description(DriveKind::revolute));
-  EXPECT_THAT(axis->parameter_names(), ElementsAre("upper_arm.m", "upper_arm.mcx", "upper_arm.mcy", "upper_arm.mcz",
-                                                   "upper_arm.Ixx", "upper_arm.Iyy", "upper_arm.Izz", "upper_arm.Ixy",
-                                                   "upper_arm.Iyz", "upper_arm.Ixz", "drive1.viscous", "drive1.coulomb"));
+  EXPECT_THAT(axis->parameter_names(),
+              ElementsAre("upper_arm.m", "upper_arm.mcx", "upper_arm.mcy", "upper_arm.mcz", "upper_arm.Ixx",
+                          "upper_arm.Iyy", "upper_arm.Izz", "upper_arm.Ixy", "upper_arm.Iyz", "upper_arm.Ixz",
+                          "drive1.viscous", "drive1.coulomb"));
   EXPECT_EQ(axis->parameter_units().back(), "N*m");
   const auto linear = make_robot(axis_description(DriveKind::prismatic), all_columns(1));
   EXPECT_EQ(linear->parameter_units().back(), "N");
@@ -137,7 +138,8 @@ TEST(Robot, LeavesOutColumnsByName) {
       ASSERT_LT(at, full->parameters());
       EXPECT_EQ(part.col(k), Y.col(at)) << wanted;
     }
-    EXPECT_EQ(std::count(robot->parameter_names().begin(), robot->parameter_names().end(), "tool.m"), options.tool ? 1 : 0);
+    EXPECT_EQ(std::count(robot->parameter_names().begin(), robot->parameter_names().end(), "tool.m"),
+              options.tool ? 1 : 0);
     const int rotors = static_cast<int>(options.rotor_inertia.size());
     EXPECT_EQ(robot->parameters(), 60 + 10 * options.tool + rotors + 4 * options.offset);
   }

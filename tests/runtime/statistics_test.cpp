@@ -14,7 +14,8 @@ std::vector<double> shuffled_to(int count) {
 }
 
 TEST(Statistics, OrderStatisticIsTheValueAtItsPlace) {
-  for (std::size_t rank = 0; rank < 11; ++rank) EXPECT_EQ(order_statistic(shuffled_to(11), rank), static_cast<double>(rank));
+  for (std::size_t rank = 0; rank < 11; ++rank)
+    EXPECT_EQ(order_statistic(shuffled_to(11), rank), static_cast<double>(rank));
 }
 
 TEST(Statistics, QuantileIsTheValueAtTheFloorOfItsPlace) {

@@ -32,7 +32,8 @@ TEST(ZeroPhaseFilter, HasTheGainOfItsFormulaAndNoLag) {
     const Eigen::Index count = 6000;  // whole periods of every frequency
     const double in_phase = 2.0 / count * (out.array() * angle.sin()).segment(from, count).sum();
     const double quadrature = 2.0 / count * (out.array() * angle.cos()).segment(from, count).sum();
-    const double gain = zero_phase_gain(butterworth_low_pass(1000, single_pass_cutoff_hz(1000, 30.0, 4), 4), 1000, frequency);
+    const double gain =
+        zero_phase_gain(butterworth_low_pass(1000, single_pass_cutoff_hz(1000, 30.0, 4), 4), 1000, frequency);
     EXPECT_NEAR(in_phase, gain, 1e-9) << frequency;
     EXPECT_NEAR(quadrature, 0.0, 1e-9) << frequency;
   }
@@ -50,8 +51,8 @@ TEST(ZeroPhaseFilter, KeepsStraightLinesUpToTheEnds) {
 }
 
 TEST(ZeroPhaseFilter, IsTheSameBackwards) {
-  const Eigen::VectorXd x =
-      Eigen::VectorXd::NullaryExpr(3000, [](Eigen::Index i) { return std::sin(0.001 * static_cast<double>(i * i % 7001)); });
+  const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(
+      3000, [](Eigen::Index i) { return std::sin(0.001 * static_cast<double>(i * i % 7001)); });
   const Eigen::VectorXd forwards = zero_phase_filter(x, 1000, 50.0, 3);
   const Eigen::VectorXd backwards = zero_phase_filter(Eigen::MatrixXd(x.reverse()), 1000, 50.0, 3).col(0).reverse();
   EXPECT_LT((forwards - backwards).segment(500, 2000).cwiseAbs().maxCoeff(), 1e-8);

@@ -41,8 +41,11 @@ TEST(Differentiate, HasTheKnownCentralWeights) {
 
 TEST(SavitzkyGolay, HasTheWeightsOfTheOriginalTables) {
   // Savitzky and Golay 1964: quadratic smoothing of five and first derivative of seven points.
-  EXPECT_LT((derivative_weights(5, 2, 0, 2.0) - (Eigen::VectorXd(5) << -3, 12, 17, 12, -3).finished() / 35.0).norm(), 1e-13);
-  EXPECT_LT((derivative_weights(7, 2, 1, 3.0) - (Eigen::VectorXd(7) << -3, -2, -1, 0, 1, 2, 3).finished() / 28.0).norm(), 1e-13);
+  EXPECT_LT((derivative_weights(5, 2, 0, 2.0) - (Eigen::VectorXd(5) << -3, 12, 17, 12, -3).finished() / 35.0).norm(),
+            1e-13);
+  EXPECT_LT(
+      (derivative_weights(7, 2, 1, 3.0) - (Eigen::VectorXd(7) << -3, -2, -1, 0, 1, 2, 3).finished() / 28.0).norm(),
+      1e-13);
 }
 
 TEST(SavitzkyGolay, IsExactForItsDegreeAndSmoothsNoise) {

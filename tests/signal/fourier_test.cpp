@@ -74,7 +74,8 @@ TEST(AveragePeriods, MeetsTruthFarBelowTheEncoder) {
       // The scatter of the mean is the noise over the root of the number of periods.
       const double scatter = rms(mean.log.tau.col(d) - 2.0 * motion.at(t, 2, 0.7 * d));
       const double expected = 0.1 / std::sqrt(mean.periods);
-      EXPECT_NEAR(scatter / expected, 1.0, base_hz == 0.5 ? 0.05 : 0.2);  // interpolation between samples smooths a little
+      // Interpolation between samples smooths a little
+      EXPECT_NEAR(scatter / expected, 1.0, base_hz == 0.5 ? 0.05 : 0.2);
     }
   }
 }

@@ -94,7 +94,9 @@ INSTANTIATE_TEST_SUITE_P(
              {"too short: 20 samples", "at least 50 samples and 0.5 s"}},
         Case{"TooShortInTime", [](Log& log) { remove_rows(log, 300, 9700); }, {"too short: 300 samples, 0.299 s"}},
         Case{"TimeNotANumber", [](Log& log) { log.t_s(7) = kNan; }, {"line 9, column t_s"}},
-        Case{"MillisecondsAsSeconds", [](Log& log) { log.t_s *= 1000.0; }, {"column t_s", "1 s apart", "time in seconds"}},
+        Case{"MillisecondsAsSeconds",
+             [](Log& log) { log.t_s *= 1000.0; },
+             {"column t_s", "1 s apart", "time in seconds"}},
         Case{"ManySingleMissingNumbers",
              [](Log& log) {
                for (Eigen::Index i = 10; i < 9900; i += 3) log.tau(i, 0) = kNan;
@@ -106,11 +108,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"StuckInMotion",
              [](Log& log) { log.q.col(2).segment(3100, 400).setConstant(log.q(3100, 2)); },
              {"line 3102, column q3_rad", "stuck encoder"}},
-        Case{"StuckFromTheStart", [](Log& log) { log.q.col(0).setConstant(0.1); }, {"line 2, column q1_rad", "stuck encoder"}},
+        Case{"StuckFromTheStart",
+             [](Log& log) { log.q.col(0).setConstant(0.1); },
+             {"line 2, column q1_rad", "stuck encoder"}},
         Case{"StuckToTheEnd",
              [](Log& log) { log.q.col(0).tail(2500).setConstant(log.q(7500, 0)); },
              {"line 7502, column q1_rad", "stuck encoder"}},
-        Case{"LostCounts", [](Log& log) { log.q.col(1).tail(4000).array() += 0.05; }, {"column q2_rad", "position jumps"}},
+        Case{"LostCounts",
+             [](Log& log) { log.q.col(1).tail(4000).array() += 0.05; },
+             {"column q2_rad", "position jumps"}},
         Case{"NothingMoves", [](Log& log) { log.q.setConstant(0.3); }, {"nothing moves"}},
         Case{"TorqueCutOff",
              [](Log& log) { log.tau = log.tau.cwiseMin(2.0).cwiseMax(-2.0).eval(); },
@@ -134,7 +140,8 @@ TEST_P(RepairedLogTest, IsEvenAndCloseToTheTruthAndSaysSo) {
   for (const char* part : GetParam().message) EXPECT_THAT(log.notes.front(), HasSubstr(part));
 }
 
-// A servo that is switched on while the recorder runs, or a recorder that stands still: all positions hold, then go on elsewhere.
+// A servo that is switched on while the recorder runs, or a recorder that stands still: all positions hold, then go on
+// elsewhere.
 TEST(FrozenPositions, OfAllDrivesAreMissingAndSplitTheLog) {
   Log log = good_log();
   for (Eigen::Index k = 0; k < 1000; ++k) log.q.row(k) = log.q.row(0).eval();
@@ -254,7 +261,8 @@ TEST(LogCheck, SplitsAtALongGap) {
   EXPECT_THROW(check_and_repair(log, delta3()), Error);
 }
 
-// What was said of a part that is not used stays, in as many words as before: one sentence for the numbers that two drives miss.
+// What was said of a part that is not used stays, in as many words as before: one sentence for the numbers that two
+// drives miss.
 TEST(LogCheck, AnUnusablePartIsSaidAndKeepsItsWords) {
   Log log = good_log();
   log.tau(1000, 0) = log.tau(1500, 1) = kNan;
@@ -312,7 +320,8 @@ TEST(LogCheck, TakesTwoRecordingsInOneFileApart) {
   const std::vector<Log> parts = parts_of(log);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_NEAR(parts[1].t_s(0), 2.0, 1e-9);
-  EXPECT_THAT(parts[0].notes.front(), HasSubstr("line 5002, column t_s: the time stamps decrease, from 4.999 s to 2 s"));
+  EXPECT_THAT(parts[0].notes.front(),
+              HasSubstr("line 5002, column t_s: the time stamps decrease, from 4.999 s to 2 s"));
 }
 
 TEST(LogCheck, BridgesLostRowsWithinTheNoise) {
@@ -402,7 +411,8 @@ TEST(LogCheck, UnwrapsACounterThatRanOver) {
   Log log = good_log();
   const double turn = 2.0 * std::numbers::pi;
   // A drive whose zero is such that it runs over in the middle of its range.
-  for (Eigen::Index i = 0; i < 10000; ++i) log.q(i, 2) = std::remainder(truth.q(i, 2) - 0.1 + 0.5 * turn, turn) - 0.5 * turn;
+  for (Eigen::Index i = 0; i < 10000; ++i)
+    log.q(i, 2) = std::remainder(truth.q(i, 2) - 0.1 + 0.5 * turn, turn) - 0.5 * turn;
   for (Eigen::Index i = 0; i < 10000; ++i) log.q(i, 2) = log.q(i, 2) < -turn ? log.q(i, 2) + turn : log.q(i, 2);
   const Log mended = parts_of(log).front();
   ASSERT_NE(finding(mended, "wrap", 2), nullptr);
@@ -441,7 +451,9 @@ TEST(LogCheck, MovesSamplesTakenAtUnevenTimes) {
     log.t_s(i) = t;
     t += i % 2 == 0 ? 0.001 : 0.0012;
   }
-  const auto exact = [](double when, int d) { return MultiSine{}.at(Eigen::VectorXd::Constant(1, when), 0, 2.1 * d)(0); };
+  const auto exact = [](double when, int d) {
+    return MultiSine{}.at(Eigen::VectorXd::Constant(1, when), 0, 2.1 * d)(0);
+  };
   for (Eigen::Index i = 0; i < 10000; ++i) {
     for (int d = 0; d < 3; ++d) log.q(i, d) = exact(log.t_s(i), d);
   }

@@ -46,7 +46,8 @@ TEST(DerivativeNoise, PredictsTheScatterBehindTheFilter) {
     const Eigen::MatrixXd filtered = zero_phase_filter(noise, 1000, cutoff, 4);
     for (int derivative = 1; derivative <= 2; ++derivative) {
       const double scatter = rms(Eigen::VectorXd(differentiate(filtered, 0.001, derivative, 3)));
-      EXPECT_NEAR(derivative_noise(1.0, 1000, cutoff, 4, derivative) / scatter, 1.0, 0.04) << cutoff << " " << derivative;
+      EXPECT_NEAR(derivative_noise(1.0, 1000, cutoff, 4, derivative) / scatter, 1.0, 0.04)
+          << cutoff << " " << derivative;
     }
   }
 }

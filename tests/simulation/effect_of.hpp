@@ -12,7 +12,8 @@ inline Eigen::VectorXd vector_of(const std::vector<double>& values) {
 }
 
 /// \param joint  drive from 0, or -1
-inline Effect effect_of(EffectId id, int joint, const std::vector<double>& amplitude, const std::vector<double>& shape) {
+inline Effect effect_of(EffectId id, int joint, const std::vector<double>& amplitude,
+                        const std::vector<double>& shape) {
   Effect effect;
   effect.id = id;
   effect.joint = joint;

@@ -27,7 +27,8 @@ constexpr double kMass = 2, kViscous = 0.8, kCoulomb = 3;
 Plant carriage(double viscous = kViscous, double coulomb = kCoulomb, const std::vector<Effect>& effects = {},
                const PlantOptions& options = {}) {
   const Eigen::Vector3d p(kMass, viscous, coulomb);
-  return Plant(axis_description(DriveKind::prismatic), {"upper_arm.m", "drive1.viscous", "drive1.coulomb"}, p, effects, options);
+  return Plant(axis_description(DriveKind::prismatic), {"upper_arm.m", "drive1.viscous", "drive1.coulomb"}, p, effects,
+               options);
 }
 
 DriveVector one(double value) {
@@ -190,9 +191,9 @@ TEST(Plant, EnergyIsAccountedFor) {
     (void)pushed({effect}, {}, &imbalance);
     EXPECT_LT(imbalance, 1e-7) << effect_kind(effect.id).name;
   }
-  (void)pushed(
-      {effect_of(effect_id<effects::JointElasticity>, 0, {2e-5}, {}), effect_of(effect_id<effects::Backlash>, 1, {0.5}, {0.01})},
-      {}, &imbalance);
+  (void)pushed({effect_of(effect_id<effects::JointElasticity>, 0, {2e-5}, {}),
+                effect_of(effect_id<effects::Backlash>, 1, {0.5}, {0.01})},
+               {}, &imbalance);
   EXPECT_LT(imbalance, 1e-6);
   (void)pushed({effect_of(effect_id<effects::PassiveJointFriction>, -1, {0.2}, {})}, {}, &imbalance);
   EXPECT_LT(imbalance, 1e-7);
@@ -218,9 +219,10 @@ TEST(Plant, MovesByTheTorqueThatItsOwnMotionTakes) {
   // Forward and backward are different code: one solves for accelerations with rest and events, the other only adds up.
   const auto robot = make_robot(delta_description("delta4"));
   std::vector<Effect> effects = many_effects();
-  effects.erase(std::remove_if(
-                    effects.begin(), effects.end(),
-                    [](const Effect& e) { return e.id == effect_id<effects::Hysteresis>; }),  // its state is integrated otherwise
+  effects.erase(std::remove_if(effects.begin(), effects.end(),
+                               [](const Effect& e) {
+                                 return e.id == effect_id<effects::Hysteresis>;
+                               }),  // its state is integrated otherwise
                 effects.end());
   effects.push_back(effect_of(effect_id<effects::DirectionalEfficiency>, 0, {0.1, 0.05}, {}));
   effects.push_back(effect_of(effect_id<effects::PassiveJointFriction>, -1, {0.05}, {}));
@@ -237,7 +239,8 @@ TEST(Plant, MovesByTheTorqueThatItsOwnMotionTakes) {
     plant.command(tau);
     const std::vector<int> directions = plant.directions();
     // A joint that breaks loose at this instant has a direction already, but no rate yet.
-    if (plant.counts().breakaways == loosened && std::find(directions.begin(), directions.end(), 0) == directions.end()) {
+    if (plant.counts().breakaways == loosened &&
+        std::find(directions.begin(), directions.end(), 0) == directions.end()) {
       const DriveVector back = plant.inverse(plant.time(), plant.q(), plant.qd(), plant.qdd());
       EXPECT_LT((back - tau).cwiseAbs().maxCoeff(), 1e-9) << "at " << t;
       ++compared;
@@ -264,7 +267,9 @@ TEST(Plant, InverseIsTheModelWithoutEffects) {
 TEST(Plant, RefusesWhatCannotBe) {
   const auto robot = make_robot(delta_description("delta4"));
   const Eigen::VectorXd p = delta_truth(*robot);
-  const auto make = [&](const Effect& effect) { return Plant(robot->description(), robot->parameter_names(), p, {effect}); };
+  const auto make = [&](const Effect& effect) {
+    return Plant(robot->description(), robot->parameter_names(), p, {effect});
+  };
   EXPECT_THROW((void)make(effect_of(effect_id<effects::ShearThinning>, 0, {100}, {1, 0})), Error);
   EXPECT_THROW((void)make(effect_of(effect_id<effects::Backlash>, 0, {1.5}, {0.01})), Error);
   Plant heavy(robot->description(), robot->parameter_names(), -p);

@@ -38,7 +38,9 @@ class Recorded : public ::testing::Test {
   Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(kRows, 0, (kRows - 1) * 1e-3);
   Eigen::VectorXd tau = 10 * (2 * std::numbers::pi * 3 * t).array().sin();
 
-  [[nodiscard]] Eigen::VectorXd with(const Effect& effect) const { return recorded_torque(t, tau, {effect}, {}, 1).col(0); }
+  [[nodiscard]] Eigen::VectorXd with(const Effect& effect) const {
+    return recorded_torque(t, tau, {effect}, {}, 1).col(0);
+  }
 };
 
 TEST_F(Recorded, NoiseHasItsSizeAndItsCorrelation) {
@@ -75,7 +77,9 @@ TEST_F(Recorded, CommandBeforeTheLagLeadsTheTorque) {
 TEST_F(Recorded, SaturationAndTorqueConstant) {
   EXPECT_NEAR(with(effect_of(effect_id<effects::Saturation>, 0, {1}, {6})).maxCoeff(), 6, 1e-12);
   EXPECT_NEAR(with(effect_of(effect_id<effects::Saturation>, 0, {0.5}, {6})).maxCoeff(), 8, 1e-3);
-  EXPECT_LT((with(effect_of(effect_id<effects::TorqueConstantError>, 0, {0.05}, {})) - 1.05 * tau).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(
+      (with(effect_of(effect_id<effects::TorqueConstantError>, 0, {0.05}, {})) - 1.05 * tau).cwiseAbs().maxCoeff(),
+      1e-12);
 }
 
 TEST_F(Recorded, EffectsOfThePlantAreNoneOfTheLog) {

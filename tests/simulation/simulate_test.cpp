@@ -62,13 +62,15 @@ TEST_P(EveryLaw, FollowsWithoutKnowingTheRobotExactly) {
   SimulationOptions options;
   options.controller.law = GetParam();
   Plant plant(bench.robot->description(), bench.robot->parameter_names(), bench.p);
-  const SimulationResult result = simulate(plant, *bench.robot, 0.8 * bench.p, ReferenceMotion(bench.samples), {}, options);
+  const SimulationResult result =
+      simulate(plant, *bench.robot, 0.8 * bench.p, ReferenceMotion(bench.samples), {}, options);
   EXPECT_LT(result.rms_error.maxCoeff(), 0.03);
   EXPECT_GT(result.rms_error.maxCoeff(), 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
-                         ::testing::Values(ControlLaw::pd_feedforward, ControlLaw::computed_torque, ControlLaw::augmented_pd));
+                         ::testing::Values(ControlLaw::pd_feedforward, ControlLaw::computed_torque,
+                                           ControlLaw::augmented_pd));
 
 TEST(Simulate, IsTheSameForTheSameSeedOnly) {
   const Bench bench(0.7);

@@ -47,7 +47,8 @@ inline Case make_case(const std::string& part, int index) {
   blind.parameters = nominal_parameters(*robot, PartShapes(robot->description())).value;
   for (int k = 0; k < robot->parameters(); ++k) {
     const std::string& name = robot->parameter_names()[static_cast<std::size_t>(k)];
-    if (name.rfind("drive", 0) == 0 && name.find("coulomb") != std::string::npos) blind.parameters(k) = coulomb_of(name[5] - '1');
+    if (name.rfind("drive", 0) == 0 && name.find("coulomb") != std::string::npos)
+      blind.parameters(k) = coulomb_of(name[5] - '1');
     if (name.rfind("drive", 0) == 0 && name.find("viscous") != std::string::npos)
       blind.parameters(k) = name[5] == '4' ? 0.02 : 1.5;
   }
@@ -80,7 +81,8 @@ inline Case make_case(const std::string& part, int index) {
 inline Outcome run_case(const std::string& part, int index, int null_runs) {
   const Case blind = make_case(part, index);
   Outcome out;
-  for (const Hidden& hidden : blind.hidden) out.truth += (out.truth.empty() ? "" : ";") + hidden.truth + "@" + hidden.joint;
+  for (const Hidden& hidden : blind.hidden)
+    out.truth += (out.truth.empty() ? "" : ";") + hidden.truth + "@" + hidden.joint;
   if (out.truth.empty()) out.truth = "nothing";
   out.noise = fmt::format("rho {} encoder {:.1e}", blind.noise.correlation, blind.noise.encoder_rad);
   const std::vector<Log> logs = record(blind, &out.strength);
@@ -92,7 +94,8 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
   DiagnosisOptions options;
   options.null_runs = null_runs;
   options.identify = false;
-  // The user's own parameters are not the truth: a few per cent off, as an identification with the effect in the logs would be.
+  // The user's own parameters are not the truth: a few per cent off, as an identification with the effect in the logs
+  // would be.
   const Diagnosis result = diagnose(*robot, {logs[0], logs[1]}, &logs[2], 1.03 * blind.parameters, {}, {}, options);
   out.verdict = verdict_name(result.verdict);
   out.share = result.explained_share;
@@ -108,7 +111,8 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
   for (const NamedEffect& one : result.named) {
     if (!names) break;
     out.named += (out.named.empty() ? "" : ";") + one.name + "@" + one.joint;
-    for (const EffectCandidate& other : one.confusable) out.set += (out.set.empty() ? "" : ";") + other.name + "@" + other.joint;
+    for (const EffectCandidate& other : one.confusable)
+      out.set += (out.set.empty() ? "" : ";") + other.name + "@" + other.joint;
   }
   if (names && blind.hidden.size() == 1 && result.named.front().name == blind.hidden.front().truth &&
       std::isfinite(blind.hidden.front().amplitude)) {
@@ -119,8 +123,9 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
 }
 
 inline std::string to_line(const std::string& id, const Outcome& o) {
-  return fmt::format("{},{},{:.3g},{},{},{},{},{:.3f},{:.3f},{:.1f},{:.5g},{:.5g},{:.3g}", id, o.truth, o.strength, o.noise,
-                     o.verdict, o.named, o.set, o.share, o.gap_shrink, o.time_s, o.size, o.found_size, o.found_std);
+  return fmt::format("{},{},{:.3g},{},{},{},{},{:.3f},{:.3f},{:.1f},{:.5g},{:.5g},{:.3g}", id, o.truth, o.strength,
+                     o.noise, o.verdict, o.named, o.set, o.share, o.gap_shrink, o.time_s, o.size, o.found_size,
+                     o.found_std);
 }
 
 using Outcomes = std::vector<std::pair<std::string, Outcome>>;
@@ -189,7 +194,9 @@ inline void print_summary(const Outcomes& all) {
     right_class += class_of(named[0]) == class_of(o.truth) ? 1 : 0;
     joint += named[0].substr(named[0].find('@')) == o.truth.substr(o.truth.find('@')) ? 1 : 0;
     inside +=
-        std::any_of(set.begin(), set.end(), [&](const std::string& s) { return effect_of(s) == effect_of(o.truth); }) ? 1 : 0;
+        std::any_of(set.begin(), set.end(), [&](const std::string& s) { return effect_of(s) == effect_of(o.truth); })
+            ? 1
+            : 0;
     set_size += set.size();
     if (std::isfinite(o.gap_shrink)) shrink.push_back(o.gap_shrink);
   }
@@ -216,8 +223,8 @@ inline void print_summary(const Outcomes& all) {
   line("  sizes that can be compared: truth inside the 95 % interval", covered, sizes);
   std::sort(strength.begin(), strength.end());
   if (!strength.empty()) {
-    fmt::print("  strength (rms torque over noise, where it is a torque): {:.2g} to {:.2g}, median {:.2g}\n", strength.front(),
-               strength.back(), strength[strength.size() / 2]);
+    fmt::print("  strength (rms torque over noise, where it is a torque): {:.2g} to {:.2g}, median {:.2g}\n",
+               strength.front(), strength.back(), strength[strength.size() / 2]);
   }
   int both = 0, in_sets = 0;
   for (const Outcome& o : parts["pairs"]) {
@@ -229,13 +236,15 @@ inline void print_summary(const Outcomes& all) {
                          [&](const std::string& r) { return effect_of(r) == effect_of(hidden); });
     };
     in_sets += named.size() == 2 && is_reported(truth[0]) && is_reported(truth[1]) ? 1 : 0;
-    both += named.size() == 2 && ((effect_of(named[0]) == effect_of(truth[0]) && effect_of(named[1]) == effect_of(truth[1])) ||
-                                  (effect_of(named[1]) == effect_of(truth[0]) && effect_of(named[0]) == effect_of(truth[1])))
+    both += named.size() == 2 &&
+                    ((effect_of(named[0]) == effect_of(truth[0]) && effect_of(named[1]) == effect_of(truth[1])) ||
+                     (effect_of(named[1]) == effect_of(truth[0]) && effect_of(named[0]) == effect_of(truth[1])))
                 ? 1
                 : 0;
   }
   line("pairs: both and no other", both, static_cast<int>(parts["pairs"].size()));
-  line("pairs: both, each by name or in the reported sets, and no other", in_sets, static_cast<int>(parts["pairs"].size()));
+  line("pairs: both, each by name or in the reported sets, and no other", in_sets,
+       static_cast<int>(parts["pairs"].size()));
   int unknown = 0;
   for (const Outcome& o : parts["outside"]) unknown += o.named.empty() ? 1 : 0;
   line("outside the catalogue: no wrong name", unknown, static_cast<int>(parts["outside"].size()));

@@ -76,17 +76,20 @@ inline const std::vector<std::string>& hidden_names() {
 inline Hidden make_hidden(const std::string& name, int drives, double size, Random& random) {
   const int drive = static_cast<int>(between(random, 0, drives - 0.001));
   const int limb = static_cast<int>(between(random, 0, 2.999));
-  const double F = coulomb_of(drive) * (0.06 + 0.44 * size), fast = drive == 3 ? 12.0 : 1.0, width = drive == 3 ? 0.12 : 0.008;
+  const double F = coulomb_of(drive) * (0.06 + 0.44 * size), fast = drive == 3 ? 12.0 : 1.0,
+               width = drive == 3 ? 0.12 : 0.008;
   const double u = between(random, 0, 1);
   if (name == "stribeck") {
     const double vs = fast * (0.06 + 0.3 * u);
-    return on_drive(name, drive,
-                    [=](const Moment&, double v, double) { return 1.4 * F / (1 + v * v / (vs * vs)) * sign_of(v, width); });
+    return on_drive(name, drive, [=](const Moment&, double v, double) {
+      return 1.4 * F / (1 + v * v / (vs * vs)) * sign_of(v, width);
+    });
   }
   if (name == "shear_thinning") {
     const double v0 = fast * (0.2 + 0.8 * u);
-    return on_drive(name, drive,
-                    [=](const Moment&, double v, double) { return 3 * F * std::asinh(v / v0) / (1 + 0.3 * std::abs(v) / v0); });
+    return on_drive(name, drive, [=](const Moment&, double v, double) {
+      return 3 * F * std::asinh(v / v0) / (1 + 0.3 * std::abs(v) / v0);
+    });
   }
   if (name == "convex_viscous") {
     const double v1 = fast * 2.0;
@@ -95,27 +98,31 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
     });
   }
   if (name == "asymmetric_coulomb") {
-    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)); }),
-                 0.5 * F);
+    return sized(
+        on_drive(name, drive, [=](const Moment&, double v, double) { return 0.5 * F * (1 + sign_of(v, width)); }),
+        0.5 * F);
   }
   if (name == "asymmetric_viscous") {
-    return sized(on_drive(name, drive, [=](const Moment&, double v, double) { return v > 0 ? 0.8 * F * v / fast : 0.0; }),
-                 0.4 * F / fast);  // the other half is viscous friction
+    return sized(
+        on_drive(name, drive, [=](const Moment&, double v, double) { return v > 0 ? 0.8 * F * v / fast : 0.0; }),
+        0.4 * F / fast);  // the other half is viscous friction
   }
   if (name == "load_dependent_friction") {
     const double mu = 0.02 + 0.10 * size;
     const int loaded = drive == 3 ? 0 : drive;
-    return sized(
-        on_drive(name, loaded,
-                 [=](const Moment& m, double v, double) { return mu * std::abs(m.transmitted(loaded)) * sign_of(v, 0.008); }),
-        mu);
+    return sized(on_drive(name, loaded,
+                          [=](const Moment& m, double v, double) {
+                            return mu * std::abs(m.transmitted(loaded)) * sign_of(v, 0.008);
+                          }),
+                 mu);
   }
   if (name == "directional_efficiency") {
     const double loss = 0.03 + 0.12 * size;
     return sized(on_drive(name, limb,
                           [=](const Moment& m, double v, double) {
                             const double power = m.transmitted(limb) * v;
-                            return loss * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) * sign_of(v, 0.008);
+                            return loss * std::abs(m.transmitted(limb)) * 0.5 * (1 + std::tanh(power / 0.5)) *
+                                   sign_of(v, 0.008);
                           }),
                  loss / (1 - loss));  // of what the gear passes on
   }
@@ -166,7 +173,8 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
     Hidden out{name, "drive" + std::to_string(limb + 1), {}, 0, {}, {}, {}, 0};
     out.parameters = [=](const Robot& robot, int, Eigen::VectorXd& p) {
       for (int k = 0; k < robot.parameters(); ++k) {
-        if (robot.parameter_names()[static_cast<std::size_t>(k)] == "drive" + std::to_string(limb + 1) + ".rotor_inertia")
+        if (robot.parameter_names()[static_cast<std::size_t>(k)] ==
+            "drive" + std::to_string(limb + 1) + ".rotor_inertia")
           p(k) += 0.01 + 0.06 * size;
       }
     };
@@ -190,8 +198,8 @@ inline Hidden make_hidden(const std::string& name, int drives, double size, Rand
     Hidden out{name, "robot", {}, 0, {}, {}, {}, 0};
     const double angle = 0.006 + 0.05 * size, about = between(random, 0, 6.28);
     out.robot = [=](RobotDescription& robot) {
-      robot.gravity =
-          9.81 * Eigen::Vector3d(std::sin(angle) * std::cos(about), std::sin(angle) * std::sin(about), -std::cos(angle));
+      robot.gravity = 9.81 * Eigen::Vector3d(std::sin(angle) * std::cos(about), std::sin(angle) * std::sin(about),
+                                             -std::cos(angle));
     };
     return sized(out, angle);
   }
@@ -264,18 +272,23 @@ inline Hidden make_outside(int kind, int drives, double size, Random& random) {
   const double F = coulomb_of(drive) * (0.15 + 0.4 * size), phase = between(random, 0, 6), width = 0.008;
   const auto unknown = [&](auto torque) { return on_drive("unknown", drive, torque); };
   switch (kind % 8) {
-    case 0: return unknown([=](const Moment& m, double, double) { return F * std::sin(2 * 3.14159 * 1.7 * m.t + phase); });
+    case 0:
+      return unknown([=](const Moment& m, double, double) { return F * std::sin(2 * 3.14159 * 1.7 * m.t + phase); });
     case 1:
-      return unknown([=](const Moment& m, double v, double) { return F * std::sin(6 * m.q(other) + phase) * sign_of(v, width); });
+      return unknown(
+          [=](const Moment& m, double v, double) { return F * std::sin(6 * m.q(other) + phase) * sign_of(v, width); });
     case 2: return unknown([=](const Moment& m, double, double) { return F * std::sin(5 * m.q(other) + phase); });
     case 3: return unknown([=](const Moment& m, double, double) { return m.t > 5 ? F : -F; });
     case 4:
-      return unknown([=](const Moment& m, double v, double) { return m.t > 4 && m.t < 6.5 ? 2 * F * sign_of(v, width) : 0.0; });
-    case 5: return unknown([=](const Moment& m, double v, double) { return F * sign_of(v, width) * sign_of(m.qd(other)); });
+      return unknown(
+          [=](const Moment& m, double v, double) { return m.t > 4 && m.t < 6.5 ? 2 * F * sign_of(v, width) : 0.0; });
+    case 5:
+      return unknown([=](const Moment& m, double v, double) { return F * sign_of(v, width) * sign_of(m.qd(other)); });
     case 6: return unknown([=](const Moment& m, double, double) { return F * std::sin(3 * m.qd(other) + phase); });
     default:
-      return unknown(
-          [=](const Moment& m, double, double q) { return q > -0.05 ? F * (1 - std::exp(-(q + 0.05) / 0.05)) : 0.0 * m.t; });
+      return unknown([=](const Moment& m, double, double q) {
+        return q > -0.05 ? F * (1 - std::exp(-(q + 0.05) / 0.05)) : 0.0 * m.t;
+      });
   }
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A plant for the blind study of delta-diagnose. Its effects act inside the forward simulation and have forms of their own: nothing of
-/// effects/, diagnosis/ or simulation/ is used, only the rigid robot.
+/// A plant for the blind study of delta-diagnose. Its effects act inside the forward simulation and have forms of their
+/// own: nothing of effects/, diagnosis/ or simulation/ is used, only the rigid robot.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -30,8 +30,8 @@ struct Moment {
   Eigen::MatrixXd J;  ///< dz/dq
 };
 
-/// A spring between rotor and arm. The rotor, a body of its own, carries the drive's friction; its inertia is a share of what the drive
-/// sees in all, so that the inertia of both together is what the model says.
+/// A spring between rotor and arm. The rotor, a body of its own, carries the drive's friction; its inertia is a share
+/// of what the drive sees in all, so that the inertia of both together is what the model says.
 struct Spring {
   int drive = 0;
   double resonance_hz = 20;  ///< of the side that the encoder does not see, with the encoder's side held
@@ -41,14 +41,18 @@ struct Spring {
 /// One hidden effect. Every hook may be empty.
 struct Hidden {
   std::string truth, joint;  ///< name and joint that a diagnosis should give; "unknown" if the catalogue has none
-  /// Adds resisting torque to `load`. `memory` has memory_size entries, zero at the start; `memory_d` takes their rates.
-  std::function<void(const Moment&, const Eigen::VectorXd& memory, Eigen::VectorXd& memory_d, Eigen::VectorXd& load)> resist;
+  /// Adds resisting torque to `load`. `memory` has memory_size entries, zero at the start; `memory_d` takes their
+  /// rates.
+  std::function<void(const Moment&, const Eigen::VectorXd& memory, Eigen::VectorXd& memory_d, Eigen::VectorXd& load)>
+      resist;
   int memory_size = 0;
-  std::function<void(RobotDescription&)> robot;                                              ///< changes the machine itself
-  std::function<void(const Robot&, int log, Eigen::VectorXd& p)> parameters;                 ///< of the limbs' own layout
-  std::function<void(int log, Eigen::MatrixXd& tau, Eigen::MatrixXd& q, double dt)> record;  ///< changes what is recorded
-  double motor_lag_s = 0;                                       ///< first-order lag between the recorded command and the shaft
-  double amplitude = std::numeric_limits<double>::quiet_NaN();  ///< size as the catalogue states it, if the form has one
+  std::function<void(RobotDescription&)> robot;                               ///< changes the machine itself
+  std::function<void(const Robot&, int log, Eigen::VectorXd& p)> parameters;  ///< of the limbs' own layout
+  /// Changes what is recorded
+  std::function<void(int log, Eigen::MatrixXd& tau, Eigen::MatrixXd& q, double dt)> record;
+  double motor_lag_s = 0;  ///< first-order lag between the recorded command and the shaft
+  /// Size as the catalogue states it, if the form has one
+  double amplitude = std::numeric_limits<double>::quiet_NaN();
   std::optional<Spring> spring = std::nullopt;
 };
 
@@ -68,7 +72,8 @@ struct Case {
   int harmonics = 5;  ///< of 0.1 to 0.3 Hz: more shake a spring
 };
 
-/// Three logs: fast, slow, hold-out. \param strength  if given, rms torque of the hidden effects over the noise, largest over the drives
+/// Three logs: fast, slow, hold-out. \param strength  if given, rms torque of the hidden effects over the noise,
+/// largest over the drives
 inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
   constexpr double kStep = 5e-4;
   constexpr int kPerSample = 2;
@@ -195,7 +200,8 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
       if (!machine.parts.empty()) {
         Eigen::MatrixXd J(n, n);
         Eigen::VectorXd z(n);
-        if (plant->jacobian(position, J) != Status::ok || plant->forward_kinematics(position, z) != Status::ok) return false;
+        if (plant->jacobian(position, J) != Status::ok || plant->forward_kinematics(position, z) != Status::ok)
+          return false;
         now.J = J;
         now.r = z.head<3>();
         now.v = (J * rate).head<3>();
@@ -205,8 +211,8 @@ inline std::vector<Log> record(const Case& blind, double* strength = nullptr) {
         const Eigen::Vector3d along =
             (now.r + model->description().telescope->p_BV - model->description().telescope->p_WU).normalized();
         const double bar_rate = along.dot(now.v);
-        load +=
-            (viscous.back() * bar_rate + coulomb.back() * std::tanh(bar_rate / 0.005)) * (now.J.topRows<3>().transpose() * along);
+        load += (viscous.back() * bar_rate + coulomb.back() * std::tanh(bar_rate / 0.005)) *
+                (now.J.topRows<3>().transpose() * along);
       }
       const Eigen::VectorXd plain = load;
       int at = 0;

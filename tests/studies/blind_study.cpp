@@ -1,12 +1,14 @@
 /// \file
-/// The blind study of delta-diagnose: hidden effects in a plant of their own, clean logs, pairs, effects outside the catalogue.
+/// The blind study of delta-diagnose: hidden effects in a plant of their own, clean logs, pairs, effects outside the
+/// catalogue.
 ///
 ///     blind_study all OUT.csv [NULL_RUNS]                   the whole study, 460 cases
 ///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside
 ///     blind_study summary OUT.csv
 ///     blind_study write PART INDEX FOLDER               the robot and the three logs of one case, to look at
 ///
-/// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken up again.
+/// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken
+/// up again.
 
 #include <chrono>
 #include <cstdio>
@@ -75,9 +77,10 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (words.size() < 4) {
-    std::cerr << "usage: blind_study all OUT.csv [NULL_RUNS] | effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | "
-                 "summary OUT.csv | write PART "
-                 "INDEX FOLDER\n";
+    std::cerr
+        << "usage: blind_study all OUT.csv [NULL_RUNS] | effects|clean|pairs|outside FIRST COUNT OUT.csv [NULL_RUNS] | "
+           "summary OUT.csv | write PART "
+           "INDEX FOLDER\n";
     return 2;
   }
   run_cases(words[0], std::stoi(words[1]), std::stoi(words[2]), words[3], words.size() > 4 ? std::stoi(words[4]) : 200);

@@ -3,8 +3,9 @@
 ///
 ///     delay_study delta3|linear-delta3|delta4 REPETITIONS [FIRST_SEED]
 ///
-/// Each repetition is another motion and another delay between -5 and +10 ms beside Coulomb friction. Prints the largest error, the
-/// share inside 3 standard deviations, and the largest error of the drives' friction from the mended logs.
+/// Each repetition is another motion and another delay between -5 and +10 ms beside Coulomb friction. Prints the
+/// largest error, the share inside 3 standard deviations, and the largest error of the drives' friction from the mended
+/// logs.
 
 #include <cmath>
 #include <fmt/format.h>
@@ -91,14 +92,14 @@ int main(int argc, char** argv) {
     if (std::abs(error) <= 3 * finding->std) {
       ++inside;
     } else {
-      fmt::print("seed {}: {} {:.4f} ms for {:.4f} ms, std {:.4f} ms\n", k, finding->key, 1e3 * finding->value, 1e3 * delay,
-                 1e3 * finding->std);
+      fmt::print("seed {}: {} {:.4f} ms for {:.4f} ms, std {:.4f} ms\n", k, finding->key, 1e3 * finding->value,
+                 1e3 * delay, 1e3 * finding->std);
     }
     const double worst = friction_error(*robot, result.logs);
     if (worst > 0.01) fmt::print("seed {}: friction off by {:.2f} % ({:.2f} ms)\n", k, 100 * worst, 1e3 * delay);
     friction = std::max(friction, worst);
   }
-  fmt::print("{}: {} of {} found, largest error {:.4f} ms, {:.1f} % inside 3 std, drive friction within {:.2f} %\n", argv[1],
-             found, repetitions, 1e3 * largest, 100.0 * inside / std::max(1, found), 100 * friction);
+  fmt::print("{}: {} of {} found, largest error {:.4f} ms, {:.1f} % inside 3 std, drive friction within {:.2f} %\n",
+             argv[1], found, repetitions, 1e3 * largest, 100.0 * inside / std::max(1, found), 100 * friction);
   return 0;
 }

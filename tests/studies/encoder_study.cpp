@@ -3,8 +3,9 @@
 ///
 ///     encoder_study axis|delta4 BITS REPETITIONS [FIRST_SEED]
 ///
-/// Each repetition is a log of its own: another motion, another noise, another phase of the encoder. Prints, for the chosen cut-off and
-/// a third, half, twice and three times of it, the share of base parameters inside their 95 % intervals.
+/// Each repetition is a log of its own: another motion, another noise, another phase of the encoder. Prints, for the
+/// chosen cut-off and a third, half, twice and three times of it, the share of base parameters inside their 95 %
+/// intervals.
 
 #include <cmath>
 #include <fmt/format.h>
@@ -123,7 +124,8 @@ int main(int argc, char** argv) {
       }
     }
   }
-  fmt::print("{} {} bit, {} repetitions, cut-off chosen {:.1f} Hz\n", name, bits, repetitions, cutoff_sum / repetitions);
+  fmt::print("{} {} bit, {} repetitions, cut-off chosen {:.1f} Hz\n", name, bits, repetitions,
+             cutoff_sum / repetitions);
   for (const auto& [factor, by_name] : counts) {
     fmt::print("  x {:.2f}  {} bristles found, none is there\n", factor, bristles[factor]);
     for (const auto& [what, count] : by_name) {

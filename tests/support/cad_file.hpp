@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// URDF as CAD programs write it, for a robot that is known: parts drawn in one pose of the robot, each link in a frame of its own.
+/// URDF as CAD programs write it, for a robot that is known: parts drawn in one pose of the robot, each link in a frame
+/// of its own.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -33,7 +34,7 @@ struct CadOptions {
   bool end_frames = false;    ///< a link without mass at the far end of each strut
   double unit = 1;            ///< written lengths in metres times this
   int digits = 12;            ///< behind the point of lengths in metres and angles in radians
-  std::string above_base;     ///< links and joints above the base, e.g. a world; ends with the joint to link "base_part"
+  std::string above_base;  ///< links and joints above the base, e.g. a world; ends with the joint to link "base_part"
 };
 
 /// Writes links and joints; poses are given in W, where the parts stand.
@@ -72,9 +73,10 @@ class CadFile {
     Pose X = Pose::Identity();
     X.translation() = origin;
     if (options_.turned_frames) {
-      X.linear() = (Eigen::AngleAxisd(uniform(-3, 3), Vec::UnitZ()) * Eigen::AngleAxisd(uniform(-1.4, 1.4), Vec::UnitY()) *
-                    Eigen::AngleAxisd(uniform(-3, 3), Vec::UnitX()))
-                       .toRotationMatrix();
+      X.linear() =
+          (Eigen::AngleAxisd(uniform(-3, 3), Vec::UnitZ()) * Eigen::AngleAxisd(uniform(-1.4, 1.4), Vec::UnitY()) *
+           Eigen::AngleAxisd(uniform(-3, 3), Vec::UnitX()))
+              .toRotationMatrix();
       if (offset) X.translation() += Vec(uniform(-0.3, 0.3), uniform(-0.3, 0.3), uniform(-0.3, 0.3));
     }
     return X;
@@ -156,7 +158,8 @@ class CadFile {
     const Eigen::Matrix3d R_L = Eigen::AngleAxisd(g.azimuth, Vec::UnitZ()).toRotationMatrix();
     const Vec y = R_L.col(1), axis = R_L * g.axis_L;
     const double sign = options_.flipped_axes && i % 2 == 1 ? -1 : 1;
-    const Eigen::Matrix3d R_A = slides ? R_L : Eigen::Matrix3d(R_L * Eigen::AngleAxisd(q, Vec::UnitY()).toRotationMatrix());
+    const Eigen::Matrix3d R_A =
+        slides ? R_L : Eigen::Matrix3d(R_L * Eigen::AngleAxisd(q, Vec::UnitY()).toRotationMatrix());
     const Vec origin_A = slides ? Vec(g.p_WD + axis * q) : g.p_WD;
     const Vec elbow = origin_A + R_A * g.p_DE_0;
     const Vec end = options_.plate + g.p_BA;
@@ -173,9 +176,9 @@ class CadFile {
     const Frame arm = joint(base, fresh("actuator"), slides ? "prismatic" : "revolute", at, sign * axis, fresh("part"),
                             ten("upper_arm"), pose(R_A, origin_A), limit);
     const Vec d = R_L.transpose() * (end - elbow).normalized();
-    const Eigen::Matrix3d R_S =
-        R_L * (Eigen::AngleAxisd(std::atan2(-d.z(), d.x()), Vec::UnitY()) * Eigen::AngleAxisd(std::asin(d.y()), Vec::UnitZ()))
-                  .toRotationMatrix();
+    const Eigen::Matrix3d R_S = R_L * (Eigen::AngleAxisd(std::atan2(-d.z(), d.x()), Vec::UnitY()) *
+                                       Eigen::AngleAxisd(std::asin(d.y()), Vec::UnitZ()))
+                                          .toRotationMatrix();
     const double half = g.strut_spacing / 2;
     if (options_.one_link_a_limb) {
       PseudoInertia<double> both = to_pseudo_inertia(Ten(2 * ten("strut")));
@@ -200,10 +203,10 @@ class CadFile {
   }
 
   /// The last joint at the elbow, the rod, and the plate if it carries it.
-  void rod(const Frame& parent, const Vec& elbow, const Vec& end, const Vec& y, const Eigen::Matrix3d& R_S, const Ten& p,
-           bool carries) {
-    const Frame rod = joint(parent, fresh("hinge"), "revolute", elbow, options_.hinges == 1 ? y : Vec(R_S.col(2)), fresh("rod"),
-                            p, pose(R_S, elbow));
+  void rod(const Frame& parent, const Vec& elbow, const Vec& end, const Vec& y, const Eigen::Matrix3d& R_S,
+           const Ten& p, bool carries) {
+    const Frame rod = joint(parent, fresh("hinge"), "revolute", elbow, options_.hinges == 1 ? y : Vec(R_S.col(2)),
+                            fresh("rod"), p, pose(R_S, elbow));
     if (options_.end_frames) joint(rod, fresh("mount"), "fixed", end, Vec::UnitX(), fresh("tip"));
     if (!carries || options_.plate_hangs != PlateHangs::on_strut) return;
     const Frame ball = joint(rod, fresh("hinge"), "revolute", end, R_S.col(2), fresh("cross"));
@@ -218,8 +221,8 @@ class CadFile {
       link(base.X_WL, "plate_part", inertial(ten("platform"), X_WB, base.X_WL));
       return;
     }
-    joint(base, "plate_joint", options_.plate_hangs == PlateHangs::floating ? "floating" : "fixed", options_.plate, Vec::UnitX(),
-          "plate_part", ten("platform"), X_WB);
+    joint(base, "plate_joint", options_.plate_hangs == PlateHangs::floating ? "floating" : "fixed", options_.plate,
+          Vec::UnitX(), "plate_part", ten("platform"), X_WB);
   }
 
   void telescope(const Frame& base) {
@@ -228,12 +231,13 @@ class CadFile {
     const Eigen::Matrix3d R =
         (Eigen::AngleAxisd(std::atan2(-b.y(), b.z()), Vec::UnitX()) * Eigen::AngleAxisd(std::asin(b.x()), Vec::UnitY()))
             .toRotationMatrix();
-    const Frame yoke =
-        joint(base, fresh("spindle"), "continuous", U + uniform(-0.05, 0.05) * Vec::UnitZ(), Vec::UnitZ(), fresh("yoke"));
+    const Frame yoke = joint(base, fresh("spindle"), "continuous", U + uniform(-0.05, 0.05) * Vec::UnitZ(),
+                             Vec::UnitZ(), fresh("yoke"));
     const Frame cross = joint(yoke, fresh("hinge"), "revolute", U, Vec::UnitX(), fresh("cross"));
-    const Frame upper = joint(cross, fresh("hinge"), "revolute", U, R.col(1), fresh("bar"), ten("telescope_upper"), pose(R, U));
-    const Frame lower =
-        joint(upper, fresh("slide"), "prismatic", V + 0.3 * (U - V), -b, fresh("tube"), ten("telescope_lower"), pose(R, V));
+    const Frame upper =
+        joint(cross, fresh("hinge"), "revolute", U, R.col(1), fresh("bar"), ten("telescope_upper"), pose(R, U));
+    const Frame lower = joint(upper, fresh("slide"), "prismatic", V + 0.3 * (U - V), -b, fresh("tube"),
+                              ten("telescope_lower"), pose(R, V));
     const Frame cross2 = joint(lower, fresh("hinge"), "revolute", V, R.col(1), fresh("cross"));
     const Vec tool = V - Vec(0, 0, robot_.telescope->p_BV.z());
     joint(cross2, fresh("hinge"), "revolute", V, Vec::UnitX(), fresh("tool"), ten("tool"),

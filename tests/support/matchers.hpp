@@ -23,7 +23,8 @@ std::string print(const Eigen::MatrixBase<Derived>& matrix) {
 namespace detail {
 
 MATCHER_P2(IsNearMatrix, expected, tolerance,
-           (negation ? "differs from\n" : "is near\n") + print(expected) + "\nto " + ::testing::PrintToString(tolerance)) {
+           (negation ? "differs from\n" : "is near\n") + print(expected) + "\nto " +
+               ::testing::PrintToString(tolerance)) {
   if (arg.rows() != expected.rows() || arg.cols() != expected.cols()) {
     *result_listener << "which is " << arg.rows() << " x " << arg.cols();
     return false;
@@ -37,7 +38,8 @@ MATCHER_P2(IsNearMatrix, expected, tolerance,
       largest = std::max(largest, difference);
     }
   }
-  *result_listener << "which is\n" << print(arg) << "\nwith a largest difference of " << largest << (numbers ? "" : " and NaN");
+  *result_listener << "which is\n"
+                   << print(arg) << "\nwith a largest difference of " << largest << (numbers ? "" : " and NaN");
   return numbers && largest <= tolerance;
 }
 

@@ -71,7 +71,8 @@ oracles::Numbers numbers(const Eigen::MatrixBase<Derived>& v) {
   return out;
 }
 
-/// A motion q(t) in second order, as nested dual numbers by time: value.value, slope.value and slope.slope hold the derivatives.
+/// A motion q(t) in second order, as nested dual numbers by time: value.value, slope.value and slope.slope hold the
+/// derivatives.
 template <class Derived>
 std::vector<oracles::Dual<oracles::Dual<oracles::Real>>> in_time(const Eigen::MatrixBase<Derived>& q,
                                                                  const Eigen::MatrixBase<Derived>& qd,

@@ -102,8 +102,8 @@ inline Vector<double, kInertialParameters> random_body(Random& random) {
     const double m = random.uniform(0.1, 0.5);
     const Vector3<double> r = middle + random.cube(0.2);
     Vector<double, kInertialParameters> point;
-    point << 1, r.x(), r.y(), r.z(), r.y() * r.y() + r.z() * r.z(), r.x() * r.x() + r.z() * r.z(), r.x() * r.x() + r.y() * r.y(),
-        -r.x() * r.y(), -r.y() * r.z(), -r.x() * r.z();
+    point << 1, r.x(), r.y(), r.z(), r.y() * r.y() + r.z() * r.z(), r.x() * r.x() + r.z() * r.z(),
+        r.x() * r.x() + r.y() * r.y(), -r.x() * r.y(), -r.y() * r.z(), -r.x() * r.z();
     p += m * point;
   }
   return p;

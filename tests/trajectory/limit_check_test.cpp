@@ -19,7 +19,8 @@ SmoothMotion swing(double size, double w) {
 
 class LimitCheckTest : public ::testing::Test {
  protected:
-  LimitCheckTest() : robot(make_robot(testing_support::axis_description(DriveKind::revolute))), limits(robot->description()) {
+  LimitCheckTest()
+      : robot(make_robot(testing_support::axis_description(DriveKind::revolute))), limits(robot->description()) {
     limits.qd(0) = 10;
     limits.q_lower(0) = -2;
     limits.q_upper(0) = 2;
@@ -42,8 +43,8 @@ TEST_F(LimitCheckTest, CoversThePeaksBetweenTheSamples) {
   }
 }
 
-// The torque of a rotor with Coulomb friction is largest just before or after it turns back, where it jumps: the sum of both parts
-// is approached there, whether a sample falls near or not.
+// The torque of a rotor with Coulomb friction is largest just before or after it turns back, where it jumps: the sum of
+// both parts is approached there, whether a sample falls near or not.
 TEST_F(LimitCheckTest, CoversTheJumpOfCoulombFriction) {
   constexpr double kInertia = 0.2, kCoulomb = 1.5, kSize = 0.5;
   ParameterOptions options;
@@ -81,9 +82,10 @@ TEST_F(LimitCheckTest, NamesTheTightestLimitAndWhen) {
 
 TEST_F(LimitCheckTest, SaysWhereTheRobotCannotGo) {
   const auto delta = make_robot(testing_support::delta_description("delta3"));
-  const SmoothMotion away{1.0, [](double t) -> TaskState {
-                            return {Eigen::Vector3d(0, 0, -0.9 - 3 * t), Eigen::Vector3d(0, 0, -3), Eigen::Vector3d::Zero()};
-                          }};
+  const SmoothMotion away{
+      1.0, [](double t) -> TaskState {
+        return {Eigen::Vector3d(0, 0, -0.9 - 3 * t), Eigen::Vector3d(0, 0, -3), Eigen::Vector3d::Zero()};
+      }};
   const LimitCheck check = check_limits(*delta, MotionLimits(delta->description()), away, 100);
   EXPECT_FALSE(check.reachable);
   EXPECT_LT(check.margin(), 0);

@@ -43,7 +43,8 @@ TEST(MotionLimits, ListHoldsTheFiniteOnesWithNameAndUnit) {
   const auto list = limits.list(robot);
   ASSERT_EQ(list.size(), 1U + 1U + 4U * 3U);
   EXPECT_EQ(list[0].name, "workspace radius");
-  const auto psi = std::find_if(list.begin(), list.end(), [](const Limit& l) { return l.quantity == LimitedQuantity::zdd; });
+  const auto psi =
+      std::find_if(list.begin(), list.end(), [](const Limit& l) { return l.quantity == LimitedQuantity::zdd; });
   EXPECT_EQ(psi->name, "psi acceleration");
   EXPECT_EQ(psi->unit, "rad/s^2");
   limits.parameters = Eigen::VectorXd::Ones(70);

@@ -38,7 +38,8 @@ class MotionPlanTest : public ::testing::Test {
     double low = 0, high = 20;
     for (int k = 0; k < 30; ++k) {
       const double middle = (low + high) / 2;
-      (check_limits(*robot, limits, one_period(series.scaled(centre, middle)), 2000).margin() > 1e-4 ? low : high) = middle;
+      (check_limits(*robot, limits, one_period(series.scaled(centre, middle)), 2000).margin() > 1e-4 ? low : high) =
+          middle;
     }
     return {series.scaled(centre, low), limits, periods};
   }

@@ -1,6 +1,7 @@
 /// \file
-/// Example 2 of Gnad et al. 2024 (section VIII): Table I, Figures 7 and 8, and the friction of the spindle that the authors changed by
-/// hand. Run by industrial.sh, which makes trajectories, logs, identifications and residuals with the installed tools.
+/// Example 2 of Gnad et al. 2024 (section VIII): Table I, Figures 7 and 8, and the friction of the spindle that the
+/// authors changed by hand. Run by industrial.sh, which makes trajectories, logs, identifications and residuals with
+/// the installed tools.
 
 #include <CLI/CLI.hpp>
 #include <Eigen/QR>
@@ -80,7 +81,8 @@ double value_of(const ParameterTable& table, const std::string& name) {
 
 void add_tables(HtmlReport& report, const std::string& folder) {
   const auto read = [&](const std::string& name) { return read_parameters(folder + "/" + name + ".csv"); };
-  const ParameterTable plant = read("plant"), simple = read("identified_simple"), geometric = read("identified_geometric");
+  const ParameterTable plant = read("plant"), simple = read("identified_simple"),
+                       geometric = read("identified_geometric");
   const auto text = [](double value) { return format_number(value, 3); };
   report.heading("Table I");
   Table table({{"parameter", Align::left},
@@ -93,14 +95,17 @@ void add_tables(HtmlReport& report, const std::string& folder) {
                {"unit", Align::left}});
   for (const TableRow& row : kTableOne) {
     const ParameterEntry* unit = plant.find(row.name);
-    table.row({row.name, text(row.rg_simple), text(row.id_simple), text(value_of(simple, row.name)), text(row.rg_geometric),
-               text(row.id_geometric), text(value_of(geometric, row.name)), unit == nullptr ? "" : pretty_unit(unit->unit)});
+    table.row({row.name, text(row.rg_simple), text(row.id_simple), text(value_of(simple, row.name)),
+               text(row.rg_geometric), text(row.id_geometric), text(value_of(geometric, row.name)),
+               unit == nullptr ? "" : pretty_unit(unit->unit)});
   }
-  report.table(table,
-               "The plant has the paper's column ID geom, so the last two columns should agree where the motion shows the "
-               "parameter. Single "
-               "masses of struts and telescope act only in sums: they stay near their prior, here as in the paper.");
-  Table friction({{"parameter", Align::left}, {"paper = plant"}, {"ID simple, here"}, {"ID geom, here"}, {"unit", Align::left}});
+  report.table(
+      table,
+      "The plant has the paper's column ID geom, so the last two columns should agree where the motion shows the "
+      "parameter. Single "
+      "masses of struts and telescope act only in sums: they stay near their prior, here as in the paper.");
+  Table friction(
+      {{"parameter", Align::left}, {"paper = plant"}, {"ID simple, here"}, {"ID geom, here"}, {"unit", Align::left}});
   for (std::size_t k = 0; k < std::size(kFriction); ++k) {
     const ParameterEntry* unit = plant.find(kFriction[k]);
     friction.row({kFriction[k], text(kPaperFriction[k]), text(value_of(simple, kFriction[k])),
@@ -109,11 +114,13 @@ void add_tables(HtmlReport& report, const std::string& folder) {
   const auto lumped = [](const ParameterTable& p) {
     return value_of(p, "tool.Izz") + value_of(p, "telescope_upper.Izz") + value_of(p, "telescope_lower.Izz");
   };
-  friction.row({"inertia about the spindle, with motor", text(2.87e-3), text(lumped(simple)), text(lumped(geometric)), "kg m²"});
-  report.table(friction,
-               "Friction and the lumped inertia of the fourth motor (VIII.B). The plant's spindle lacks 0.26 N m of friction at "
-               "rest beside the "
-               "straight line, 0.26 exp(-|v| / 1.7 rad/s): that is why its identified line differs.");
+  friction.row(
+      {"inertia about the spindle, with motor", text(2.87e-3), text(lumped(simple)), text(lumped(geometric)), "kg m²"});
+  report.table(
+      friction,
+      "Friction and the lumped inertia of the fourth motor (VIII.B). The plant's spindle lacks 0.26 N m of friction at "
+      "rest beside the "
+      "straight line, 0.26 exp(-|v| / 1.7 rad/s): that is why its identified line differs.");
 }
 
 void add_torques(study::Figures& figures, const Verification& v, const std::string& name, const std::string& label,
@@ -142,17 +149,19 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
   HtmlReport report("Example 2: industrial robot",
                     "Gnad et al. 2024, section VIII, on a virtual robot with the parameters of its Table I");
   report.paragraph(
-      "Identified from a fast motion (spindle up to 2760 °/s and 13.8 × 10³ °/s²), verified on one whose spindle turns slowly "
+      "Identified from a fast motion (spindle up to 2760 °/s and 13.8 × 10³ °/s²), verified on one whose spindle turns "
+      "slowly "
       "(175 °/s, 500 "
-      "°/s²). The spindle's friction falls short of a straight line at low speed, which viscous and Coulomb friction cannot "
+      "°/s²). The spindle's friction falls short of a straight line at low speed, which viscous and Coulomb friction "
+      "cannot "
       "follow; "
       "slow errors of the torque stand for what a real drive has.");
   const int last = kDrives - 1;
   const double before = identified.rms(last), after = by_hand.rms(last);
   report.heading("Verification: root mean square error");
   Table table({{"model", Align::left}, {"drive 1 [N m]"}, {"drive 2"}, {"drive 3"}, {"drive 4"}});
-  fmt::print("{:<44} {:>8} {:>8} {:>8} {:>8}\n", "rms error on the verification motion [N m]", "drive 1", "drive 2", "drive 3",
-             "drive 4");
+  fmt::print("{:<44} {:>8} {:>8} {:>8} {:>8}\n", "rms error on the verification motion [N m]", "drive 1", "drive 2",
+             "drive 3", "drive 4");
   const auto line = [&](const std::string& name, const std::vector<double>& rms) {
     std::vector<std::string> cells{name};
     for (const double each : rms) cells.push_back(format_number(each, 3));
@@ -182,8 +191,8 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
   const VectorXd rest = (identified.tau - identified.model).col(last);
   const Eigen::Vector2d change = A.colPivHouseholderQr().solve(rest);
   const double viscous_factor = 1 + change(0) / viscous, coulomb_factor = 1 + change(1) / coulomb;
-  fmt::print("by hand: viscous x 5, Coulomb x 0.75; least squares on the slow log itself: x {:.2f}, x {:.2f}\n", viscous_factor,
-             coulomb_factor);
+  fmt::print("by hand: viscous x 5, Coulomb x 0.75; least squares on the slow log itself: x {:.2f}, x {:.2f}\n",
+             viscous_factor, coulomb_factor);
   summary.add("viscous_factor", viscous_factor);
   summary.add("coulomb_factor", coulomb_factor);
 
@@ -197,7 +206,8 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
   law.x_label = "rate of the spindle [rad/s]";
   law.y_label = "friction [N m]";
   law.log_x = true;
-  const VectorXd v = VectorXd::LinSpaced(200, -2, std::log10(48.0)).unaryExpr([](double e) { return std::pow(10.0, e); });
+  const VectorXd v =
+      VectorXd::LinSpaced(200, -2, std::log10(48.0)).unaryExpr([](double e) { return std::pow(10.0, e); });
   const auto straight = [&](double d, double c) { return VectorXd(d * v.array() + c); };
   law.series.push_back({"plant",
                         v,
@@ -206,14 +216,21 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
                         {},
                         PlotColor::black,
                         false});
+  law.series.push_back({"identified from the fast motion",
+                        v,
+                        straight(viscous, coulomb),
+                        SeriesStyle::line,
+                        {},
+                        PlotColor::vermillion,
+                        false});
   law.series.push_back(
-      {"identified from the fast motion", v, straight(viscous, coulomb), SeriesStyle::line, {}, PlotColor::vermillion, false});
-  law.series.push_back({"by hand", v, straight(5 * viscous, 0.75 * coulomb), SeriesStyle::line, {}, PlotColor::green, true});
+      {"by hand", v, straight(5 * viscous, 0.75 * coulomb), SeriesStyle::line, {}, PlotColor::green, true});
   law.vertical_markers.push_back({3.05, "fastest of the verification"});
   law.y_range = PlotRange{0.3, 2.0};
-  figures.add("friction_of_the_spindle", {law},
-              "Why no straight line will do: the change by hand fits below 3 rad/s and is useless above. delta-diagnose names "
-              "the missing effect and adds it instead.");
+  figures.add(
+      "friction_of_the_spindle", {law},
+      "Why no straight line will do: the change by hand fits below 3 rad/s and is useless above. delta-diagnose names "
+      "the missing effect and adds it instead.");
   add_tables(report, folder);
 
   report.heading("Targets");

@@ -53,7 +53,8 @@ struct Figure {
 };
 
 /// Prints the table and adds it to the report and to the summary; true if every target is met.
-inline bool conclude(const std::vector<Figure>& figures, HtmlReport& report, Summary& summary, const std::string& unit) {
+inline bool conclude(const std::vector<Figure>& figures, HtmlReport& report, Summary& summary,
+                     const std::string& unit) {
   Table table({{"figure", Align::left}, {"paper"}, {"target"}, {"reached"}});
   bool all = true;
   fmt::print("{:<52} {:>10} {:>10} {:>12}\n", "figure [" + unit + "]", "paper", "target", "reached");
@@ -63,7 +64,8 @@ inline bool conclude(const std::vector<Figure>& figures, HtmlReport& report, Sum
     const std::string target = promised ? format_number(each.target, 3) : "-";
     table.row({each.name, each.paper, target, format_number(each.reached, 3)},
               promised ? (good ? Tone::good : Tone::bad) : Tone::plain);
-    fmt::print("{:<52} {:>10} {:>10} {:>12.3g}{}\n", each.name, each.paper, target, each.reached, good ? "" : "  missed");
+    fmt::print("{:<52} {:>10} {:>10} {:>12.3g}{}\n", each.name, each.paper, target, each.reached,
+               good ? "" : "  missed");
     std::string key = each.name;
     for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::tolower(c)) : '_';
     summary.add(key, each.reached, unit == "%" ? "percent" : unit);

@@ -1,6 +1,6 @@
 /// \file
-/// Example 1 of Gnad et al. 2024 (section VII): what identification makes of a model whose parameters are known exactly.
-/// Run by surrogate.sh, which makes trajectory, logs and identifications with the installed tools.
+/// Example 1 of Gnad et al. 2024 (section VII): what identification makes of a model whose parameters are known
+/// exactly. Run by surrogate.sh, which makes trajectory, logs and identifications with the installed tools.
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
@@ -79,7 +79,8 @@ MatrixXd entry_along(const Terms& terms, int i, int j) {
   return values;
 }
 
-/// Error of an entry of M along the motion over its mean (paper, VII); entries of the spindle, whose mean is near zero, over sqrt(Mii Mjj).
+/// Error of an entry of M along the motion over its mean (paper, VII); entries of the spindle, whose mean is near zero,
+/// over sqrt(Mii Mjj).
 VectorXd relative_error(const Terms& nominal, const Terms& found, int i, int j) {
   const VectorXd truth = entry_along(nominal, i, j);
   double scale = std::abs(truth.mean());
@@ -101,14 +102,15 @@ Errors errors_of(const Robot& robot, const VectorXd& truth, const Terms& nominal
       figure = std::max(figure, worst);
     }
   }
-  // "The difference is less than 1 % at any time": of the drive's largest torque of this kind. The spindle's Coriolis torque is a
-  // few thousandths of the arms', so it is held against theirs.
+  // "The difference is less than 1 % at any time": of the drive's largest torque of this kind. The spindle's Coriolis
+  // torque is a few thousandths of the arms', so it is held against theirs.
   const auto share = [](const MatrixXd& exact, const MatrixXd& found) {
     const double largest = exact.cwiseAbs().maxCoeff();
     double worst = 0;
     for (int j = 0; j < kDrives; ++j) {
       const double own = exact.col(j).cwiseAbs().maxCoeff();
-      worst = std::max(worst, 100 * (exact.col(j) - found.col(j)).cwiseAbs().maxCoeff() / (own < 0.05 * largest ? largest : own));
+      worst = std::max(
+          worst, 100 * (exact.col(j) - found.col(j)).cwiseAbs().maxCoeff() / (own < 0.05 * largest ? largest : own));
     }
     return worst;
   };
@@ -120,7 +122,8 @@ Errors errors_of(const Robot& robot, const VectorXd& truth, const Terms& nominal
 // --- figures ---------------------------------------------------------------------------------------
 
 /// Figure 3: every parameter of the reduced set, as a share of the nominal value.
-void add_parameter_figure(study::Figures& figures, const Robot& robot, const VectorXd& truth, const std::vector<Case>& cases) {
+void add_parameter_figure(study::Figures& figures, const Robot& robot, const VectorXd& truth,
+                          const std::vector<Case>& cases) {
   std::vector<int> shown;
   PlotSpec spec;
   for (int k = 0; k < robot.parameters(); ++k) {
@@ -142,19 +145,25 @@ void add_parameter_figure(study::Figures& figures, const Robot& robot, const Vec
   spec.height = 420;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const double shift = c == 0 ? -0.15 : 0.15;
-    spec.series.push_back(
-        {cases[c].prior, x.array() + shift, ratio(cases[c].regularization), SeriesStyle::steps, {}, PlotColor::grey, c == 1});
+    spec.series.push_back({cases[c].prior,
+                           x.array() + shift,
+                           ratio(cases[c].regularization),
+                           SeriesStyle::steps,
+                           {},
+                           PlotColor::grey,
+                           c == 1});
     spec.series.back().style = SeriesStyle::line;
     spec.series.push_back(
         {cases[c].label, x.array() + shift, ratio(cases[c].identified), SeriesStyle::points, {}, kColors[c], false});
   }
   spec.horizontal_markers.push_back({1.0, "nominal"});
   spec.y_range = PlotRange{0, 2.05};
-  figures.add(
-      "figure3_parameters", {spec},
-      "The paper's Figure 3: nominal values (line at 1), the two priors (grey: RG1 drawn through, RG2 dashed) and what is "
-      "identified from them; values beyond 2 are drawn at 2. Parameters that no motion shows on their own stay near their "
-      "prior; friction and everything that acts alone does not.");
+  figures.add("figure3_parameters", {spec},
+              "The paper's Figure 3: nominal values (line at 1), the two priors (grey: RG1 drawn through, RG2 dashed) "
+              "and what is "
+              "identified from them; values beyond 2 are drawn at 2. Parameters that no motion shows on their own stay "
+              "near their "
+              "prior; friction and everything that acts alone does not.");
 }
 
 void add_mass_figure(study::Figures& figures, const Log& motion, const Terms& nominal, const std::vector<Case>& cases,
@@ -187,8 +196,8 @@ void add_mass_figure(study::Figures& figures, const Log& motion, const Terms& no
 }
 
 void add_torque_figure(study::Figures& figures, const Log& motion, const MatrixXd& nominal,
-                       const std::vector<const MatrixXd*>& found, const std::vector<Case>& cases, const std::string& name,
-                       const std::string& what, const std::string& caption) {
+                       const std::vector<const MatrixXd*>& found, const std::vector<Case>& cases,
+                       const std::string& name, const std::string& what, const std::string& caption) {
   std::vector<PlotSpec> panels;
   for (int j = 0; j < kDrives; ++j) {
     PlotSpec spec;
@@ -257,19 +266,19 @@ void explain_counts(HtmlReport& report, const Robot& robot, const RobotDescripti
   summary.add("variables_with_rotor_inertia", reduced_motor.variables);
 
   report.heading("61, 36 and 37 of section VI");
-  report.paragraph(
-      fmt::format("61 is what full bodies would take: ten parameters for each of upper arm, strut, tool and the two parts of the "
-                  "telescope, the mass "
-                  "of the plate, which only translates, and ten friction coefficients: 5 × 10 + 1 + 10. 36 are the variables of "
-                  "the reduced set: 4 "
-                  "+ 5 + 1 + 5 + 5 + 5 = 25 for the bodies, 10 for friction, and the lumped inertia of the fourth motor, which "
-                  "the paper identifies "
-                  "separately (VIII.B). Here the fit counts {} variables with --rotor-inertia 4 and {} without: the motor's "
-                  "inertia and the tool's Izz act "
-                  "on the torque in the same way, so the tool can carry it, and the base parameters stay {} ({} with the motor's "
-                  "column). 37 is the rank of the "
-                  "regressor, found over random states.",
-                  reduced_motor.variables, reduced.variables, base.count(), base_motor));
+  report.paragraph(fmt::format(
+      "61 is what full bodies would take: ten parameters for each of upper arm, strut, tool and the two parts of the "
+      "telescope, the mass "
+      "of the plate, which only translates, and ten friction coefficients: 5 × 10 + 1 + 10. 36 are the variables of "
+      "the reduced set: 4 "
+      "+ 5 + 1 + 5 + 5 + 5 = 25 for the bodies, 10 for friction, and the lumped inertia of the fourth motor, which "
+      "the paper identifies "
+      "separately (VIII.B). Here the fit counts {} variables with --rotor-inertia 4 and {} without: the motor's "
+      "inertia and the tool's Izz act "
+      "on the torque in the same way, so the tool can carry it, and the base parameters stay {} ({} with the motor's "
+      "column). 37 is the rank of the "
+      "regressor, found over random states.",
+      reduced_motor.variables, reduced.variables, base.count(), base_motor));
   Table bodies({{"body", Align::left},
                 {"variables π", Align::left},
                 {"for the parameters", Align::left},
@@ -300,7 +309,8 @@ void explain_counts(HtmlReport& report, const Robot& robot, const RobotDescripti
     }
     page.table(each);
     Table expressions({{"number"}, {"base parameter", Align::left}});
-    for (std::size_t k = 0; k < base.expressions.size(); ++k) expressions.row({std::to_string(k + 1), base.expressions[k]});
+    for (std::size_t k = 0; k < base.expressions.size(); ++k)
+      expressions.row({std::to_string(k + 1), base.expressions[k]});
     page.table(expressions);
   });
 }
@@ -340,7 +350,8 @@ ExitCode run_study(const Inputs& in, Summary& summary) {
   HtmlReport report("Example 1: surrogate model", "Gnad et al. 2024, section VII, with " + description.name);
   std::vector<study::Figure> figures;
   bool definite = true;
-  const auto compare = [&](const std::vector<Case>& cases, const std::string& suffix, const Errors& paper, const Errors& target) {
+  const auto compare = [&](const std::vector<Case>& cases, const std::string& suffix, const Errors& paper,
+                           const Errors& target) {
     for (const Case& c : cases) {
       const Errors e = errors_of(*robot, truth, nominal, c);
       definite = definite && c.terms.positive_definite;
@@ -351,7 +362,8 @@ ExitCode run_study(const Inputs& in, Summary& summary) {
       figures.push_back({"M off-diagonal" + tail, percent(paper.off_diagonal), target.off_diagonal, e.off_diagonal});
       figures.push_back({"M spindle with arms" + tail, "", target.off_diagonal, e.spindle});
       figures.push_back({"Coriolis torque" + tail, percent(paper.coriolis), target.coriolis, e.coriolis});
-      figures.push_back({"acceleration torque" + tail, percent(paper.acceleration), target.acceleration, e.acceleration});
+      figures.push_back(
+          {"acceleration torque" + tail, percent(paper.acceleration), target.acceleration, e.acceleration});
     }
   };
   const Errors paper{2.2, 1, 2, 2, 1, 1}, exact{0.2, 0.1, 0.2, 0.2, 0.1, 0.1};
@@ -361,13 +373,17 @@ ExitCode run_study(const Inputs& in, Summary& summary) {
 
   study::Figures pictures(report, folder);
   report.paragraph(
-      "A model with known parameters moves along an optimal trajectory; its torque is identified from two priors, one with every "
+      "A model with known parameters moves along an optimal trajectory; its torque is identified from two priors, one "
+      "with every "
       "value too "
-      "small (RG1), one with every value too large (RG2). ID1 and ID2 are the results. Errors are measured as in the paper: "
+      "small (RG1), one with every value too large (RG2). ID1 and ID2 are the results. Errors are measured as in the "
+      "paper: "
       "entries of M "
-      "over their mean along the trajectory, torques over the largest of their kind. \"noise\" adds torque noise of 1 % of each "
+      "over their mean along the trajectory, torques over the largest of their kind. \"noise\" adds torque noise of 1 "
+      "% of each "
       "drive's "
-      "largest torque to the exact motion. \"closed loop\" is what a real robot would record: sampled control, 19-bit encoders "
+      "largest torque to the exact motion. \"closed loop\" is what a real robot would record: sampled control, 19-bit "
+      "encoders "
       "and the same "
       "noise, read through the tools' filters.");
   report.heading("Ours beside the paper's");
@@ -378,15 +394,18 @@ ExitCode run_study(const Inputs& in, Summary& summary) {
   report.heading("Parameters");
   add_parameter_figure(pictures, *robot, truth, clean);
   report.heading("Mass matrix");
-  add_mass_figure(pictures, motion, nominal, clean, "figure4_mass_matrix",
-                  "The paper's Figure 4, noise-free: relative errors of the six entries of the arms' block of M and of M44.");
+  add_mass_figure(
+      pictures, motion, nominal, clean, "figure4_mass_matrix",
+      "The paper's Figure 4, noise-free: relative errors of the six entries of the arms' block of M and of M44.");
   add_mass_figure(pictures, motion, nominal, noisy, "figure4_mass_matrix_noise", "The same with torque noise of 1 %.");
   report.heading("Coriolis and acceleration torque");
-  add_torque_figure(pictures, motion, nominal.coriolis, {&noisy[0].terms.coriolis, &noisy[1].terms.coriolis}, noisy,
-                    "figure5_coriolis", "τ",
-                    "The paper's Figure 5, with torque noise of 1 %: C(q, q̇) q̇ of the nominal and the identified models.");
-  add_torque_figure(pictures, motion, nominal.acceleration, {&noisy[0].terms.acceleration, &noisy[1].terms.acceleration}, noisy,
-                    "figure6_acceleration", "τ", "The paper's Figure 6, with torque noise of 1 %: M(q) q̈.");
+  add_torque_figure(
+      pictures, motion, nominal.coriolis, {&noisy[0].terms.coriolis, &noisy[1].terms.coriolis}, noisy,
+      "figure5_coriolis", "τ",
+      "The paper's Figure 5, with torque noise of 1 %: C(q, q̇) q̇ of the nominal and the identified models.");
+  add_torque_figure(pictures, motion, nominal.acceleration,
+                    {&noisy[0].terms.acceleration, &noisy[1].terms.acceleration}, noisy, "figure6_acceleration", "τ",
+                    "The paper's Figure 6, with torque noise of 1 %: M(q) q̈.");
   explain_counts(report, *robot, description, clean[0].regularization, summary);
   report.footer("tools/examples/surrogate.sh");
   write_file(file("report.html"), report.str());
@@ -399,13 +418,14 @@ ExitCode run_study(const Inputs& in, Summary& summary) {
 
 int main(int argc, char** argv) {
   Inputs in;
-  return tools::run_tool(argc, argv,
-                         {"surrogate-study", "Compares the identifications that surrogate.sh has made with the nominal model.",
-                          "surrogate-study results robot.urdf nominal.csv"},
-                         [&](CLI::App& app, tools::ToolRun& run) {
-                           app.add_option("folder", in.folder, "folder with the logs and identifications")->required();
-                           app.add_option("robot", in.robot, "robot file (URDF)")->required();
-                           app.add_option("nominal", in.nominal, "nominal parameters (CSV)")->required();
-                           run.on(app, [&] { return run_study(in, run.summary); });
-                         });
+  return tools::run_tool(
+      argc, argv,
+      {"surrogate-study", "Compares the identifications that surrogate.sh has made with the nominal model.",
+       "surrogate-study results robot.urdf nominal.csv"},
+      [&](CLI::App& app, tools::ToolRun& run) {
+        app.add_option("folder", in.folder, "folder with the logs and identifications")->required();
+        app.add_option("robot", in.robot, "robot file (URDF)")->required();
+        app.add_option("nominal", in.nominal, "nominal parameters (CSV)")->required();
+        run.on(app, [&] { return run_study(in, run.summary); });
+      });
 }

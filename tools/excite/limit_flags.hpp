@@ -38,11 +38,13 @@ class LimitFlags {
   void add_to(CLI::App& app) {
     workspace_.add_to(app);
     app.option_defaults()->group("Limits; lists hold one number for all drives, or one for each, with commas");
-    const auto list = [&app](DriveFlag<std::vector<double>>& flag, const char* what, const char* turning, const char* sliding) {
+    const auto list = [&app](DriveFlag<std::vector<double>>& flag, const char* what, const char* turning,
+                             const char* sliding) {
       add_list(app, flag.turning, flag.of_turning, fmt::format("{} [{}] [the robot file's]", what, turning));
       add_list(app, flag.sliding, flag.of_sliding, fmt::format("the same of prismatic drives [{}]", sliding));
     };
-    app.add_option(range_.turning, range_.of_turning, "position limits lo,hi or lo,hi;lo,hi;.. [rad] [the robot file's]");
+    app.add_option(range_.turning, range_.of_turning,
+                   "position limits lo,hi or lo,hi;lo,hi;.. [rad] [the robot file's]");
     app.add_option(range_.sliding, range_.of_sliding, "the same of prismatic drives [m]");
     list(velocity_, "velocity limits", "rad/s", "m/s");
     list(acceleration_, "acceleration limits", "rad/s^2", "m/s^2");
@@ -63,8 +65,8 @@ class LimitFlags {
     set_drive_limits(description, limits);
     const bool slides = description.drive_kind == DriveKind::prismatic;
     if (!effort_.value(slides).empty() && model == nullptr)
-      throw Error("a torque limit needs a model of the robot", effort_.name(slides), "give --params, or leave the flag out",
-                  ExitCode::usage);
+      throw Error("a torque limit needs a model of the robot", effort_.name(slides),
+                  "give --params, or leave the flag out", ExitCode::usage);
     if (model != nullptr) limits.parameters = *model;
     set_task_limits(robot, limits);
     limits.validate(description);

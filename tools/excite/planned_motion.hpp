@@ -29,7 +29,8 @@ struct PlannedMotion {
 /// \param periodic    without run-in and run-out
 /// Throws Error(no_convergence) if the motion breaks a limit or does not show all base parameters.
 inline PlannedMotion plan_excitation(const DesignSpace& space, const MotionLimits& limits, const DesignBound& bound,
-                                     const ExcitationOptions& options, const Robot& robot, double duration_s, bool periodic) {
+                                     const ExcitationOptions& options, const Robot& robot, double duration_s,
+                                     bool periodic) {
   PlannedMotion out;
   out.excitation = optimize_excitation(space, limits, bound, options);
   for (const Excitation::Segment& segment : out.excitation.segments) {
@@ -40,13 +41,13 @@ inline PlannedMotion plan_excitation(const DesignSpace& space, const MotionLimit
   out.check = check_plan(robot, out.segments, out.plan);
   if (out.check.margin() < 0) {
     const LimitUse& use = out.check.tightest();
-    throw Error(fmt::format("the motion breaks the limit '{}' at {:.4f} s: {:.8g} {}", use.limit.name, use.time_s, use.value,
-                            use.limit.unit),
+    throw Error(fmt::format("the motion breaks the limit '{}' at {:.4f} s: {:.8g} {}", use.limit.name, use.time_s,
+                            use.value, use.limit.unit),
                 "", "give more time, or another --seed", ExitCode::no_convergence);
   }
   if (!(out.excitation.d_efficiency > 0))
-    throw Error("the motion found keeps the limits, but does not show all base parameters", "--time-limit-s", "give more time",
-                ExitCode::no_convergence);
+    throw Error("the motion found keeps the limits, but does not show all base parameters", "--time-limit-s",
+                "give more time", ExitCode::no_convergence);
   out.samples = sample_plan(robot, out.plan, options.rate_hz);
   return out;
 }

@@ -25,7 +25,8 @@ class SearchFlags {
 
   SearchFlags() {
     options_.speeds.clear();
-    options_.least_away = 0.45;  // at a cut-off of 30 Hz a third is then still left, from which on validation has no reservations
+    // At a cut-off of 30 Hz a third is then still left, from which on validation has no reservations
+    options_.least_away = 0.45;
   }
 
   void add_to(CLI::App& app) {
@@ -61,7 +62,8 @@ class SearchFlags {
     const std::filesystem::path path(output);
     const std::size_t count = std::max(static_cast<std::size_t>(std::max(segments_, 1)), options_.speeds.size());
     for (std::size_t k = 1; k <= count; ++k)
-      names.push_back((path.parent_path() / fmt::format("{}_{}{}", path.stem().string(), k, path.extension().string())).string());
+      names.push_back(
+          (path.parent_path() / fmt::format("{}_{}{}", path.stem().string(), k, path.extension().string())).string());
     return names;
   }
 
@@ -82,8 +84,10 @@ class SearchFlags {
     app.add_option("--harmonics", options_.harmonics, "harmonics of the Fourier series (8)")->capture_default_str();
     app.add_option("--segments", segments_, "motions one after the other, each as good as possible beside the others")
         ->capture_default_str();
-    add_list(app, "--segment-speeds", options_.speeds, "speed of each segment as a share of the velocity limits, e.g. 0.3,1 [1]");
-    app.add_flag("--segment-files", segment_files_, "each segment in a file of its own, too: OUTPUT_1.csv, OUTPUT_2.csv, ..");
+    add_list(app, "--segment-speeds", options_.speeds,
+             "speed of each segment as a share of the velocity limits, e.g. 0.3,1 [1]");
+    app.add_flag("--segment-files", segment_files_,
+                 "each segment in a file of its own, too: OUTPUT_1.csv, OUTPUT_2.csv, ..");
     app.add_option("--duration-s", duration_s_, "of the periodic part of each segment, at least; whole periods [s]")
         ->capture_default_str();
     app.add_option("--rate-hz", options_.rate_hz, "sample rate of the controller [Hz]")->capture_default_str();
@@ -95,18 +99,21 @@ class SearchFlags {
     app.add_option("--criterion", criterion_, "what is made large (9)")
         ->check(CLI::IsMember({"logdet", "cond", "det", "trace", "min-eigenvalue"}))
         ->capture_default_str();
-    app.add_option("--velocity-weight", options_.velocity_weight, "w of (9): weight of the drive velocities beside the criterion")
+    app.add_option("--velocity-weight", options_.velocity_weight,
+                   "w of (9): weight of the drive velocities beside the criterion")
         ->capture_default_str();
     app.add_option("--away-from-reversals", options_.least_away,
                    "least share of the time that every drive is away from velocity reversals; 0: no matter")
         ->capture_default_str();
-    app.add_option("--cutoff-hz", cutoff_hz_, "cut-off of the identification, which sets what it leaves out near a reversal [Hz]")
+    app.add_option("--cutoff-hz", cutoff_hz_,
+                   "cut-off of the identification, which sets what it leaves out near a reversal [Hz]")
         ->capture_default_str();
   }
 
   void add_effort(CLI::App& app) {
     app.option_defaults()->group("Effort of the search");
-    app.add_option("--starts", options_.starts, "starts of the search, 0: as many as the time allows")->capture_default_str();
+    app.add_option("--starts", options_.starts, "starts of the search, 0: as many as the time allows")
+        ->capture_default_str();
     app.add_option("--time-limit-s", time_limit_s_, "of the whole tool; the best motion until then is written [s]")
         ->capture_default_str();
     app.add_option("--bound-states", bound_states_, "admissible states for the upper bound of the efficiency")

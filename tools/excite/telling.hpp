@@ -21,10 +21,12 @@ inline void tell_reversals(const Eigen::MatrixXd& away, const std::string& of, d
     std::vector<std::string> shares;
     for (Eigen::Index i = 0; i < away.rows(); ++i) {
       shares.push_back(fmt::format("{:.0f}", 100 * away(i, k)));
-      out.add(fmt::format("away_from_reversals_{}segment{}_drive{}", of.empty() ? "" : of + "_", k + 1, i + 1), away(i, k));
+      out.add(fmt::format("away_from_reversals_{}segment{}_drive{}", of.empty() ? "" : of + "_", k + 1, i + 1),
+              away(i, k));
     }
-    fmt::print("{}{}segment {}: {} % of the rows of drives 1..{} away from velocity reversals, at a cut-off of {:.3g} Hz\n", of,
-               of.empty() ? "" : ", ", k + 1, fmt::join(shares, ", "), shares.size(), cutoff_hz);
+    fmt::print(
+        "{}{}segment {}: {} % of the rows of drives 1..{} away from velocity reversals, at a cut-off of {:.3g} Hz\n",
+        of, of.empty() ? "" : ", ", k + 1, fmt::join(shares, ", "), shares.size(), cutoff_hz);
   }
 }
 
@@ -43,11 +45,14 @@ inline void tell_shortcomings(const Excitation& excitation, const ExcitationOpti
     return segment.series.base_frequency_hz > 0.99 * options.highest_hz;
   });
   if (at_highest && options.highest_hz > options.lowest_hz)
-    fmt::print("note: the base frequency is at its upper end; a wider --base-frequency-hz or more --harmonics may show more\n");
+    fmt::print(
+        "note: the base frequency is at its upper end; a wider --base-frequency-hz or more --harmonics may show "
+        "more\n");
   for (std::size_t k = 0; k < segments.size(); ++k) {
     if (segments[k].evaluations >= kFewestEvaluations) continue;
     fmt::print(
-        "note: the time was over before segment {} could be made better; it keeps the limits, but shows little. Give more "
+        "note: the time was over before segment {} could be made better; it keeps the limits, but shows little. Give "
+        "more "
         "--time-limit-s\n",
         k + 1);
   }
@@ -67,7 +72,8 @@ inline void tell_motion(const ExcitationReportInput& input, const ExcitationOpti
     out.add(fmt::format("periods_segment{}", k + 1), input.segments[k].periods);
   }
   const std::vector<std::string> binding = binding_limits(input.check);
-  fmt::print("limits used to 99 % or more: {}\n", binding.empty() ? "none" : fmt::format("{}", fmt::join(binding, ", ")));
+  fmt::print("limits used to 99 % or more: {}\n",
+             binding.empty() ? "none" : fmt::format("{}", fmt::join(binding, ", ")));
   fmt::print("margin {:.3g} of the tightest limit ({}), between the samples, too\n", input.check.margin(),
              input.check.tightest().limit.name);
   fmt::print("first feasible motion after {:.2f} s\n", e.first_feasible_time_s);
@@ -75,7 +81,8 @@ inline void tell_motion(const ExcitationReportInput& input, const ExcitationOpti
 }
 
 /// Figures for scripts.
-inline void summarise_motion(const ExcitationReportInput& input, const std::string& criterion, double total_s, Summary& out) {
+inline void summarise_motion(const ExcitationReportInput& input, const std::string& criterion, double total_s,
+                             Summary& out) {
   const Excitation& e = input.excitation;
   out.add("d_efficiency", e.d_efficiency);
   out.add("constraint_margin", input.check.margin());

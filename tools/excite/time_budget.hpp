@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// How delta-excite shares its time: the searches are planned for the time that was given, and ended in time for what follows them.
-/// The same seed then gives the same file.
+/// How delta-excite shares its time: the searches are planned for the time that was given, and ended in time for what
+/// follows them. The same seed then gives the same file.
 
 #include <algorithm>
 #include <chrono>
@@ -23,7 +23,10 @@ class TimeBudget {
   };
 
   TimeBudget(const SearchFlags& search, Wanted wanted)
-      : wanted_(wanted), limit_s_(search.time_limit_s()), duration_s_(search.duration_s()), states_(search.bound_states()) {}
+      : wanted_(wanted),
+        limit_s_(search.time_limit_s()),
+        duration_s_(search.duration_s()),
+        states_(search.bound_states()) {}
 
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -38,7 +41,8 @@ class TimeBudget {
     options.time_limit_s = std::max(options.elapsed_s, options.planned_time_s - plan_s_ - kept_for_report);
   }
 
-  /// Those of the search for the validation trajectory: as the first one planned for its share of the time, whatever that one took.
+  /// Those of the search for the validation trajectory: as the first one planned for its share of the time, whatever
+  /// that one took.
   void plan_second(ExcitationOptions& options) const {
     options.elapsed_s = std::max(seconds(), (1 - kValidationShare) * limit_s_);
     options.planned_time_s = kValidationShare * limit_s_;
@@ -48,8 +52,8 @@ class TimeBudget {
  private:
   static constexpr double kValidationShare = 0.3;  // of the time
   // What follows a search, in units of the time that what precedes it took on this machine at this hour, measured with
-  // SearchFlags::kUsualStates: run-in, run-out and final check of a segment; samples, a hundred thousand; the report, which gnuplot
-  // makes slow.
+  // SearchFlags::kUsualStates: run-in, run-out and final check of a segment; samples, a hundred thousand; the report,
+  // which gnuplot makes slow.
   static constexpr double kPlanShare = 0.25, kSamplesShare = 0.8, kReportShare = 0.5;
   static constexpr double kReport_s = 0.6;  // at least
 

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Torque in delta-excite: the known model, the margin that it leaves of the limits, the scale and the noise of the torques.
+/// Torque in delta-excite: the known model, the margin that it leaves of the limits, the scale and the noise of the
+/// torques.
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +28,13 @@ class TorqueFlags {
  public:
   void add_to(CLI::App& app) {
     app.option_defaults()->group("Torque");
-    app.add_option("--params", params_file_, "known model name,value,unit (CSV): limits the torque, and gives relative figures")
+    app.add_option("--params", params_file_,
+                   "known model name,value,unit (CSV): limits the torque, and gives relative figures")
         ->type_name("FILE");
     app.add_option("--torque-margin", margin_,
                    "share of the torque limits left for a model that is off, 0..0.9 [the model's uncertainty and 5 %]");
-    add_list(app, "--torque-scale", scale_, "weights of (9): largest torque a drive [N m | N] [effort of the robot file]");
+    add_list(app, "--torque-scale", scale_,
+             "weights of (9): largest torque a drive [N m | N] [effort of the robot file]");
     add_list(app, "--torque-noise", noise_,
              "standard deviation of the torque noise a drive, for the report [N m | N] [0.5 % of the scale]");
   }
@@ -41,8 +44,8 @@ class TorqueFlags {
 
   /// Values of --params; a value whose standard deviation the file does not give is as uncertain as a prior of the fit.
   [[nodiscard]] NominalParameters model(const Robot& robot) const {
-    const ParameterMatch match =
-        match_parameters(read_parameters(params_file_, robot.description()), robot.parameter_names(), robot.parameter_units());
+    const ParameterMatch match = match_parameters(read_parameters(params_file_, robot.description()),
+                                                  robot.parameter_names(), robot.parameter_units());
     NominalParameters model{match.value, match.std};
     const Eigen::VectorXd usual = ConsistentFitOptions{}.prior_relative_std * match.value.cwiseAbs();
     model.std = model.std.array().isFinite().select(model.std, usual);
@@ -77,18 +80,22 @@ class TorqueFlags {
       if (robot.inverse_dynamics(q, qd, qdd, nominal, tau) == Status::ok) squares += tau.cwiseAbs2();
     }
     scale = 2 * (squares / kStates).cwiseSqrt().cwiseMax(1e-6);
-    fmt::print("note: no --torque-scale and no effort in the robot file; twice the usual torque of nominal parameters is used\n");
+    fmt::print(
+        "note: no --torque-scale and no effort in the robot file; twice the usual torque of nominal parameters is "
+        "used\n");
     return scale;
   }
 
   /// Says where a drive's scale is less than its friction in the model.
-  static void tell_scale_below_friction(const Robot& robot, const Eigen::VectorXd& parameters, const Eigen::VectorXd& scale) {
+  static void tell_scale_below_friction(const Robot& robot, const Eigen::VectorXd& parameters,
+                                        const Eigen::VectorXd& scale) {
     for (int i = 0; i < robot.drives(); ++i) {
       const double friction = std::abs(parameters(coulomb_columns(robot)[static_cast<std::size_t>(i)]));
       const char* unit = torque_unit(robot.description(), i);
       if (friction > scale(i))
         fmt::print(
-            "note: the torque scale of drive {} is {:.4g} {}, less than its Coulomb friction in the model, {:.4g} {}: check "
+            "note: the torque scale of drive {} is {:.4g} {}, less than its Coulomb friction in the model, {:.4g} {}: "
+            "check "
             "the unit of --torque-scale or of the model\n",
             i + 1, scale(i), unit, friction, unit);
     }
@@ -102,8 +109,8 @@ class TorqueFlags {
  private:
   static constexpr int kStates = 500;  // random states that torques are looked at in
 
-  /// Share of the torque that the model's uncertainty may make of a drive's torque, all parameters off the same way, as those of a
-  /// prior that is too light are.
+  /// Share of the torque that the model's uncertainty may make of a drive's torque, all parameters off the same way, as
+  /// those of a prior that is too light are.
   [[nodiscard]] static double uncertainty(const Robot& robot, const NominalParameters& model) {
     WorkspaceSampler sampler(robot);
     Eigen::VectorXd q, qd, qdd;
@@ -125,9 +132,10 @@ class TorqueFlags {
       const char* unit = torque_unit(robot.description(), i);
       if (!std::isfinite(limits(i)) || friction < (1 - margin) * limits(i)) continue;
       throw Error(
-          fmt::format("the model's Coulomb friction of drive {} is {:.4g} {}, of {:.4g} {} that the drive may give ({:.4g} {} "
-                      "less a margin of {:.0f} %): nothing may move",
-                      i + 1, friction, unit, (1 - margin) * limits(i), unit, limits(i), unit, 100 * margin),
+          fmt::format(
+              "the model's Coulomb friction of drive {} is {:.4g} {}, of {:.4g} {} that the drive may give ({:.4g} {} "
+              "less a margin of {:.0f} %): nothing may move",
+              i + 1, friction, unit, (1 - margin) * limits(i), unit, limits(i), unit, 100 * margin),
           params_file_,
           "check unit and scale of the friction in the model, and of the torque limits; --torque-margin 0 "
           "keeps nothing free");

@@ -57,8 +57,8 @@ class WorkspaceFlags {
   [[nodiscard]] Region usual(const WorkspaceBall& ball) const {
     const bool other = radius_ || top_radius_ || height_ || !size_.empty() || !centre_.empty();
     if (other)
-      throw Error("lengths of a workspace without its shape", "--workspace", "give half-ball, ball, cylinder, cone or box",
-                  ExitCode::usage);
+      throw Error("lengths of a workspace without its shape", "--workspace",
+                  "give half-ball, ball, cylinder, cone or box", ExitCode::usage);
     Region region;
     region.shape = RegionShape::ball;
     region.centre = ball.centre;

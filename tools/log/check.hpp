@@ -26,15 +26,19 @@ class Check {
  public:
   void add_to(CLI::App& app, ToolRun& run, const std::string& command_line) {
     command_line_ = command_line;
-    CLI::App& c = *app.add_subcommand("check",
-                                      "The gate before the fit: rate, gaps and noise of the channels; delay between torque and "
-                                      "position; signs, order, units and "
-                                      "zeros of the drives; scale of the torque against the prior's masses; given derivatives. "
-                                      "Exit code 5 if a fault is found.");
+    CLI::App& c =
+        *app.add_subcommand("check",
+                            "The gate before the fit: rate, gaps and noise of the channels; delay between torque and "
+                            "position; signs, order, units and "
+                            "zeros of the drives; scale of the torque against the prior's masses; given derivatives. "
+                            "Exit code 5 if a fault is found.");
     set_example(c, "delta-log check fast.csv slow.csv --robot robot.urdf --prior prior.csv --report check.html");
-    c.add_option("logs", log_files_, "logs of this robot (CSV, or what delta-log import reads)")->required()->type_name("LOG");
+    c.add_option("logs", log_files_, "logs of this robot (CSV, or what delta-log import reads)")
+        ->required()
+        ->type_name("LOG");
     c.add_option("--robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    c.add_option("--prior", prior_file_, "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
+    c.add_option("--prior", prior_file_,
+                 "prior parameters name,value,unit[,std] (CSV) [simple shapes, as delta-model prior]")
         ->type_name("FILE");
     c.add_option("--report", report_file_, "report (HTML)")->type_name("FILE");
     gate_.add_to(c);

@@ -24,23 +24,26 @@ namespace deltadyn::tools {
 class Import {
  public:
   void add_to(CLI::App& app, ToolRun& run) {
-    CLI::App& c = *app.add_subcommand("import",
-                                      "A log of these tools from what drives and recorders export: delimited text of any kind, "
-                                      "TwinCAT Scope, LinuxCNC halscope, UR "
-                                      "RTDE, PlotJuggler and ROS CSV, MATLAB matrices, rosbag2 (.db3). The form is recognised, "
-                                      "columns are guessed from their names; "
-                                      "a column map or the flags say what names do not.");
-    set_example(c,
-                "delta-log import export.csv --robot robot.urdf --map-out map.toml -o log.csv   # writes the guess\n"
-                "  delta-log import export.csv --robot robot.urdf --map map.toml -o log.csv       # mended and used again\n"
-                "  delta-log import trace.csv --robot robot.urdf --rate-hz 4000 --torque-unit permille --rated-torque 1.27 "
-                "--gear-ratio 20 -o log.csv");
+    CLI::App& c =
+        *app.add_subcommand("import",
+                            "A log of these tools from what drives and recorders export: delimited text of any kind, "
+                            "TwinCAT Scope, LinuxCNC halscope, UR "
+                            "RTDE, PlotJuggler and ROS CSV, MATLAB matrices, rosbag2 (.db3). The form is recognised, "
+                            "columns are guessed from their names; "
+                            "a column map or the flags say what names do not.");
+    set_example(
+        c,
+        "delta-log import export.csv --robot robot.urdf --map-out map.toml -o log.csv   # writes the guess\n"
+        "  delta-log import export.csv --robot robot.urdf --map map.toml -o log.csv       # mended and used again\n"
+        "  delta-log import trace.csv --robot robot.urdf --rate-hz 4000 --torque-unit permille --rated-torque 1.27 "
+        "--gear-ratio 20 -o log.csv");
     c.add_option("log", files_, "file to read; several files are one recording whose columns are spread over them")
         ->required()
         ->type_name("FILE");
     c.add_option("--robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     c.add_option("--map", options_.map_file, "column map (TOML)")->type_name("FILE");
-    c.add_option("--map-out", map_out_, "column map to write: the guess, with comments, to be mended and given back with --map")
+    c.add_option("--map-out", map_out_,
+                 "column map to write: the guess, with comments, to be mended and given back with --map")
         ->type_name("FILE");
     c.add_option("-o,--output", output_, "log to write (CSV)")->type_name("FILE");
     c.add_flag("--without-torque", without_torque_, "the recording is a motion only");
@@ -102,7 +105,8 @@ class Import {
     if (!output_.empty()) {
       write_log(output_, result->log, robot);
       const Eigen::Index rows = result->log.samples();
-      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, rows, result->log.t_s(rows - 1), mean_rate(result->log));
+      fmt::print("wrote {}: {} rows, {:.6g} s at {:.6g} Hz\n", output_, rows, result->log.t_s(rows - 1),
+                 mean_rate(result->log));
     }
     add_figures(*result, run);
   }
@@ -123,11 +127,11 @@ class Import {
       char* end = nullptr;
       (void)std::strtod(file.c_str(), &end);
       if (*end != '\0' || std::filesystem::exists(file)) continue;
-      throw Error(
-          fmt::format("'{}' is no file but a number", file), "",
-          "separate the values of one flag by commas without blanks: --gear-ratio 20,20,20,5; delta-log import --help shows "
-          "the flags",
-          ExitCode::usage);
+      throw Error(fmt::format("'{}' is no file but a number", file), "",
+                  "separate the values of one flag by commas without blanks: --gear-ratio 20,20,20,5; delta-log import "
+                  "--help shows "
+                  "the flags",
+                  ExitCode::usage);
     }
   }
 
@@ -156,7 +160,8 @@ class Import {
   static void print_taken(const ImportedLog& result, const Recording& recording, const RobotDescription& robot) {
     std::size_t width = 4;
     for (const TakenChannel& taken : result.taken) width = std::max(width, taken.map.source.size());
-    fmt::print("  {:<12} {:<{}}  {:<9} {:>12}  {:>9}  {}\n", "column", "from", width, "unit", "factor to SI", "rate [Hz]", "how");
+    fmt::print("  {:<12} {:<{}}  {:<9} {:>12}  {:>9}  {}\n", "column", "from", width, "unit", "factor to SI",
+               "rate [Hz]", "how");
     fmt::print("  {:<12} {:<{}}  {:<9}\n", "t_s", result.time_name, width, result.time_unit);
     for (const TakenChannel& taken : result.taken) {
       fmt::print("  {:<12} {:<{}}  {:<9} {:>12.6g}  {:>9.5g}  {}\n", column_of(taken, robot), taken.map.source, width,

@@ -24,15 +24,18 @@ namespace deltadyn::tools {
 class Adopt {
  public:
   void add_to(CLI::App& app, ToolRun& run) {
-    CLI::App& c = *app.add_subcommand(
-        "adopt",
-        "Make a robot file from a CAD program's URDF: limbs, struts and plate are found by structure; any names and frames.");
+    CLI::App& c = *app.add_subcommand("adopt",
+                                      "Make a robot file from a CAD program's URDF: limbs, struts and plate are found "
+                                      "by structure; any names and frames.");
     set_example(c,
                 "delta-model adopt cad.urdf -o robot.urdf --prior-out prior.csv\n"
                 "  delta-model adopt cad.urdf -o robot.urdf --length-unit mm --strut-spacing 0.1 --drives J1,J4,J7");
-    c.add_option("cad", cad_file_, "URDF of the CAD program, assembled with all joints at zero")->required()->type_name("CAD");
+    c.add_option("cad", cad_file_, "URDF of the CAD program, assembled with all joints at zero")
+        ->required()
+        ->type_name("CAD");
     c.add_option("-o,--output", output_, "robot file to write")->required()->type_name("FILE");
-    c.add_option("--prior-out", prior_, "parameter file from the masses and inertias of the CAD (CSV name,value,unit,std)")
+    c.add_option("--prior-out", prior_,
+                 "parameter file from the masses and inertias of the CAD (CSV name,value,unit,std)")
         ->type_name("FILE");
     c.add_option("--body-std", body_std_, "its standard deviations of masses and moments, as a share of the value")
         ->capture_default_str();
@@ -48,14 +51,17 @@ class Adopt {
         ->type_name("JOINT,...");
     c.add_option("--plate", options_.plate, "a link of the travelling plate, where no strut carries it" + found)
         ->type_name("LINK");
-    c.add_option("--plate-frame", options_.plate_frame, "link whose origin is the plate's centre [middle of the attachments]")
+    c.add_option("--plate-frame", options_.plate_frame,
+                 "link whose origin is the plate's centre [middle of the attachments]")
         ->type_name("LINK");
     c.add_option("--strut", options_.strut, "ball centre to ball centre [m]" + found);
     c.add_option("--strut-spacing", options_.strut_spacing,
                  "between the two struts of a limb, where they are one link [m]" + found);
-    c.add_option("--platform-radius", options_.platform_radius, "attachments of the limbs from the plate's centre [m]" + found);
+    c.add_option("--platform-radius", options_.platform_radius,
+                 "attachments of the limbs from the plate's centre [m]" + found);
     c.add_option("--gravity-m-s2", options_.gravity_size, "size of gravity [m/s^2], default 9.81");
-    c.add_option("--gravity-direction", gravity_direction_, "x,y,z in the robot's base (z from plate to base), default 0,0,-1")
+    c.add_option("--gravity-direction", gravity_direction_,
+                 "x,y,z in the robot's base (z from plate to base), default 0,0,-1")
         ->delimiter(',')
         ->type_name("X,Y,Z");
     run.on(c, [this, &run] { execute(run); });
@@ -68,7 +74,8 @@ class Adopt {
                                                  {"inch", 0.0254}, {"kg", 1},    {"g", 0.001}};
     options_.length_unit = units.at(length_unit_);
     options_.mass_unit = units.at(mass_unit_);
-    if (!gravity_direction_.empty()) options_.gravity_direction = direction_of(gravity_direction_, "--gravity-direction");
+    if (!gravity_direction_.empty())
+      options_.gravity_direction = direction_of(gravity_direction_, "--gravity-direction");
     const AdoptedRobot adopted = adopt_robot(read_robot_text(cad_file_), cad_file_, options_);
     for (const std::string& note : adopted.notes) fmt::print("note: {}\n", note);
     for (std::size_t k = 0; k < adopted.drives.size(); ++k) tell_drive(k, adopted, run.summary);
@@ -85,8 +92,8 @@ class Adopt {
     const AdoptedDrive& drive = adopted.drives[k];
     const bool slides = adopted.robot.kind_of_drive(static_cast<int>(k)) == DriveKind::prismatic;
     const char* unit = slides ? "m" : "rad";
-    fmt::print("drive {}: joint {}, q{} = {}q_joint {} {:.9g} {}\n", k + 1, drive.joint, k + 1, drive.sign < 0 ? "-" : "",
-               drive.offset < 0 ? "-" : "+", std::abs(drive.offset), unit);
+    fmt::print("drive {}: joint {}, q{} = {}q_joint {} {:.9g} {}\n", k + 1, drive.joint, k + 1,
+               drive.sign < 0 ? "-" : "", drive.offset < 0 ? "-" : "+", std::abs(drive.offset), unit);
     summary.add(fmt::format("drive{}_sign", k + 1), drive.sign);
     summary.add(fmt::format("drive{}_offset", k + 1), drive.offset, unit);
   }
@@ -107,11 +114,12 @@ class Adopt {
     }
     set_spreads(table);
     write_parameters(prior_, table);
-    fmt::print("wrote {}: {} of {} parameters from the CAD, the others by shapes as delta-model prior has them\n", prior_,
-               from_cad, table.entries.size());
+    fmt::print("wrote {}: {} of {} parameters from the CAD, the others by shapes as delta-model prior has them\n",
+               prior_, from_cad, table.entries.size());
   }
 
-  /// Standard deviations of what came from the CAD: a share of the moments (nominal_parameters.hpp says why of their means).
+  /// Standard deviations of what came from the CAD: a share of the moments (nominal_parameters.hpp says why of their
+  /// means).
   void set_spreads(ParameterTable& table) const {
     for (std::size_t k = 0; k + kInertialParameters <= table.entries.size();) {
       const std::string& name = table.entries[k].name;

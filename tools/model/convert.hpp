@@ -22,20 +22,22 @@ namespace deltadyn::tools {
 class Convert {
  public:
   void add_to(CLI::App& app, ToolRun& run) {
-    CLI::App& c =
-        *app.add_subcommand("convert", "Hand an identified robot on: MuJoCo (MJCF), URDF readers, firmware (C++ header).");
-    set_example(c,
-                "delta-model convert robot.urdf --params params.csv --to mjcf -o robot.xml\n"
-                "  delta-model convert robot.urdf --params params.csv --effects effects.csv --to header -o robot_model.hpp");
+    CLI::App& c = *app.add_subcommand(
+        "convert", "Hand an identified robot on: MuJoCo (MJCF), URDF readers, firmware (C++ header).");
+    set_example(
+        c,
+        "delta-model convert robot.urdf --params params.csv --to mjcf -o robot.xml\n"
+        "  delta-model convert robot.urdf --params params.csv --effects effects.csv --to header -o robot_model.hpp");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     c.add_option("--params", parameter_file_, "parameters name,value,unit (CSV)")->required()->type_name("FILE");
-    c.add_option(
-         "--effects", effect_file_,
-         "effects of delta-diagnose (CSV); those that the format holds travel along: in a header all that a controller can feed "
-         "forward, else offsets and rotor inertias")
+    c.add_option("--effects", effect_file_,
+                 "effects of delta-diagnose (CSV); those that the format holds travel along: in a header all that a "
+                 "controller can feed "
+                 "forward, else offsets and rotor inertias")
         ->type_name("FILE");
     c.add_option("--to", format_,
-                 "mjcf: MuJoCo, loops closed by equality constraints; urdf: Pinocchio, Gazebo, RViz; header: C++17 for firmware")
+                 "mjcf: MuJoCo, loops closed by equality constraints; urdf: Pinocchio, Gazebo, RViz; header: C++17 for "
+                 "firmware")
         ->required()
         ->check(CLI::IsMember({"mjcf", "urdf", "header"}));
     c.add_option("-o,--output", output_, "file to write")->required()->type_name("FILE");

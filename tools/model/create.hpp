@@ -27,7 +27,8 @@ namespace deltadyn::tools {
 }
 
 inline Eigen::Vector3d vector_of(const std::vector<double>& values, const std::string& flag) {
-  if (values.size() != 3) refuse_usage(fmt::format("{} has {} numbers", flag, values.size()), "give three, separated by commas");
+  if (values.size() != 3)
+    refuse_usage(fmt::format("{} has {} numbers", flag, values.size()), "give three, separated by commas");
   return {values[0], values[1], values[2]};
 }
 
@@ -42,12 +43,13 @@ class Create {
   void add_to(CLI::App& app, ToolRun& run) {
     command_ = app.add_subcommand("create", "Make a robot file (URDF with URDF+ loops) from a few lengths.");
     CLI::App& c = *command_;
-    set_example(c,
-                "delta-model create delta4 --base-radius 0.2 --platform-radius 0.05 --upper-arm 0.525 --strut 1.106 \\\n"
-                "      --strut-spacing 0.1 --drive-velocity-rad-s 6,6,6,48 -o robot.urdf\n"
-                "  delta-model create linear-delta3 --base-radius 0.3 --platform-radius 0.06 --strut 0.8 --drive-range-m "
-                "0,0.9 -o l.urdf\n"
-                "  delta-model create axis --drive-kind prismatic --axis-direction 1,0,0 -o axis.urdf");
+    set_example(
+        c,
+        "delta-model create delta4 --base-radius 0.2 --platform-radius 0.05 --upper-arm 0.525 --strut 1.106 \\\n"
+        "      --strut-spacing 0.1 --drive-velocity-rad-s 6,6,6,48 -o robot.urdf\n"
+        "  delta-model create linear-delta3 --base-radius 0.3 --platform-radius 0.06 --strut 0.8 --drive-range-m "
+        "0,0.9 -o l.urdf\n"
+        "  delta-model create axis --drive-kind prismatic --axis-direction 1,0,0 -o axis.urdf");
     c.add_option("type", type_, "delta3, linear-delta3, delta4 or axis")->required()->type_name("TYPE");
     c.add_option("-o,--output", output_, "robot file to write [standard output]")->type_name("FILE");
     c.add_option("--name", name_, "name of the robot [its type]");
@@ -57,14 +59,17 @@ class Create {
          "delta3 linear-delta3 delta4");
     flag("--upper-arm", upper_arm_, "drive axis to elbow [m]", "delta3 delta4");
     flag("--strut", strut_, "strut, ball centre to ball centre [m]", "delta3 linear-delta3 delta4");
-    flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1", "delta3 linear-delta3 delta4");
+    flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1",
+         "delta3 linear-delta3 delta4");
     flag("--elbow", elbow_, "outwards (default) or inwards; of carriages: above (default) or below",
          "delta3 linear-delta3 delta4");
-    list("--telescope-base-m", telescope_base_, "upper joint of the telescope bar from the base origin x,y,z [m], default 0,0,0",
+    list("--telescope-base-m", telescope_base_,
+         "upper joint of the telescope bar from the base origin x,y,z [m], default 0,0,0", "delta4");
+    list("--telescope-platform-m", telescope_platform_, "lower joint from the plate's centre x,y,z [m], default 0,0,0",
          "delta4");
-    list("--telescope-platform-m", telescope_platform_, "lower joint from the plate's centre x,y,z [m], default 0,0,0", "delta4");
     list("--rail-axis-limb", rail_axis_,
-         "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down", "linear-delta3");
+         "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down",
+         "linear-delta3");
     flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", "linear-delta3");
     flag("--drive-kind", drive_kind_, "revolute (default) or prismatic", "axis");
     flag("--arm", arm_, "length of the arm on a revolute drive [m]", "axis");
@@ -77,9 +82,11 @@ class Create {
     list("--drive-velocity-m-s", velocity_m_, std::string("of prismatic drives [m/s]") + count, "linear-delta3 axis");
     list("--drive-acceleration-rad-s2", acceleration_rad_, std::string("acceleration limits [rad/s^2]") + count,
          "delta3 delta4 axis");
-    list("--drive-acceleration-m-s2", acceleration_m_, std::string("of prismatic drives [m/s^2]") + count, "linear-delta3 axis");
+    list("--drive-acceleration-m-s2", acceleration_m_, std::string("of prismatic drives [m/s^2]") + count,
+         "linear-delta3 axis");
     list("--drive-effort-Nm", effort_Nm_, std::string("torque limits [N m]") + count, "delta3 delta4 axis");
-    list("--drive-effort-N", effort_N_, std::string("force limits of prismatic drives [N]") + count, "linear-delta3 axis");
+    list("--drive-effort-N", effort_N_, std::string("force limits of prismatic drives [N]") + count,
+         "linear-delta3 axis");
     c.add_option("--gravity-m-s2", gravity_, "size of gravity [m/s^2]")->capture_default_str();
     c.add_option("--gravity-direction", gravity_direction_, "direction x,y,z in the base frame, default 0,0,-1")
         ->delimiter(',')
@@ -99,12 +106,14 @@ class Create {
   }
   void list(const std::string& name, std::vector<double>& value, const std::string& help, const std::string& types) {
     flags_.push_back(
-        {command_->add_option(name, value, help + " (" + types + ")")->delimiter(',')->type_name("FLOAT,..."), name, types});
+        {command_->add_option(name, value, help + " (" + types + ")")->delimiter(',')->type_name("FLOAT,..."), name,
+         types});
   }
 
   void execute(ToolRun& run) {
     if (type_ == "h4" || type_ == "i4" || type_ == "par4")
-      refuse_usage(fmt::format("robots of type {} cannot be created yet", type_), "use delta3, linear-delta3, delta4 or axis");
+      refuse_usage(fmt::format("robots of type {} cannot be created yet", type_),
+                   "use delta3, linear-delta3, delta4 or axis");
     if (type_ != "delta3" && type_ != "linear-delta3" && type_ != "delta4" && type_ != "axis")
       refuse_usage(fmt::format("'{}' is not a robot type", type_), "use delta3, linear-delta3, delta4 or axis");
     for (const Flag& f : flags_)
@@ -145,7 +154,8 @@ class Create {
 
   static double required(const std::optional<double>& value, const std::string& name) {
     if (!value) refuse_usage(fmt::format("{} is needed for this type", name), "give it in metres");
-    if (!(std::isfinite(*value) && *value >= 0)) refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
+    if (!(std::isfinite(*value) && *value >= 0))
+      refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
     plausibility::require(plausibility::kOffset, *value, name, "", ExitCode::usage);
     return *value;
   }
@@ -191,16 +201,19 @@ class Create {
     if (type_ == "delta4") {
       robot.telescope.emplace();
       if (!telescope_base_.empty()) robot.telescope->p_WU = vector_of(telescope_base_, "--telescope-base-m");
-      if (!telescope_platform_.empty()) robot.telescope->p_BV = vector_of(telescope_platform_, "--telescope-platform-m");
+      if (!telescope_platform_.empty())
+        robot.telescope->p_BV = vector_of(telescope_platform_, "--telescope-platform-m");
     }
   }
 
   /// What says the same with a horizontal axis: the frame turned so that the axis is its y, and gravity turned along.
   static std::string gravity_instead_of(const Eigen::Vector3d& axis, const Eigen::Vector3d& gravity) {
     if (gravity.isZero()) return "leave --axis-direction out: without gravity all directions are alike";
-    const Eigen::Vector3d seen = Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitY()) * gravity.normalized();
+    const Eigen::Vector3d seen =
+        Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitY()) * gravity.normalized();
     std::string text;
-    for (int k = 0; k < 3; ++k) text += fmt::format("{}{:.6g}", k > 0 ? "," : "", std::abs(seen(k)) < 1e-12 ? 0.0 : seen(k));
+    for (int k = 0; k < 3; ++k)
+      text += fmt::format("{}{:.6g}", k > 0 ? "," : "", std::abs(seen(k)) < 1e-12 ? 0.0 : seen(k));
     return fmt::format(
         "leave --axis-direction out (the axis then is 0,1,0) and lean gravity against it as it is against yours: "
         "--gravity-direction {}",
@@ -215,12 +228,14 @@ class Create {
     if (kind == "prismatic") {
       if (arm_) refuse_usage("--arm belongs to a revolute drive", "leave it out");
       robot.drive_kind = DriveKind::prismatic;
-      limb.axis_L = axis_direction_.empty() ? Eigen::Vector3d(1, 0, 0) : direction_of(axis_direction_, "--axis-direction");
+      limb.axis_L =
+          axis_direction_.empty() ? Eigen::Vector3d(1, 0, 0) : direction_of(axis_direction_, "--axis-direction");
     } else {
       const Eigen::Vector3d axis =
           axis_direction_.empty() ? Eigen::Vector3d(0, 1, 0) : direction_of(axis_direction_, "--axis-direction");
       if (std::abs(axis.z()) > 1e-9)
-        refuse_usage("the axis of a revolute drive is horizontal in the base frame", gravity_instead_of(axis, robot.gravity));
+        refuse_usage("the axis of a revolute drive is horizontal in the base frame",
+                     gravity_instead_of(axis, robot.gravity));
       limb.azimuth = std::atan2(-axis.x(), axis.y());  // the axis is +y of the limb frame
       limb.p_DE_0 = Eigen::Vector3d(arm_.value_or(0), 0, 0);
     }
@@ -237,7 +252,8 @@ class Create {
                      "use the flag with the other unit");
     };
     wrong_unit((linear ? range_rad_ : range_m_).has_value(), linear ? "--drive-range-rad" : "--drive-range-m");
-    wrong_unit(!(linear ? velocity_rad_ : velocity_m_).empty(), linear ? "--drive-velocity-rad-s" : "--drive-velocity-m-s");
+    wrong_unit(!(linear ? velocity_rad_ : velocity_m_).empty(),
+               linear ? "--drive-velocity-rad-s" : "--drive-velocity-m-s");
     wrong_unit(!(linear ? acceleration_rad_ : acceleration_m_).empty(),
                linear ? "--drive-acceleration-rad-s2" : "--drive-acceleration-m-s2");
     wrong_unit(!(linear ? effort_Nm_ : effort_N_).empty(), linear ? "--drive-effort-Nm" : "--drive-effort-N");

@@ -25,7 +25,8 @@ namespace deltadyn::tools {
 class Info {
  public:
   void add_to(CLI::App& app, ToolRun& run) {
-    CLI::App& c = *app.add_subcommand("info", "Print geometry, workspace, drives, parameter and base-parameter counts.");
+    CLI::App& c =
+        *app.add_subcommand("info", "Print geometry, workspace, drives, parameter and base-parameter counts.");
     set_example(c, "delta-model info robot.urdf --plot workspace.png --summary info.csv");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     layout_.add_bodies(c);
@@ -72,8 +73,9 @@ class Info {
     if (robot.telescope) {
       const auto& u = robot.telescope->p_WU;
       const auto& v = robot.telescope->p_BV;
-      fmt::print("  telescope: from ({:.6g}, {:.6g}, {:.6g}) m on the base to ({:.6g}, {:.6g}, {:.6g}) m on the plate\n", u.x(),
-                 u.y(), u.z(), v.x(), v.y(), v.z());
+      fmt::print(
+          "  telescope: from ({:.6g}, {:.6g}, {:.6g}) m on the base to ({:.6g}, {:.6g}, {:.6g}) m on the plate\n",
+          u.x(), u.y(), u.z(), v.x(), v.y(), v.z());
     }
     fmt::print("  gravity ({:.6g}, {:.6g}, {:.6g}) m/s^2\n", robot.gravity.x(), robot.gravity.y(), robot.gravity.z());
     summary.add("gravity", robot.gravity.norm(), "m/s^2");
@@ -92,21 +94,25 @@ class Info {
       const std::string range = std::isfinite(limits.lower) || std::isfinite(limits.upper)
                                     ? fmt::format("{} to {}", words(limits.lower, unit), words(limits.upper, unit))
                                     : "unlimited";
-      fmt::print("  drive {} ({}): range {}, velocity {}, acceleration {}, {} {}\n", i + 1, linear ? "prismatic" : "revolute",
-                 range, words(limits.velocity, unit + "/s"), words(limits.acceleration, unit + "/s^2"),
-                 linear ? "force" : "torque", words(limits.effort, linear ? "N" : "N m"));
+      fmt::print("  drive {} ({}): range {}, velocity {}, acceleration {}, {} {}\n", i + 1,
+                 linear ? "prismatic" : "revolute", range, words(limits.velocity, unit + "/s"),
+                 words(limits.acceleration, unit + "/s^2"), linear ? "force" : "torque",
+                 words(limits.effort, linear ? "N" : "N m"));
     }
   }
 
   void workspace(const Robot& robot, Summary& summary) const {
     const Reach reach = find_reach(robot);
     fmt::print(
-        "\nworkspace (poses of the plate's centre that are in reach, inside the drives' ranges, not singular; to {:.2g} m)\n",
+        "\nworkspace (poses of the plate's centre that are in reach, inside the drives' ranges, not singular; to "
+        "{:.2g} m)\n",
         reach.cell);
-    fmt::print("  radius {:.3f} m, height {:.3f} to {:.3f} m, volume {:.3f} m^3, home pose ({:.3f}, {:.3f}, {:.3f}) m\n",
-               reach.radius, reach.lower.z(), reach.upper.z(), reach.volume, reach.home.x(), reach.home.y(), reach.home.z());
-    fmt::print("  condition number of the Jacobian: best {:.2f}, half of the workspace below {:.2f}, 95 % below {:.2f}\n",
-               reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
+    fmt::print(
+        "  radius {:.3f} m, height {:.3f} to {:.3f} m, volume {:.3f} m^3, home pose ({:.3f}, {:.3f}, {:.3f}) m\n",
+        reach.radius, reach.lower.z(), reach.upper.z(), reach.volume, reach.home.x(), reach.home.y(), reach.home.z());
+    fmt::print(
+        "  condition number of the Jacobian: best {:.2f}, half of the workspace below {:.2f}, 95 % below {:.2f}\n",
+        reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
     const auto& limits = robot.description().limits;
     if (std::isinf(limits.front().lower) || std::isinf(limits.front().upper))
       fmt::print("  the drives have no position limits in the robot file; the real workspace is smaller\n");
@@ -174,8 +180,9 @@ class Info {
     options.seed = run.seed;
     const BaseParameters base = find_base_parameters(robot, options);
     const std::string gap = base.rank_gap > 1e15 ? "above 1e15" : fmt::format("{:.1e}", base.rank_gap);
-    fmt::print("\nparameters\n  {} columns, of which the drives can show {} base parameters (gap in the rank decision: {})\n",
-               robot.parameters(), base.count(), gap);
+    fmt::print(
+        "\nparameters\n  {} columns, of which the drives can show {} base parameters (gap in the rank decision: {})\n",
+        robot.parameters(), base.count(), gap);
     fmt::print("  condition number of the base regressor over random states: {:.3g}\n", base.condition_number);
     run.summary.add("columns", robot.parameters());
     run.summary.add("base_parameters", base.count());

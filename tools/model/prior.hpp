@@ -22,11 +22,13 @@ namespace deltadyn::tools {
 class Prior {
  public:
   void add_to(CLI::App& app, ToolRun& run) {
-    CLI::App& c =
-        *app.add_subcommand("prior", "Nominal parameters from simple shapes and materials, scaled from the paper's robot.");
+    CLI::App& c = *app.add_subcommand(
+        "prior", "Nominal parameters from simple shapes and materials, scaled from the paper's robot.");
     set_example(c, "delta-model prior robot.urdf --platform-mass-kg 1.0 --tool-mass-kg 0.4 -o prior.csv");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
-    c.add_option("-o,--output", output_, "parameter file to write (CSV name,value,unit,std)")->required()->type_name("FILE");
+    c.add_option("-o,--output", output_, "parameter file to write (CSV name,value,unit,std)")
+        ->required()
+        ->type_name("FILE");
     layout_.add_bodies(c);
     for (Shape& shape : shapes_) c.add_option(shape.flag, shape.value, shape.help)->group("Shapes, masses, friction");
     run.on(c, [this, &run] { execute(run); });
@@ -41,9 +43,9 @@ class Prior {
     for (const Shape& shape : shapes_) {
       if (!shape.value) continue;
       if (!has(description, shape.part))
-        throw Error(
-            fmt::format("{} does not belong to this {}, which has no {}", shape.flag, description.type, kPartNames[shape.part]),
-            "", "leave it out", ExitCode::usage);
+        throw Error(fmt::format("{} does not belong to this {}, which has no {}", shape.flag, description.type,
+                                kPartNames[shape.part]),
+                    "", "leave it out", ExitCode::usage);
       shapes.*shape.member = *shape.value;
     }
     const NominalParameters nominal = nominal_parameters(*robot, shapes);
@@ -114,8 +116,10 @@ class Prior {
       {"--telescope-upper-length-m", "solid rod of the upper part [m]", telescope, &PartShapes::telescope_upper_length},
       {"--telescope-upper-diameter-m", "its diameter [m]", telescope, &PartShapes::telescope_upper_diameter},
       {"--telescope-lower-length-m", "tube of the lower part [m]", telescope, &PartShapes::telescope_lower_length},
-      {"--telescope-lower-outer-diameter-m", "its outer diameter [m]", telescope, &PartShapes::telescope_lower_outer_diameter},
-      {"--telescope-lower-inner-diameter-m", "its inner diameter [m]", telescope, &PartShapes::telescope_lower_inner_diameter},
+      {"--telescope-lower-outer-diameter-m", "its outer diameter [m]", telescope,
+       &PartShapes::telescope_lower_outer_diameter},
+      {"--telescope-lower-inner-diameter-m", "its inner diameter [m]", telescope,
+       &PartShapes::telescope_lower_inner_diameter},
       {"--drive-viscous", "friction of a limb's drive [N m s/rad or N s/m]", any, &PartShapes::drive_viscous},
       {"--drive-coulomb", "the same [N m or N]", any, &PartShapes::drive_coulomb},
       {"--telescope-drive-viscous-Nm-s-rad", "friction of the telescope's drive [N m s/rad]", telescope,

@@ -79,7 +79,8 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
     throw Error("an effect is written NAME@JOINT:key=value,...", where,
                 "e.g. --effect " + example_effect() + "; --list-effects shows them all", ExitCode::usage);
   }
-  const std::string name = text.substr(0, at), joint = text.substr(at + 1, colon == std::string::npos ? colon : colon - at - 1);
+  const std::string name = text.substr(0, at),
+                    joint = text.substr(at + 1, colon == std::string::npos ? colon : colon - at - 1);
   const EffectKind* kind = find_effect_kind(name);
   if (kind == nullptr) {
     std::string known;
@@ -114,7 +115,8 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
     }
     if (!given.insert(name_of_key).second)
       throw Error(name_of_key + " is given twice", where, "give each number once", ExitCode::usage);
-    const auto key = std::find_if(keys.begin(), keys.end(), [&](const EffectKey& each) { return each.name == name_of_key; });
+    const auto key =
+        std::find_if(keys.begin(), keys.end(), [&](const EffectKey& each) { return each.name == name_of_key; });
     if (key == keys.end())
       throw Error("the effect " + name + " has no '" + name_of_key + "'", where, "it has " + known, ExitCode::usage);
     if (key->above && !(value > key->lower))

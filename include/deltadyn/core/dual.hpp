@@ -38,7 +38,9 @@ struct Dual {
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
   friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
   friend Dual operator-(const Dual& a) { return Dual(-a.value, -a.slope); }
-  friend Dual operator*(const Dual& a, const Dual& b) { return Dual(a.value * b.value, a.value * b.slope + b.value * a.slope); }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return Dual(a.value * b.value, a.value * b.slope + b.value * a.slope);
+  }
   friend Dual operator/(const Dual& a, const Dual& b) {
     const T ratio = a.value / b.value;
     return Dual(ratio, (a.slope - ratio * b.slope) / b.value);

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// The missing-effect workflow: where a model and its logs disagree, the name of what is missing, the model with it, and the proof on a
-/// log that took no part. Honest by construction: nothing-missing, a set, unknown-structure or not-testable where that is the truth.
+/// The missing-effect workflow: where a model and its logs disagree, the name of what is missing, the model with it,
+/// and the proof on a log that took no part. Honest by construction: nothing-missing, a set, unknown-structure or
+/// not-testable where that is the truth.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -25,7 +26,8 @@ enum class DiagnosisVerdict { nothing_missing, named, confusable, unknown_struct
 }
 
 struct DiagnosisOptions {
-  ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false; bristles and ripples are the model's
+  /// cutoff_hz counts only if choose_cutoff is false; bristles and ripples are the model's
+  ProcessingOptions processing;
   bool choose_cutoff = true;
   double false_naming_rate = 0.01;  ///< chance that an effect is named on logs that miss nothing
   int max_effects = 3;
@@ -49,18 +51,19 @@ struct EffectCandidate {
 };
 
 struct NamedEffect : EffectCandidate {
-  double explained_share = 0;                           ///< of the structure that is there, 0 to 1
-  std::vector<EffectCandidate> confusable;              ///< what else it could be
-  std::string region;                                   ///< where it acts, in words
-  std::vector<int> drives;                              ///< that it reaches, from 0
-  double rms_before = 0, rms_after = 0, rms_floor = 0;  ///< on the hold-out log (else the training logs), over those drives
+  double explained_share = 0;               ///< of the structure that is there, 0 to 1
+  std::vector<EffectCandidate> confusable;  ///< what else it could be
+  std::string region;                       ///< where it acts, in words
+  std::vector<int> drives;                  ///< that it reaches, from 0
+  /// On the hold-out log (else the training logs), over those drives
+  double rms_before = 0, rms_after = 0, rms_floor = 0;
 };
 
 /// One row of the list of all effects considered.
 struct ConsideredEffect {
   std::string name, effect_class, joint, unit, ruling;
-  double kept = 0;        ///< share of its signature that a re-fit of the parameters cannot absorb (known before any torque)
-  double detectable = 0;  ///< smallest amplitude that these logs show with this noise
+  double kept = 0;  ///< share of its signature that a re-fit of the parameters cannot absorb (known before any torque)
+  double detectable = 0;               ///< smallest amplitude that these logs show with this noise
   double gain_alone = 0, p_alone = 1;  ///< beside the base model
   double gain_left = 0, p_left = 1;    ///< beside the named effects
   std::vector<std::string> like;       ///< effects whose signature these motions hardly tell apart, with their |cosine|
@@ -81,12 +84,13 @@ struct RowCount {
 struct DriveFit {
   /// On the training logs: base model fitted to them, with the named effects, no model can do better.
   double rms = 0, rms_after = 0, floor = 0;
-  double rms_given = 0;                                 ///< of the model as the user gave it, not fitted to these logs
-  double rms_holdout = 0, floor_holdout = 0;            ///< of the fitted base model on the hold-out log; 0 without one
-  double structure = 0;                                 ///< share of the base model's residual variance that follows the motion
-  double p_value = 1, p_left = 1;                       ///< of the structure: before, and beside the named effects
-  std::vector<RowCount> rows;                           ///< one a training log, then the hold-out log
-  std::vector<std::pair<std::string, double>> follows;  ///< coordinates that it follows, with their share, largest first
+  double rms_given = 0;                       ///< of the model as the user gave it, not fitted to these logs
+  double rms_holdout = 0, floor_holdout = 0;  ///< of the fitted base model on the hold-out log; 0 without one
+  double structure = 0;                       ///< share of the base model's residual variance that follows the motion
+  double p_value = 1, p_left = 1;             ///< of the structure: before, and beside the named effects
+  std::vector<RowCount> rows;                 ///< one a training log, then the hold-out log
+  /// Coordinates that it follows, with their share, largest first
+  std::vector<std::pair<std::string, double>> follows;
 };
 
 /// Rows of one log for pictures; matrices rows x drives.
@@ -110,12 +114,13 @@ struct Diagnosis {
   double p_value = 1;                                ///< of the verdict
   double explained_share = 0;                        ///< of all structure, by the named effects
   double gap_shrink = 0, gap_low = 0, gap_high = 0;  ///< on the hold-out log, with its 95 % interval; NaN without one
-  double p_no_gain = 1;                              ///< chance that the hold-out log does not gain (paired block bootstrap)
-  std::optional<double> needed_s;                    ///< not_testable for shortness: length that would do
-  std::vector<Effect> effects;                       ///< of the improved model: those it had before and the named ones
-  std::optional<Identification> improved;            ///< parameters with the effects
-  std::vector<HoldoutFigure> holdout_figures;  ///< one a drive, of the improved model; empty without one or without hold-out log
-  double holdout_cutoff_hz = 0;                ///< of these figures; 0: the one that delta-validate chooses
+  double p_no_gain = 1;                    ///< chance that the hold-out log does not gain (paired block bootstrap)
+  std::optional<double> needed_s;          ///< not_testable for shortness: length that would do
+  std::vector<Effect> effects;             ///< of the improved model: those it had before and the named ones
+  std::optional<Identification> improved;  ///< parameters with the effects
+  /// One a drive, of the improved model; empty without one or without hold-out log
+  std::vector<HoldoutFigure> holdout_figures;
+  double holdout_cutoff_hz = 0;  ///< of these figures; 0: the one that delta-validate chooses
   std::vector<DiagnosisTrace> traces;
   double cutoff_hz = 0, encoder_share = 0, total_time_s = 0;
   int null_runs = 0;
@@ -126,8 +131,10 @@ struct Diagnosis {
 /// \param p_std    their standard deviations or empty, for the re-identification
 /// \param known    effects that the model holds already
 /// \param holdout  a log that takes no part in the search; null: none
-/// Throws deltadyn::Error for logs that do not belong to the robot, a hold-out log that is a training log, and options out of range.
-[[nodiscard]] Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* holdout, const Eigen::VectorXd& p,
-                                 const Eigen::VectorXd& p_std, const std::vector<Effect>& known, const DiagnosisOptions& options);
+/// Throws deltadyn::Error for logs that do not belong to the robot, a hold-out log that is a training log, and options
+/// out of range.
+[[nodiscard]] Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* holdout,
+                                 const Eigen::VectorXd& p, const Eigen::VectorXd& p_std,
+                                 const std::vector<Effect>& known, const DiagnosisOptions& options);
 
 }  // namespace deltadyn

@@ -2,7 +2,8 @@
 
 /// \file
 /// The motion that tells a set of effects apart: T-optimal over the coefficients of a Fourier series (Atkinson
-/// and Fedorov 1975): as much as possible of the alternative's torque must be left when the best effect and all parameters are re-fitted.
+/// and Fedorov 1975): as much as possible of the alternative's torque must be left when the best effect and all
+/// parameters are re-fitted.
 
 #include <cstdint>
 #include <optional>

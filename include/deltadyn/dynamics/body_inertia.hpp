@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What one body's ten parameters (4) ask of its motion: force, moment and share of the mass matrix. Everything in the body's
-/// frame and about its origin; the one place where inertias meet motions, for all of dynamics/.
+/// What one body's ten parameters (4) ask of its motion: force, moment and share of the mass matrix. Everything in the
+/// body's frame and about its origin; the one place where inertias meet motions, for all of dynamics/.
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/kinematics/body_motion.hpp"
@@ -36,7 +36,8 @@ struct BodyInertia {
 
   /// I v, written out: the quickest way in inverse dynamics.
   Vector3<T> inertia_times(const Vector3<T>& v) const {
-    return Vector3<T>(I(0, 0) * v.x() + I(0, 1) * v.y() + I(0, 2) * v.z(), I(0, 1) * v.x() + I(1, 1) * v.y() + I(1, 2) * v.z(),
+    return Vector3<T>(I(0, 0) * v.x() + I(0, 1) * v.y() + I(0, 2) * v.z(),
+                      I(0, 1) * v.x() + I(1, 1) * v.y() + I(1, 2) * v.z(),
                       I(0, 2) * v.x() + I(1, 2) * v.y() + I(2, 2) * v.z());
   }
 
@@ -50,16 +51,17 @@ struct BodyInertia {
   }
 
   /// The body's share of C(q, qd); N x N. With A = Jd_v and B = Jd_w the rates of the Jacobians it is
-  /// J_v^T (m A - mc x B - w x (mc x J_w)) + J_w^T (mc x A + I B + (P w) x J_w), P = tr(I)/2 - I the second moments of mass:
-  /// the integral of (dr/dq)^T d/dt(dr/dq) over the mass. These are the Christoffel symbols of the body's kinetic energy, so
-  /// that Mdot = C + C^T, Mdot - 2C is skew-symmetric, and d(C qd)/dqd = 2C.
+  /// J_v^T (m A - mc x B - w x (mc x J_w)) + J_w^T (mc x A + I B + (P w) x J_w), P = tr(I)/2 - I the second moments of
+  /// mass: the integral of (dr/dq)^T d/dt(dr/dq) over the mass. These are the Christoffel symbols of the body's kinetic
+  /// energy, so that Mdot = C + C^T, Mdot - 2C is skew-symmetric, and d(C qd)/dqd = 2C.
   template <int N>
   Matrix<T, N, N> coriolis_matrix(const BodyState<T, N>& body) const {
     const Matrix3<T> S = skew(mc);
     const Vector3<T> P_w = T(0.5) * I.trace() * body.w - I.lazyProduct(body.w);
     const Matrix<T, 3, N> force =
         m * body.Jd_v - S.lazyProduct(body.Jd_w) - Matrix3<T>(skew(body.w).lazyProduct(S)).lazyProduct(body.J_w);
-    const Matrix<T, 3, N> moment = S.lazyProduct(body.Jd_v) + I.lazyProduct(body.Jd_w) + skew(P_w).lazyProduct(body.J_w);
+    const Matrix<T, 3, N> moment =
+        S.lazyProduct(body.Jd_v) + I.lazyProduct(body.Jd_w) + skew(P_w).lazyProduct(body.J_w);
     return body.J_v.transpose().lazyProduct(force) + body.J_w.transpose().lazyProduct(moment);
   }
 

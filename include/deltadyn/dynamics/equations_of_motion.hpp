@@ -1,16 +1,16 @@
 #pragma once
 
 /// \file
-/// The equations of motion (1) term by term, M(q) qdd + C(q, qd) qd + g(q) + f(qd) = tau, in drive and in task coordinates,
-/// and the energies that belong to them.
+/// The equations of motion (1) term by term, M(q) qdd + C(q, qd) qd + g(q) + f(qd) = tau, in drive and in task
+/// coordinates, and the energies that belong to them.
 
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
 
 namespace deltadyn {
 
-/// The terms of (1) at one state. In drive coordinates of units [N m | N] a drive; in task coordinates for zdd and a force on the
-/// plate [N] and a moment about the vertical [N m].
+/// The terms of (1) at one state. In drive coordinates of units [N m | N] a drive; in task coordinates for zdd and a
+/// force on the plate [N] and a moment about the vertical [N m].
 template <class T, int N>
 struct EquationsOfMotion {
   Matrix<T, N, N> M;  ///< symmetric; positive definite for physically consistent parameters
@@ -21,7 +21,8 @@ struct EquationsOfMotion {
 
 /// The terms in drive coordinates. The accelerations of `motion` do not matter.
 template <class Layout, class T, class Robot>
-EquationsOfMotion<T, Robot::kDrives> equations_of_motion(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+EquationsOfMotion<T, Robot::kDrives> equations_of_motion(const Geometry<T, Robot>& geometry,
+                                                         const Motion<T, Robot>& motion,
                                                          const Vector<T, Layout::kColumns>& p) {
   constexpr int N = Robot::kDrives;
   EquationsOfMotion<T, N> terms;
@@ -40,12 +41,13 @@ EquationsOfMotion<T, Robot::kDrives> equations_of_motion(const Geometry<T, Robot
   return terms;
 }
 
-/// The same terms in task coordinates z: with J = dz/dq, M_z = J^-T M J^-1, C_z = J^-T (C - M J^-1 Jdot) J^-1, and J^-T before g
-/// and f. What holds for M and C holds for M_z and C_z, too.
-/// \return singular where a drive cannot follow the plate; then `task` keeps its values
+/// The same terms in task coordinates z: with J = dz/dq, M_z = J^-T M J^-1, C_z = J^-T (C - M J^-1 Jdot) J^-1, and J^-T
+/// before g and f. What holds for M and C holds for M_z and C_z, too. \return singular where a drive cannot follow the
+/// plate; then `task` keeps its values
 template <class T, class Robot>
 Status equations_in_task(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
-                         const EquationsOfMotion<T, Robot::kDrives>& drives, EquationsOfMotion<T, Robot::kDrives>& task) {
+                         const EquationsOfMotion<T, Robot::kDrives>& drives,
+                         EquationsOfMotion<T, Robot::kDrives>& task) {
   constexpr int N = Robot::kDrives;
   Matrix<T, N, N> J_inverse;
   const Status status = drive_jacobian(geometry, motion.posture, J_inverse);
@@ -67,7 +69,8 @@ Status equations_in_task(const Geometry<T, Robot>& geometry, const Motion<T, Rob
 
 /// Kinetic energy [J] of bodies and rotors.
 template <class Layout, class T, class Robot>
-T kinetic_energy(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p) {
+T kinetic_energy(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                 const Vector<T, Layout::kColumns>& p) {
   T energy = T(0);
   for_each_body(geometry, motion, [&](Body kind, int index, int count, const BodyMotion<T, Robot::kDrives>& body) {
     const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);
@@ -83,7 +86,8 @@ T kinetic_energy(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mot
 
 /// Potential energy [J] of the bodies under gravity, zero for a mass at the origin of W.
 template <class Layout, class T, class Robot>
-T potential_energy(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture, const Vector<T, Layout::kColumns>& p) {
+T potential_energy(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                   const Vector<T, Layout::kColumns>& p) {
   Motion<T, Robot> at_rest;
   at_rest.posture = posture;
   T energy = T(0);

@@ -10,11 +10,12 @@
 
 namespace deltadyn {
 
-/// (1) at one state as M qdd + bias = tau: M(q), and bias = C qd + g + f + offsets [N m | N], in one pass over the bodies.
+/// (1) at one state as M qdd + bias = tau: M(q), and bias = C qd + g + f + offsets [N m | N], in one pass over the
+/// bodies.
 template <class Layout, class T, class Robot>
-void mass_and_bias(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture, const Vector<T, Robot::kDrives>& qd,
-                   const Vector<T, Layout::kColumns>& p, Matrix<T, Robot::kDrives, Robot::kDrives>& M,
-                   Vector<T, Robot::kDrives>& bias) {
+void mass_and_bias(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                   const Vector<T, Robot::kDrives>& qd, const Vector<T, Layout::kColumns>& p,
+                   Matrix<T, Robot::kDrives, Robot::kDrives>& M, Vector<T, Robot::kDrives>& bias) {
   constexpr int N = Robot::kDrives;
   Motion<T, Robot> motion;
   motion.posture = posture;
@@ -31,11 +32,12 @@ void mass_and_bias(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& 
 
 /// qdd [rad/s^2 | m/s^2] of the drive torques tau [N m | N] at a posture with drive rates qd.
 /// At rest Coulomb's law gives no torque here (sign(0) = 0); who simulates stiction adds it.
-/// \return out_of_range where M is not positive definite: then the parameters are not physically consistent. qdd keeps its value.
+/// \return out_of_range where M is not positive definite: then the parameters are not physically consistent. qdd keeps
+/// its value.
 template <class Layout, class T, class Robot>
-Status forward_dynamics(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture, const Vector<T, Robot::kDrives>& qd,
-                        const Vector<T, Robot::kDrives>& tau, const Vector<T, Layout::kColumns>& p,
-                        Vector<T, Robot::kDrives>& qdd) {
+Status forward_dynamics(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                        const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& tau,
+                        const Vector<T, Layout::kColumns>& p, Vector<T, Robot::kDrives>& qdd) {
   constexpr int N = Robot::kDrives;
   if (!qd.allFinite() || !tau.allFinite()) return Status::out_of_range;
   Matrix<T, N, N> M;

@@ -3,8 +3,8 @@
 /// \file
 /// Derivatives of the drive torques by the drive state, for optimal control and for sensitivities.
 ///
-/// By qdd it is M(q); by qd, 2C(q, qd) plus the viscous friction, because C is of Christoffel symbols: both analytic. By q the same
-/// templates run on dual numbers (forward differentiation, exact to rounding). No finite differences.
+/// By qdd it is M(q); by qd, 2C(q, qd) plus the viscous friction, because C is of Christoffel symbols: both analytic.
+/// By q the same templates run on dual numbers (forward differentiation, exact to rounding). No finite differences.
 
 #include "deltadyn/core/dual.hpp"
 #include "deltadyn/dynamics/equations_of_motion.hpp"
@@ -35,19 +35,21 @@ Status posture_with_slopes(const Geometry<Dual<T, Robot::kDrives>, Robot>& geome
   return assemble_posture(geometry, q, z, with_slopes);
 }
 
-/// Derivatives of inverse_dynamics() at a motion. Coulomb friction counts as constant, which it is away from a reversal.
-/// The derivatives of forward dynamics follow: dqdd/dx = -M^-1 dtau/dx at the same accelerations, dqdd/dtau = M^-1.
-/// \return singular where the posture is; then the derivatives keep their values
+/// Derivatives of inverse_dynamics() at a motion. Coulomb friction counts as constant, which it is away from a
+/// reversal. The derivatives of forward dynamics follow: dqdd/dx = -M^-1 dtau/dx at the same accelerations, dqdd/dtau =
+/// M^-1. \return singular where the posture is; then the derivatives keep their values
 template <class Layout, class T, class Robot>
 Status inverse_dynamics_derivatives(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
-                                    const Vector<T, Layout::kColumns>& p, TorqueDerivatives<T, Robot::kDrives>& derivatives) {
+                                    const Vector<T, Layout::kColumns>& p,
+                                    TorqueDerivatives<T, Robot::kDrives>& derivatives) {
   constexpr int N = Robot::kDrives;
   using Number = Dual<T, N>;
   const auto with_slopes = cast_geometry<Number>(geometry);
   Motion<Number, Robot> nearby;
   const Status status = posture_with_slopes(with_slopes, motion.posture, nearby.posture);
   if (status != Status::ok) return status;
-  set_drive_rates<Number, Robot>(with_slopes, motion.qd.template cast<Number>(), motion.qdd.template cast<Number>(), nearby);
+  set_drive_rates<Number, Robot>(with_slopes, motion.qd.template cast<Number>(), motion.qdd.template cast<Number>(),
+                                 nearby);
   const Vector<Number, N> tau = inverse_dynamics<Layout, Number, Robot>(with_slopes, nearby, p.template cast<Number>());
   for (int i = 0; i < N; ++i) derivatives.by_q.row(i) = tau(i).slope.transpose();
 

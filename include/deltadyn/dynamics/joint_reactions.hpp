@@ -1,16 +1,17 @@
 #pragma once
 
 /// \file
-/// Forces in the joints of a Delta by Newton's and Euler's laws, body by body from the given motion (the outlook of the paper).
+/// Forces in the joints of a Delta by Newton's and Euler's laws, body by body from the given motion (the outlook of the
+/// paper).
 ///
-/// What carries what: a ball joint carries a force; at the elbow it carries, beside that, the moment about the normal of the two
-/// axes that the paper takes it for (II.A), which is what holds a strut against turning about itself. It does no work, and is
-/// small, because a strut's inertia about itself is. With that each of the six struts of a Delta has one unknown, its axial force,
-/// and the plate's six balances give them: their sums in a limb hold the plate, their differences hold it level. The telescope bar
-/// carries a moment from its upper to its lower universal joint, the slide all but the axial force, which is its friction, and the
-/// tool's bearing on the plate all but the moment about its axis. So everything is determined, with no stiffness assumed.
-/// Unlike drive torques, single reactions depend on parameters that no motion shows (see base parameters): they are as good as
-/// the prior is there.
+/// What carries what: a ball joint carries a force; at the elbow it carries, beside that, the moment about the normal
+/// of the two axes that the paper takes it for (II.A), which is what holds a strut against turning about itself. It
+/// does no work, and is small, because a strut's inertia about itself is. With that each of the six struts of a Delta
+/// has one unknown, its axial force, and the plate's six balances give them: their sums in a limb hold the plate, their
+/// differences hold it level. The telescope bar carries a moment from its upper to its lower universal joint, the slide
+/// all but the axial force, which is its friction, and the tool's bearing on the plate all but the moment about its
+/// axis. So everything is determined, with no stiffness assumed. Unlike drive torques, single reactions depend on
+/// parameters that no motion shows (see base parameters): they are as good as the prior is there.
 
 #include <Eigen/LU>
 
@@ -30,15 +31,16 @@ struct JointLoad {
 template <class T, class Robot>
 struct JointReactions {
   struct Limb {
-    /// Base on upper arm, at the drive origin; on a carriage, at its own origin. The moment about the drive's axis (the force along
-    /// it) is the drive torque less rotor inertia, friction and offset.
+    /// Base on upper arm, at the drive origin; on a carriage, at its own origin. The moment about the drive's axis (the
+    /// force along it) is the drive torque less rotor inertia, friction and offset.
     JointLoad<T> drive;
     JointLoad<T> elbow[2];      ///< upper arm on strut
     JointLoad<T> plate[2];      ///< strut on plate
     T axial[2] = {T(0), T(0)};  ///< force along the strut at the plate's ball, tension positive [N]
   };
   Limb limbs[Robot::kLimbs];
-  JointLoad<T> telescope_base;  ///< base on the upper part of the bar; its vertical moment is what the fourth drive gives the bar
+  /// Base on the upper part of the bar; its vertical moment is what the fourth drive gives the bar
+  JointLoad<T> telescope_base;
   JointLoad<T> telescope_slide;  ///< upper on lower part, at the lower joint's centre
   JointLoad<T> telescope_tool;   ///< lower part on tool
   JointLoad<T> tool_bearing;     ///< plate on tool, on the tool's axis at the height of the plate's centre
@@ -55,8 +57,9 @@ struct Need {
 
 /// Reactions of bar and tool. Joints of the bar carry moments along n, the normal of both universal joints' axes.
 template <class Layout, class T, class Robot>
-void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p,
-                         const Need<T>& upper, const Need<T>& lower, const Need<T>& tool, JointReactions<T, Robot>& out) {
+void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                         const Vector<T, Layout::kColumns>& p, const Need<T>& upper, const Need<T>& lower,
+                         const Need<T>& tool, JointReactions<T, Robot>& out) {
   const auto& bar = motion.posture.telescope;
   const Vector3<T> n = rot_z(bar.psi) * Vector3<T>(T(0), -bar.a.sin, bar.a.cos);
   const Vector3<T>& e = bar.e;
@@ -66,7 +69,8 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
   const Vector3<T> bending = turning - both * n;
   const T rate = motion.telescope.length_d;
   const T friction = p(Layout::viscous(Robot::kDrives)) * rate + p(Layout::coulomb(Robot::kDrives)) * sign_of(rate);
-  const Vector3<T> at_lower = bending.cross(-e) / bar.length + (lower.force.dot(e) - friction) * e;  // of the tool on the bar
+  // Of the tool on the bar
+  const Vector3<T> at_lower = bending.cross(-e) / bar.length + (lower.force.dot(e) - friction) * e;
   const T mu_lower = -tool.moment.z() / n.z();
 
   out.telescope_base = {geometry.telescope.p_WU, upper.force + lower.force - at_lower, (both - mu_lower) * n};
@@ -80,20 +84,22 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
 
 }  // namespace detail
 
-/// Loads of all joints in a motion. For robots with a plate that does not turn; the inner joints of the others are not described.
-/// \return singular where the struts do not hold the plate level; then `out` keeps its values
+/// Loads of all joints in a motion. For robots with a plate that does not turn; the inner joints of the others are not
+/// described. \return singular where the struts do not hold the plate level; then `out` keeps its values
 template <class Layout, class T, class Robot>
-Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p,
-                       JointReactions<T, Robot>& out) {
+Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                       const Vector<T, Layout::kColumns>& p, JointReactions<T, Robot>& out) {
   static_assert(!Robot::kPlateTurns, "the joints inside a turning plate are not part of the geometry");
   constexpr int kOther = 4;
-  detail::Need<T> arms[Robot::kLimbs], struts[Robot::kLimbs], others[kOther];  // others: platform, tool, upper, lower part
+  // others: platform, tool, upper, lower part
+  detail::Need<T> arms[Robot::kLimbs], struts[Robot::kLimbs], others[kOther];
   for_each_body(geometry, motion, JacobianRates<T, Robot>(),
                 [&](Body kind, int index, int, const BodyState<T, Robot::kDrives>& body) {
                   const BodyInertia<T> inertia = body_inertia<Layout, T>(p, kind, index);
                   auto& need = kind == Body::upper_arm ? arms[index]
-                               : kind == Body::strut   ? struts[index]
-                                                       : others[static_cast<int>(kind) - static_cast<int>(Body::platform)];
+                               : kind == Body::strut
+                                   ? struts[index]
+                                   : others[static_cast<int>(kind) - static_cast<int>(Body::platform)];
                   need = {body.p_WB, body.R_WB * inertia.force(body), body.R_WB * inertia.moment(body), body.R_WB};
                 });
   JointReactions<T, Robot> result;
@@ -105,10 +111,12 @@ Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot
     if constexpr (Robot::kTelescope) {
       detail::telescope_reactions<Layout>(geometry, motion, p, others[2], others[3], others[1], result);
       force -= result.tool_bearing.force;
-      moment -= result.tool_bearing.moment + Vector3<T>(result.tool_bearing.place - plate.place).cross(result.tool_bearing.force);
+      moment -= result.tool_bearing.moment +
+                Vector3<T>(result.tool_bearing.place - plate.place).cross(result.tool_bearing.force);
     }
     Vector3<T> u[Robot::kLimbs], half[Robot::kLimbs], p_BA[Robot::kLimbs], across[Robot::kLimbs], couple[Robot::kLimbs];
-    Matrix3<T> levelling;  // columns: moment of the plate's balls for a unit difference of a limb's axial forces, times 2
+    // columns: moment of the plate's balls for a unit difference of a limb's axial forces, times 2
+    Matrix3<T> levelling;
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const auto& limb = motion.posture.limbs[i];
       const Matrix3<T> R_WL = rot_z(limb.azimuth);
@@ -118,12 +126,14 @@ Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot
       p_BA[i] = R_WL * limb.p_BA.value;
       const Vector3<T> n = R_WL * Vector3<T>(limb.beta.cos, T(0), -limb.beta.sin);
       couple[i] = (strut.moment.dot(u[i]) / limb.gamma.cos) * n;
-      across[i] = Vector3<T>(strut.moment - couple[i]).cross(u[i]) / geometry.limbs[i].strut;  // of the plate on one strut
+      // Of the plate on one strut
+      across[i] = Vector3<T>(strut.moment - couple[i]).cross(u[i]) / geometry.limbs[i].strut;
       force -= T(2) * across[i];
       moment -= T(2) * p_BA[i].cross(across[i]);
       levelling.col(i) = half[i].cross(u[i]);
     }
-    // force and moment now hold what the plate takes: sum of u s, and of p_BA x u s + levelling d, for sums s and differences d.
+    // force and moment now hold what the plate takes: sum of u s, and of p_BA x u s + levelling d, for sums s and
+    // differences d.
     const Vector3<T> sums = motion.posture.J_plate_loops.transpose() * force;
     for (int i = 0; i < Robot::kLimbs; ++i) moment -= sums(i) * p_BA[i].cross(u[i]);
     Matrix3<T> inverse;

@@ -8,7 +8,8 @@
 
 namespace deltadyn {
 
-/// Adds the drives' rotor inertias to the sum over the bodies, and makes the sum, symmetric but for rounding, exactly so.
+/// Adds the drives' rotor inertias to the sum over the bodies, and makes the sum, symmetric but for rounding, exactly
+/// so.
 template <class Layout, class T, int N>
 void complete_mass_matrix(const Vector<T, Layout::kColumns>& p, Matrix<T, N, N>& M) {
   for (int i = 0; i < N; ++i) {
@@ -20,7 +21,8 @@ void complete_mass_matrix(const Vector<T, Layout::kColumns>& p, Matrix<T, N, N>&
 /// M(q) = sum over the bodies of J^T I J plus the rotor inertias; N x N, exactly symmetric.
 /// Positive definite for physically consistent parameters (paper V.A).
 template <class Layout, class T, class Robot>
-Matrix<T, Robot::kDrives, Robot::kDrives> mass_matrix(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+Matrix<T, Robot::kDrives, Robot::kDrives> mass_matrix(const Geometry<T, Robot>& geometry,
+                                                      const Posture<T, Robot>& posture,
                                                       const Vector<T, Layout::kColumns>& p) {
   constexpr int N = Robot::kDrives;
   Motion<T, Robot> at_rest;

@@ -51,8 +51,8 @@ void regressor(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motio
   for_each_body(geometry, motion, [&Y](Body kind, int index, int count, const BodyMotion<T, Robot::kDrives>& body) {
     // Principle of virtual power: what the body needs, projected on the drives.
     Y.template middleCols<kInertialParameters>(kInertialParameters * Layout::body(kind, index)) +=
-        T(count) *
-        (body.J_v.transpose().lazyProduct(force_regressor(body)) + body.J_w.transpose().lazyProduct(moment_regressor(body)));
+        T(count) * (body.J_v.transpose().lazyProduct(force_regressor(body)) +
+                    body.J_w.transpose().lazyProduct(moment_regressor(body)));
   });
   for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
     const auto f = friction_joint(motion, joint);

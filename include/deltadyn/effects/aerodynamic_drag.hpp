@@ -6,8 +6,8 @@
 
 namespace deltadyn::effects {
 
-/// Drag of the plate and what it carries: force c |v| v with the plate's velocity v [m/s]. Amplitude c [N s^2/m^2] > 0: half the density
-/// of air times drag coefficient times area. Valid above Re of about 1000 and for air at rest.
+/// Drag of the plate and what it carries: force c |v| v with the plate's velocity v [m/s]. Amplitude c [N s^2/m^2] > 0:
+/// half the density of air times drag coefficient times area. Valid above Re of about 1000 and for air at rest.
 struct AerodynamicDrag : PlateForce {
   static constexpr EffectTraits traits() {
     EffectTraits t;

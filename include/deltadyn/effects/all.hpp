@@ -43,11 +43,12 @@ struct EffectList {
 
 using AllEffects =
     EffectList<effects::Stribeck, effects::ShearThinning, effects::ConvexViscous, effects::AsymmetricCoulomb,
-               effects::AsymmetricViscous, effects::LoadDependentFriction, effects::DirectionalEfficiency, effects::Presliding,
-               effects::Hysteresis, effects::TorqueRipple, effects::PositionDependentFriction, effects::Backlash,
-               effects::JointElasticity, effects::RotorInertia, effects::LimbInertiaMismatch, effects::BaseTilt, effects::Payload,
-               effects::TorqueConstantError, effects::TimeSkew, effects::CurrentLag, effects::Saturation, effects::ThermalDrift,
-               effects::PassiveJointFriction, effects::AerodynamicDrag, effects::TelescopeStribeck, effects::TelescopeSideLoad,
-               effects::HoseForce, effects::KinematicOffset, effects::DirectionDependentFriction, effects::ArmSpring>;
+               effects::AsymmetricViscous, effects::LoadDependentFriction, effects::DirectionalEfficiency,
+               effects::Presliding, effects::Hysteresis, effects::TorqueRipple, effects::PositionDependentFriction,
+               effects::Backlash, effects::JointElasticity, effects::RotorInertia, effects::LimbInertiaMismatch,
+               effects::BaseTilt, effects::Payload, effects::TorqueConstantError, effects::TimeSkew,
+               effects::CurrentLag, effects::Saturation, effects::ThermalDrift, effects::PassiveJointFriction,
+               effects::AerodynamicDrag, effects::TelescopeStribeck, effects::TelescopeSideLoad, effects::HoseForce,
+               effects::KinematicOffset, effects::DirectionDependentFriction, effects::ArmSpring>;
 
 }  // namespace deltadyn

@@ -4,9 +4,10 @@
 
 namespace deltadyn::effects {
 
-/// A linear spring between the base and an arm or carriage, which makers add to relieve the gears: torque k (q - q0). Amplitude: stiffness
-/// k > 0 [N m/rad | N/m]; shape: its zero q0 [rad | m], where it pulls neither way. On one limb or on all alike. A counterweight in its
-/// place is a part of the arm and needs no effect: the arm's own parameters hold it. Valid within the spring's straight range.
+/// A linear spring between the base and an arm or carriage, which makers add to relieve the gears: torque k (q - q0).
+/// Amplitude: stiffness k > 0 [N m/rad | N/m]; shape: its zero q0 [rad | m], where it pulls neither way. On one limb or
+/// on all alike. A counterweight in its place is a part of the arm and needs no effect: the arm's own parameters hold
+/// it. Valid within the spring's straight range.
 struct ArmSpring : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -4,8 +4,8 @@
 
 namespace deltadyn::effects {
 
-/// Coulomb friction that differs by direction, or an offset of the amplifier: a constant torque c [N m | N] of either sign, |c| below
-/// the joint's Coulomb friction if it is friction.
+/// Coulomb friction that differs by direction, or an offset of the amplifier: a constant torque c [N m | N] of either
+/// sign, |c| below the joint's Coulomb friction if it is friction.
 struct AsymmetricCoulomb : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -6,8 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// Viscous friction that differs by direction: b |v| beside the mean d v, so that d + b holds for v > 0 and d - b for v < 0.
-/// Amplitude b [N m s/rad | N s/m] of either sign, |b| < d. Source: Janot, Gautier, Brunot 2019 (EMPS, a screw axis).
+/// Viscous friction that differs by direction: b |v| beside the mean d v, so that d + b holds for v > 0 and d - b for v
+/// < 0. Amplitude b [N m s/rad | N s/m] of either sign, |b| < d. Source: Janot, Gautier, Brunot 2019 (EMPS, a screw
+/// axis).
 struct AsymmetricViscous : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

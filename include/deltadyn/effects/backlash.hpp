@@ -6,13 +6,15 @@
 
 namespace deltadyn::effects {
 
-/// Play in a drive's gear, seen from the motor's encoder: after the load reverses, the motor crosses the gap alone and the rigid
-/// model's load is missing: torque -A tau_load while in the gap, 0 <= A <= 1 (1: all of the load hangs behind the gap).
-/// State: the motor's place in the gap, x in [-b/2, b/2]; it moves with the motor and stops at the side that the load presses on.
-/// Shape: gap b > 0 [rad | m], 1e-4 to 0.05 rad. Valid for stiff flanks without bounce. Source: Nordin, Gutman, Automatica 38, 2002.
+/// Play in a drive's gear, seen from the motor's encoder: after the load reverses, the motor crosses the gap alone and
+/// the rigid model's load is missing: torque -A tau_load while in the gap, 0 <= A <= 1 (1: all of the load hangs behind
+/// the gap). State: the motor's place in the gap, x in [-b/2, b/2]; it moves with the motor and stops at the side that
+/// the load presses on. Shape: gap b > 0 [rad | m], 1e-4 to 0.05 rad. Valid for stiff flanks without bounce. Source:
+/// Nordin, Gutman, Automatica 38, 2002.
 struct Backlash : JointMemory {
   // What the one number leaves open about real play.
-  static constexpr double kLeastMotorShare = 0.3;   ///< a motor much lighter than its load cannot be controlled across it
+  /// A motor much lighter than its load cannot be controlled across it
+  static constexpr double kLeastMotorShare = 0.3;
   static constexpr double kFlankFrequencyHz = 250;  ///< resonance of motor and load while a flank carries
 
   static constexpr EffectTraits traits() {
@@ -48,7 +50,8 @@ struct Backlash : JointMemory {
   }
 
   template <class Machine>
-  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& share, const Shape<double>& shape) {
+  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& share,
+                     const Shape<double>& shape) {
     SpringInDrive spring;
     spring.motor_share = 1 - share[0] > kLeastMotorShare ? 1 - share[0] : kLeastMotorShare;
     spring.flank_hz = kFlankFrequencyHz;

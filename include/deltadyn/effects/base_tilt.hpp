@@ -4,8 +4,8 @@
 
 namespace deltadyn::effects {
 
-/// The base is not level: gravity turned by the small angles delta_x, delta_y about the base's axes, g' = g + delta x g.
-/// Amplitudes: the two angles [rad] of either sign, below 0.1. Valid for small angles (second order left out).
+/// The base is not level: gravity turned by the small angles delta_x, delta_y about the base's axes, g' = g + delta x
+/// g. Amplitudes: the two angles [rad] of either sign, below 0.1. Valid for small angles (second order left out).
 struct BaseTilt : MachineChange {
   static constexpr double kStep = 1e-3;  ///< [rad]
 

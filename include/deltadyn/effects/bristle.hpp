@@ -4,8 +4,8 @@
 
 namespace deltadyn {
 
-/// Bristle state of friction after a reversal (Dahl 1968; the state of LuGre without its Stribeck curve): it does not jump but builds
-/// up over a displacement. State z in [-1, 1], the friction as a share of Coulomb's:
+/// Bristle state of friction after a reversal (Dahl 1968; the state of LuGre without its Stribeck curve): it does not
+/// jump but builds up over a displacement. State z in [-1, 1], the friction as a share of Coulomb's:
 ///   dz/dt = (v - |v| z) / x_s,   F = Fc z,   Fc > 0 [N m | N]
 /// with the bristle displacement x_s > 0 [rad | m], 1e-5 to 0.1 rad. With damping of the bristles F = Fc (z + T dz/dt),
 /// T = sigma_1 / sigma_0 of LuGre [s], 0 to 0.02 s: right after a reversal the friction is ahead of its state.

@@ -6,9 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// Viscous friction that grows faster than the rate: Fq |v|^a sign(v), a > 1 (1.5 to 3), amplitude Fq [N m | N] at 1 rad/s or 1 m/s,
-/// Fq > 0. Churning losses of oil and turbulent films; on the plate see `aerodynamic_drag`.
-/// Source: Niemann, Winter, Maschinenelemente 2, 2003, load-independent losses.
+/// Viscous friction that grows faster than the rate: Fq |v|^a sign(v), a > 1 (1.5 to 3), amplitude Fq [N m | N] at 1
+/// rad/s or 1 m/s, Fq > 0. Churning losses of oil and turbulent films; on the plate see `aerodynamic_drag`. Source:
+/// Niemann, Winter, Maschinenelemente 2, 2003, load-independent losses.
 struct ConvexViscous : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -7,10 +7,11 @@
 
 namespace deltadyn::effects {
 
-/// First-order lag of the recorded current or torque: T d(y)/dt + y = tau, amplitude and time constant T > 0 [s] (0.2 ms to 10 ms); y is
-/// recorded (recorded = 0). To second order the torque differs by -T d(tau)/dt + T^2 d2(tau)/dt2: a lag in phase and a droop in size.
-/// A log of the commanded torque (recorded = 1) is the other way round: the motor's torque lags, the record leads it by T d(tau)/dt.
-/// Valid for a current loop below its bandwidth. Source: Schroeder, Elektrische Antriebe 2, 2015 (equivalent time constant).
+/// First-order lag of the recorded current or torque: T d(y)/dt + y = tau, amplitude and time constant T > 0 [s] (0.2
+/// ms to 10 ms); y is recorded (recorded = 0). To second order the torque differs by -T d(tau)/dt + T^2 d2(tau)/dt2: a
+/// lag in phase and a droop in size. A log of the commanded torque (recorded = 1) is the other way round: the motor's
+/// torque lags, the record leads it by T d(tau)/dt. Valid for a current loop below its bandwidth. Source: Schroeder,
+/// Elektrische Antriebe 2, 2015 (equivalent time constant).
 struct CurrentLag : RecordedChange {
   static constexpr int kStage = 2;
 

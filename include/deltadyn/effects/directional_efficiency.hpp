@@ -6,9 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// Loss of a gear whose efficiency differs between driving (the motor feeds power, tau_load v > 0) and back-driving. Two columns:
-/// |tau_load| sign(v) where the gear drives, and where it is driven. Amplitudes [1], both > 0: 1/eta_d - 1 when driving, 1 - eta_b when
-/// back-driving; equal amplitudes are `load_dependent_friction`, with tau_load as there.
+/// Loss of a gear whose efficiency differs between driving (the motor feeds power, tau_load v > 0) and back-driving.
+/// Two columns: |tau_load| sign(v) where the gear drives, and where it is driven. Amplitudes [1], both > 0: 1/eta_d - 1
+/// when driving, 1 - eta_b when back-driving; equal amplitudes are `load_dependent_friction`, with tau_load as there.
 /// Valid without play. Source: Wang, Yang, et al., worm and screw drives; Giberti, Cinquemani, Legnani 2010.
 struct DirectionalEfficiency : JointLaw {
   static constexpr double kSameLoss = 0.5;  ///< smaller over larger loss of a gear from which both count as one

@@ -4,9 +4,10 @@
 
 namespace deltadyn::effects {
 
-/// Hose or cable on the plate: a force f0 + K r that depends on the plate's place r only, with stiffnesses along the base's axes.
-/// Amplitudes: f0 [N] of either sign, the force at the origin of the base; K [N/m] > 0; along x, y, z each. f0 along z is borne as a
-/// change of the plate's mass would be. Valid for slack loops that hang softly; no damping, no hysteresis.
+/// Hose or cable on the plate: a force f0 + K r that depends on the plate's place r only, with stiffnesses along the
+/// base's axes. Amplitudes: f0 [N] of either sign, the force at the origin of the base; K [N/m] > 0; along x, y, z
+/// each. f0 along z is borne as a change of the plate's mass would be. Valid for slack loops that hang softly; no
+/// damping, no hysteresis.
 struct HoseForce : PlateForce {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -8,9 +8,10 @@ namespace deltadyn::effects {
 
 /// Hysteresis of flexsplines, cables and belts (Bouc 1967, Wen 1976): state z in [-1, 1],
 ///   dz/dt = (v - (|v| |z|^(n-1) z + v |z|^n) / 2) / D,   torque A z, A > 0 [N m | N].
-/// So z falls or rises by the way over D until it is 0, and runs by dz = (1 - |z|^n) dx / D to its end from there. Shape: displacement
-/// D > 0 [rad | m], over which the loop closes, 0.02 to 1 rad, wider than presliding; exponent n >= 1, how sharp the knee is (n = 1 is
-/// Dahl's law). Valid for loops that do not depend on the rate. Source: Ismail, Ikhouane, Rodellar, Arch. Comput. Methods Eng. 16, 2009.
+/// So z falls or rises by the way over D until it is 0, and runs by dz = (1 - |z|^n) dx / D to its end from there.
+/// Shape: displacement D > 0 [rad | m], over which the loop closes, 0.02 to 1 rad, wider than presliding; exponent n >=
+/// 1, how sharp the knee is (n = 1 is Dahl's law). Valid for loops that do not depend on the rate. Source: Ismail,
+/// Ikhouane, Rodellar, Arch. Comput. Methods Eng. 16, 2009.
 struct Hysteresis : JointMemory {
   static constexpr EffectTraits traits() {
     EffectTraits t;

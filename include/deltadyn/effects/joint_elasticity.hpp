@@ -6,12 +6,12 @@
 
 namespace deltadyn::effects {
 
-/// A spring of stiffness k between motor and arm. To first order in 1/k (Spong, J. Dyn. Sys. Meas. Control 109, 1987, expands in it) the
-/// motor leads the arm by tau/k, tau being the torque that passes the spring. With the encoder on the arm (encoder = 0) the motor's
-/// inertia alone feels it: the drive's torque grows by J_motor/k d2(tau)/dt2, amplitude J_motor/k [s^2]. With the encoder on the motor
-/// (encoder = 1) the arm lags behind what is measured, and all drives feel it: the torques of the rigid model fall by its derivative
-/// along that lag, amplitude J_arm/k [s^2]. motor_share: the motor's share of the drive's inertia, between 0 and 1.
-/// Valid well below the resonance sqrt(k/J).
+/// A spring of stiffness k between motor and arm. To first order in 1/k (Spong, J. Dyn. Sys. Meas. Control 109, 1987,
+/// expands in it) the motor leads the arm by tau/k, tau being the torque that passes the spring. With the encoder on
+/// the arm (encoder = 0) the motor's inertia alone feels it: the drive's torque grows by J_motor/k d2(tau)/dt2,
+/// amplitude J_motor/k [s^2]. With the encoder on the motor (encoder = 1) the arm lags behind what is measured, and all
+/// drives feel it: the torques of the rigid model fall by its derivative along that lag, amplitude J_arm/k [s^2].
+/// motor_share: the motor's share of the drive's inertia, between 0 and 1. Valid well below the resonance sqrt(k/J).
 struct JointElasticity : ElasticJoint {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -1,9 +1,10 @@
 #pragma once
 
 /// \file
-/// The kinds of effects, each with what its law is given and what it must offer. An effect is a struct that derives from its kind and
-/// has `static constexpr EffectTraits traits()`. Fits, the virtual robot, controllers and exporters work on the kinds; effects/all.hpp
-/// lists the effects. The law gives torque or force PER UNIT OF EACH AMPLITUDE, so that a fit is linear in the amplitudes.
+/// The kinds of effects, each with what its law is given and what it must offer. An effect is a struct that derives
+/// from its kind and has `static constexpr EffectTraits traits()`. Fits, the virtual robot, controllers and exporters
+/// work on the kinds; effects/all.hpp lists the effects. The law gives torque or force PER UNIT OF EACH AMPLITUDE, so
+/// that a fit is linear in the amplitudes.
 
 #include <array>
 #include <type_traits>
@@ -17,8 +18,8 @@ namespace deltadyn {
 template <class T>
 using Shape = std::array<T, kMostShapes>;
 
-/// What the law of a joint may depend on. `sign` is that of the rate as its user sees it: sharp in a fit, the sense of sliding in a
-/// simulation (also at rate 0), smooth in a controller.
+/// What the law of a joint may depend on. `sign` is that of the rate as its user sees it: sharp in a fit, the sense of
+/// sliding in a simulation (also at rate 0), smooth in a controller.
 template <class T>
 struct JointInput {
   T position = T(0), rate = T(0), acceleration = T(0);  ///< [rad | m] and per s, s^2
@@ -30,31 +31,34 @@ struct JointInput {
 };
 
 /// A law of a joint (`drive`, `arm`, `limb`, `telescope`, `passive_joints`):
-///   template <class T> static std::array<T, N> columns(const JointInput<T>&, const Shape<T>&)   N amplitudes; [N m | N] per unit.
+///   template <class T> static std::array<T, N> columns(const JointInput<T>&, const Shape<T>&)   N amplitudes; [N m |
+///   N] per unit.
 /// A law of the load is homogeneous in it: columns(c load) = c columns(load) for c > 0.
 struct JointLaw {};
 
 /// A law of a joint with one number of memory, a function of the way:
-///   T start(sign, shape)                    state of a joint that has slid long in the direction `sign` (0: at rest, unloaded)
-///   T moved(state, step, input, shape)      after a further `step` [rad | m]: two steps the same way are as good as their sum
-///   std::array<T, N> columns(state, input, shape)
+///   T start(sign, shape)                    state of a joint that has slid long in the direction `sign` (0: at rest,
+///   unloaded) T moved(state, step, input, shape)      after a further `step` [rad | m]: two steps the same way are as
+///   good as their sum std::array<T, N> columns(state, input, shape)
 struct JointMemory {};
 
 /// State of the plate.
 template <class T>
 struct PlateInput {
-  Vector3<T> position = Vector3<T>::Zero(), velocity = Vector3<T>::Zero(), acceleration = Vector3<T>::Zero();  ///< in W [m, s]
-  Vector3<T> gravity = Vector3<T>::Zero();                                                                     ///< in W [m/s^2]
+  /// In W [m, s]
+  Vector3<T> position = Vector3<T>::Zero(), velocity = Vector3<T>::Zero(), acceleration = Vector3<T>::Zero();
+  Vector3<T> gravity = Vector3<T>::Zero();  ///< in W [m/s^2]
 };
 
 /// A force that the robot has to bear at the plate:
-///   template <class T> static std::array<Vector3<T>, N> columns(const PlateInput<T>&, const Shape<T>&)   in W [N] per unit.
+///   template <class T> static std::array<Vector3<T>, N> columns(const PlateInput<T>&, const Shape<T>&)   in W [N] per
+///   unit.
 struct PlateForce {};
 
 /// A change of the recorded torque (`drive`, `drive_or_robot`):
 ///   template <class V> static V record(const V& torque, double dt, double amplitude, const Shape<double>&)
-/// what the log shows of evenly sampled torque that acted. An effect may have expected(), of the same form, for what a fit takes in
-/// place of that. `kStage` orders them as a drive spoils its signal, smallest first.
+/// what the log shows of evenly sampled torque that acted. An effect may have expected(), of the same form, for what a
+/// fit takes in place of that. `kStage` orders them as a drive spoils its signal, smallest first.
 struct RecordedChange {};
 
 /// What an elastic drive's columns are computed from, at one sample.
@@ -74,13 +78,15 @@ struct ElasticInput {
 struct ElasticJoint {};
 
 /// A change of the machine that a fit sees by differences:
-///   template <class Machine> static void change(Machine&, int joint, const std::array<double, 6>& amplitude, const Shape<double>&)
-/// with a Machine as below; kStep is the amplitude that makes a difference, small beside any real one and large beside rounding.
-/// Effects of the other kinds may have change(), too: then the virtual robot is built with it, and uses no law.
+///   template <class Machine> static void change(Machine&, int joint, const std::array<double, 6>& amplitude, const
+///   Shape<double>&)
+/// with a Machine as below; kStep is the amplitude that makes a difference, small beside any real one and large beside
+/// rounding. Effects of the other kinds may have change(), too: then the virtual robot is built with it, and uses no
+/// law.
 ///
-/// Machine: void tilt(x, y) [rad], void shift_home(drive, d) [rad | m], void lengthen_arm(limb, d), void lengthen_strut(limb, d) [m],
-/// void add_to_arm(limb, moment, inertia) [kg m, kg m^2], void add_rotor(drive, inertia) [kg m^2 | kg], void add_to_plate(mass) [kg],
-/// void soften(drive, SpringInDrive).
+/// Machine: void tilt(x, y) [rad], void shift_home(drive, d) [rad | m], void lengthen_arm(limb, d), void
+/// lengthen_strut(limb, d) [m], void add_to_arm(limb, moment, inertia) [kg m, kg m^2], void add_rotor(drive, inertia)
+/// [kg m^2 | kg], void add_to_plate(mass) [kg], void soften(drive, SpringInDrive).
 struct MachineChange {};
 
 /// A spring between a drive's motor and what it moves.

@@ -5,8 +5,9 @@
 namespace deltadyn::effects {
 
 /// A geometry parameter kappa that is not what the robot file says: the torque changes by d(Y p)/d(kappa) per unit.
-/// Shape `kind`: 0 the home position of a drive (q + delta in place of q [rad | m]), 1 an arm's length (of a carriage its home, too),
-/// 2 a strut's length [m]. Amplitude of either sign: below 0.05 rad, 1 % of a length. Valid to first order.
+/// Shape `kind`: 0 the home position of a drive (q + delta in place of q [rad | m]), 1 an arm's length (of a carriage
+/// its home, too), 2 a strut's length [m]. Amplitude of either sign: below 0.05 rad, 1 % of a length. Valid to first
+/// order.
 struct KinematicOffset : MachineChange {
   static constexpr double kStep = 1e-4;  ///< [rad | m]
 
@@ -25,7 +26,8 @@ struct KinematicOffset : MachineChange {
   }
 
   template <class Machine>
-  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& error, const Shape<double>& shape) {
+  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& error,
+                     const Shape<double>& shape) {
     if (shape[0] < 0.5) {
       machine.shift_home(joint, error[0]);
     } else if (shape[0] < 1.5) {

@@ -6,9 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// One limb differs from the others: its upper arm has another first moment along the arm and another inertia about the drive axis
-/// (a cable, a gripper valve, a repair). The two columns of a revolute drive for arm parameters (mcx, Iyy), with gravity (gx, gz)
-/// outwards and upwards in the limb's frame:
+/// One limb differs from the others: its upper arm has another first moment along the arm and another inertia about the
+/// drive axis (a cable, a gripper valve, a repair). The two columns of a revolute drive for arm parameters (mcx, Iyy),
+/// with gravity (gx, gz) outwards and upwards in the limb's frame:
 ///   d(mcx) (gx sin q + gz cos q)  and  d(Iyy) qdd,   amplitudes [kg m] and [kg m^2] of either sign.
 /// Valid as long as the struts stay alike.
 struct LimbInertiaMismatch : JointLaw {
@@ -34,7 +34,8 @@ struct LimbInertiaMismatch : JointLaw {
     return {T(in.gravity_x * sin(in.position) + in.gravity_z * cos(in.position)), in.acceleration};
   }
   template <class Machine>
-  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& more, const Shape<double>&) {
+  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& more,
+                     const Shape<double>&) {
     machine.add_to_arm(joint, more[0], more[1]);
   }
 };

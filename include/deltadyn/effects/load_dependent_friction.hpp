@@ -6,9 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// Friction in proportion to the transmitted load: mu |tau_load| sign(v), amplitude mu [1], mu > 0; tau_load is what the gear passes on,
-/// the rigid model's torque without the drive's own friction [N m | N]. Valid for gears and bearings under load while they slide.
-/// Source: Hamon, Gautier, Garrec, IROS 2010.
+/// Friction in proportion to the transmitted load: mu |tau_load| sign(v), amplitude mu [1], mu > 0; tau_load is what
+/// the gear passes on, the rigid model's torque without the drive's own friction [N m | N]. Valid for gears and
+/// bearings under load while they slide. Source: Hamon, Gautier, Garrec, IROS 2010.
 struct LoadDependentFriction : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

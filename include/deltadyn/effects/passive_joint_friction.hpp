@@ -4,9 +4,10 @@
 
 namespace deltadyn::effects {
 
-/// Coulomb friction of the ball and universal joints, the same in each: power mu sum |w| over the joints' two angles each, so that the
-/// drives bear mu sum sign(w) dw/dqd. Amplitude mu [N m] > 0. Valid for preload that does not change with the pose.
-/// Source: paper II.A (balls as two revolute joints), Coulomb's law in each; kinematics/passive_joints.hpp counts them.
+/// Coulomb friction of the ball and universal joints, the same in each: power mu sum |w| over the joints' two angles
+/// each, so that the drives bear mu sum sign(w) dw/dqd. Amplitude mu [N m] > 0. Valid for preload that does not change
+/// with the pose. Source: paper II.A (balls as two revolute joints), Coulomb's law in each;
+/// kinematics/passive_joints.hpp counts them.
 struct PassiveJointFriction : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

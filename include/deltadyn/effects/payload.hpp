@@ -4,8 +4,9 @@
 
 namespace deltadyn::effects {
 
-/// A mass dm on the plate that only some logs have: force dm (a - g) on the plate, torque J^T of it per unit mass; amplitude dm [kg] > 0
-/// in the log of the shape's number. Two logs can only tell it from the plate's own mass if one of them is without.
+/// A mass dm on the plate that only some logs have: force dm (a - g) on the plate, torque J^T of it per unit mass;
+/// amplitude dm [kg] > 0 in the log of the shape's number. Two logs can only tell it from the plate's own mass if one
+/// of them is without.
 struct Payload : PlateForce {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -5,10 +5,10 @@
 
 namespace deltadyn::effects {
 
-/// Coulomb friction that varies over a turn: (a cos(n q) + b sin(n q)) sign(v) beside Fc sign(v), by eccentric wheels and uneven preload.
-/// Amplitudes a, b [N m | N] of either sign, together below Fc; n > 0 [1/rad | 1/m], mostly a small integer: friction varies over a
-/// turn, not over a tooth, and once a turn shows as part of a wave. Flips with the direction, which `torque_ripple` does not.
-/// Source: Armstrong-Helouvry, Control of Machines with Friction, 1991.
+/// Coulomb friction that varies over a turn: (a cos(n q) + b sin(n q)) sign(v) beside Fc sign(v), by eccentric wheels
+/// and uneven preload. Amplitudes a, b [N m | N] of either sign, together below Fc; n > 0 [1/rad | 1/m], mostly a small
+/// integer: friction varies over a turn, not over a tooth, and once a turn shows as part of a wave. Flips with the
+/// direction, which `torque_ripple` does not. Source: Armstrong-Helouvry, Control of Machines with Friction, 1991.
 struct PositionDependentFriction : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -5,9 +5,9 @@
 
 namespace deltadyn::effects {
 
-/// Presliding friction: after a reversal the friction builds up over a displacement instead of jumping. For a joint that has a Coulomb
-/// column already the effect is Fc (z + T dz/dt - sign v), amplitude Fc > 0 [N m | N]; state z and damping T as bristle.hpp has them.
-/// Shape: displacement x_s > 0 [rad | m], damping T >= 0 [s].
+/// Presliding friction: after a reversal the friction builds up over a displacement instead of jumping. For a joint
+/// that has a Coulomb column already the effect is Fc (z + T dz/dt - sign v), amplitude Fc > 0 [N m | N]; state z and
+/// damping T as bristle.hpp has them. Shape: displacement x_s > 0 [rad | m], damping T >= 0 [s].
 struct Presliding : JointMemory {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -4,8 +4,9 @@
 
 namespace deltadyn::effects {
 
-/// Inertia of rotor and gear of one drive beside what the model has: torque dI qdd, amplitude dI [kg m^2 | kg] of either sign, as seen at
-/// the output. Leaves out the gyroscopic torque of a rotor whose axis moves; the drives of a Delta stand on the base, so there is none.
+/// Inertia of rotor and gear of one drive beside what the model has: torque dI qdd, amplitude dI [kg m^2 | kg] of
+/// either sign, as seen at the output. Leaves out the gyroscopic torque of a rotor whose axis moves; the drives of a
+/// Delta stand on the base, so there is none.
 struct RotorInertia : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;
@@ -25,7 +26,8 @@ struct RotorInertia : JointLaw {
     return {in.acceleration};
   }
   template <class Machine>
-  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& inertia, const Shape<double>&) {
+  static void change(Machine& machine, int joint, const std::array<double, kMostAmplitudes>& inertia,
+                     const Shape<double>&) {
     machine.add_rotor(joint, inertia[0]);
   }
 };

@@ -6,10 +6,10 @@
 
 namespace deltadyn::effects {
 
-/// Torque that the motor does not reach at its peaks: what lies above `level` comes out reduced by the share A, 0 < A <= 1
-/// (1: cut off, below 1: magnetic saturation softens it). A < 0 where the log holds the command, which then exceeds the motor's torque.
-/// level > 0 [N m | N], 50 % to 95 % of the largest torque: far below the peaks it would be a matter of gain or load. Tells itself from a
-/// gain error by leaving the small torques alone.
+/// Torque that the motor does not reach at its peaks: what lies above `level` comes out reduced by the share A, 0 < A
+/// <= 1 (1: cut off, below 1: magnetic saturation softens it). A < 0 where the log holds the command, which then
+/// exceeds the motor's torque. level > 0 [N m | N], 50 % to 95 % of the largest torque: far below the peaks it would be
+/// a matter of gain or load. Tells itself from a gain error by leaving the small torques alone.
 struct Saturation : RecordedChange {
   static constexpr int kStage = 0;
 

@@ -6,10 +6,11 @@
 
 namespace deltadyn::effects {
 
-/// Stribeck effect: dF exp(-|v/vs|^delta) sign(v), amplitude dF [N m | N], dF > 0: more friction at low speed than Coulomb's law says.
-/// Shape: Stribeck rate vs > 0, where the lubricant begins to carry [rad/s | m/s], 0.5 % to 50 % of the largest rate; exponent delta,
-/// 1 (Tustin), 2 (Gauss), 0.5 (Armstrong-Helouvry). Valid for a joint that slides; at rest and just after a reversal `presliding`
-/// rules. Source: Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994, section 2.
+/// Stribeck effect: dF exp(-|v/vs|^delta) sign(v), amplitude dF [N m | N], dF > 0: more friction at low speed than
+/// Coulomb's law says. Shape: Stribeck rate vs > 0, where the lubricant begins to carry [rad/s | m/s], 0.5 % to 50 % of
+/// the largest rate; exponent delta, 1 (Tustin), 2 (Gauss), 0.5 (Armstrong-Helouvry). Valid for a joint that slides; at
+/// rest and just after a reversal `presliding` rules. Source: Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica
+/// 30(7), 1994, section 2.
 struct Stribeck : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -4,9 +4,10 @@
 
 namespace deltadyn::effects {
 
-/// Friction of the telescope bar's guide under side load: mu |n| sign(l_d), borne by the drives through the Jacobian of the bar's length.
-/// The side load per unit mass n is what the bar's plate-end needs across the bar: (a - g) without its part along the bar.
-/// Amplitude: mu times the mass that the guide carries across [kg] > 0. Valid for a bar that is stiff beside its guide.
+/// Friction of the telescope bar's guide under side load: mu |n| sign(l_d), borne by the drives through the Jacobian of
+/// the bar's length. The side load per unit mass n is what the bar's plate-end needs across the bar: (a - g) without
+/// its part along the bar. Amplitude: mu times the mass that the guide carries across [kg] > 0. Valid for a bar that is
+/// stiff beside its guide.
 struct TelescopeSideLoad : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -4,8 +4,8 @@
 
 namespace deltadyn::effects {
 
-/// Stribeck effect of the telescope bar's prismatic joint: `stribeck` of the bar's rate, borne by the drives through the Jacobian of
-/// its length. Amplitude dF [N] > 0, shape rate [m/s] and exponent.
+/// Stribeck effect of the telescope bar's prismatic joint: `stribeck` of the bar's rate, borne by the drives through
+/// the Jacobian of its length. Amplitude dF [N] > 0, shape rate [m/s] and exponent.
 struct TelescopeStribeck : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -6,9 +6,9 @@
 
 namespace deltadyn::effects {
 
-/// Viscous friction that falls while the grease warms up: d (1 + b exp(-t/T)) v beside d v. Column: v exp(-t/T), amplitude d b
-/// [N m s/rad | N s/m], > 0 for a cold start; T > 0 [s], seconds to minutes, t since the start of the log.
-/// Valid for one thermal time constant. Source: Simoni et al., Robotica 33, 2015 (friction and temperature).
+/// Viscous friction that falls while the grease warms up: d (1 + b exp(-t/T)) v beside d v. Column: v exp(-t/T),
+/// amplitude d b [N m s/rad | N s/m], > 0 for a cold start; T > 0 [s], seconds to minutes, t since the start of the
+/// log. Valid for one thermal time constant. Source: Simoni et al., Robotica 33, 2015 (friction and temperature).
 struct ThermalDrift : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

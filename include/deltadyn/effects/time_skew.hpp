@@ -6,8 +6,8 @@
 
 namespace deltadyn::effects {
 
-/// Torque stamped late by delta beside the positions: tau(t - delta) in place of tau(t), amplitude delta [s] of either sign, a few
-/// sample times. Dead time keeps the size of every frequency, which `current_lag` does not.
+/// Torque stamped late by delta beside the positions: tau(t - delta) in place of tau(t), amplitude delta [s] of either
+/// sign, a few sample times. Dead time keeps the size of every frequency, which `current_lag` does not.
 struct TimeSkew : RecordedChange {
   static constexpr int kStage = 3;
 

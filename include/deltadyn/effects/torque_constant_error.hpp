@@ -4,8 +4,8 @@
 
 namespace deltadyn::effects {
 
-/// A wrong torque constant of one drive: the torque that the log states is (1 + eps) times the true one; amplitude eps [1] of either
-/// sign, |eps| < 0.5. The same error on all drives scales every parameter and cannot be seen.
+/// A wrong torque constant of one drive: the torque that the log states is (1 + eps) times the true one; amplitude eps
+/// [1] of either sign, |eps| < 0.5. The same error on all drives scales every parameter and cannot be seen.
 struct TorqueConstantError : RecordedChange {
   static constexpr int kStage = 1;
 

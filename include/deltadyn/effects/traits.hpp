@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What is known of a physical effect apart from its law: the words and numbers that every effect states of itself, as constants.
-/// Files, flags, reports and the diagnosis read them; none of them knows an effect by name.
+/// What is known of a physical effect apart from its law: the words and numbers that every effect states of itself, as
+/// constants. Files, flags, reports and the diagnosis read them; none of them knows an effect by name.
 
 #include <cstddef>
 #include <initializer_list>
@@ -85,10 +85,12 @@ struct ShapeTraits {
   int count = 0;         ///< of the start values of one sign
   bool positive = false;
   ShapeSearch search;
-  double otherwise = std::numeric_limits<double>::quiet_NaN();  ///< what holds where files and flags do not say; NaN: they must
+  /// What holds where files and flags do not say; NaN: they must
+  double otherwise = std::numeric_limits<double>::quiet_NaN();
 
   constexpr ShapeTraits() = default;
-  constexpr ShapeTraits(std::string_view its_name, std::string_view its_unit, ShapeScale its_scale = ShapeScale::absolute)
+  constexpr ShapeTraits(std::string_view its_name, std::string_view its_unit,
+                        ShapeScale its_scale = ShapeScale::absolute)
       : name(its_name), unit(its_unit), scale(its_scale) {
     if (scale == ShapeScale::choice || scale == ShapeScale::logs) search.kind = ShapeSearch::fixed;
   }
@@ -132,7 +134,8 @@ struct AmplitudeTraits {
   std::string_view name;
   std::string_view unit;     ///< as in ShapeTraits
   Sign sign = Sign::either;  ///< positive: physics fixes it
-  double largest = 1e300;    ///< largest size that makes sense; of a force: no larger than the joint's torque in the logs, too
+  /// Largest size that makes sense; of a force: no larger than the joint's torque in the logs, too
+  double largest = 1e300;
 
   [[nodiscard]] constexpr bool positive() const { return sign == Sign::positive; }
 };
@@ -158,12 +161,13 @@ struct Few {
 constexpr std::size_t kMostAmplitudes = 6;
 constexpr std::size_t kMostShapes = 3;
 
-/// How far the effect's law is from what machines do; no residual tells. The shares are about twice what hidden effects leave that were
-/// made in other forms than the law's, by a simulation and by an independent plant.
+/// How far the effect's law is from what machines do; no residual tells. The shares are about twice what hidden effects
+/// leave that were made in other forms than the law's, by a simulation and by an independent plant.
 struct FormShare {
-  double amplitude = 0.03;  ///< standard deviation of an amplitude, of its size: the column is not quite what the machine does
-  double own = 0.05;        ///< of the effect's gain, left at its place for effects that depend on the same ...
-  double other = 0.02;      ///< ... and for all others
+  /// Standard deviation of an amplitude, of its size: the column is not quite what the machine does
+  double amplitude = 0.03;
+  double own = 0.05;    ///< of the effect's gain, left at its place for effects that depend on the same ...
+  double other = 0.02;  ///< ... and for all others
 };
 
 /// Parameter of the model that is the effect, in models that have it.

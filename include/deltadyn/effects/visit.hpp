@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// From an effect's number to its type: one call that finds the type in the list and hands it to a function. No heap, no virtual calls.
+/// From an effect's number to its type: one call that finds the type in the list and hands it to a function. No heap,
+/// no virtual calls.
 
 #include <cstddef>
 #include <string_view>
@@ -40,10 +41,9 @@ constexpr bool visit_in(EffectList<Effects...>, [[maybe_unused]] EffectId id, [[
 
 }  // namespace detail
 
-/// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E = decltype(effect); ... }`.
-/// A program that visits a list of some of the effects holds no code of the others.
-/// \tparam List  an EffectList
-/// \return false if the effect is not in the list
+/// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E =
+/// decltype(effect); ... }`. A program that visits a list of some of the effects holds no code of the others. \tparam
+/// List  an EffectList \return false if the effect is not in the list
 template <class List, class Function>
 constexpr bool visit_effect_in(EffectId id, Function function) {
   return detail::visit_in(List(), id, function);
@@ -59,9 +59,9 @@ constexpr void visit_effect(EffectId id, Function function) {
 template <class Effect, class Machine, class = void>
 struct HasChange : std::false_type {};
 template <class Effect, class Machine>
-struct HasChange<
-    Effect, Machine,
-    std::void_t<decltype(Effect::change(std::declval<Machine&>(), 0, std::declval<const std::array<double, kMostAmplitudes>&>(),
-                                        std::declval<const Shape<double>&>()))>> : std::true_type {};
+struct HasChange<Effect, Machine,
+                 std::void_t<decltype(Effect::change(std::declval<Machine&>(), 0,
+                                                     std::declval<const std::array<double, kMostAmplitudes>&>(),
+                                                     std::declval<const Shape<double>&>()))>> : std::true_type {};
 
 }  // namespace deltadyn

@@ -8,7 +8,8 @@
 
 namespace deltadyn {
 
-/// M is the information matrix p x p a sample, in columns scaled to a root mean square of one over the admissible states.
+/// M is the information matrix p x p a sample, in columns scaled to a root mean square of one over the admissible
+/// states.
 enum class Criterion {
   log_det,        ///< log det M: the volume of the confidence ellipsoid (D)
   det,            ///< (det M)^(1/p), the determinant of the paper in a scale that does not overflow
@@ -21,8 +22,8 @@ enum class Criterion {
 [[nodiscard]] Criterion criterion_of(const std::string& word);
 [[nodiscard]] const char* word_of(Criterion criterion);
 
-/// Value to be made large, and its gradient by M (symmetric). The eigenvalue criteria are smooth where the extreme eigenvalues
-/// are simple.
+/// Value to be made large, and its gradient by M (symmetric). The eigenvalue criteria are smooth where the extreme
+/// eigenvalues are simple.
 struct CriterionValue {
   bool regular = false;  ///< false: M is singular, nothing else is set
   double value = 0;

@@ -66,16 +66,18 @@ struct Excitation {
   [[nodiscard]] std::string full_report() const;
 };
 
-/// Throws deltadyn::Error: usage or bad_input for limits and options that cannot be met, no_convergence if no feasible motion was
-/// found in time; it names the limit that is violated at rest in the pose with the most room.
-[[nodiscard]] Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& limits, const DesignBound& bound,
-                                             const ExcitationOptions& options);
+/// Throws deltadyn::Error: usage or bad_input for limits and options that cannot be met, no_convergence if no feasible
+/// motion was found in time; it names the limit that is violated at rest in the pose with the most room.
+[[nodiscard]] Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& limits,
+                                             const DesignBound& bound, const ExcitationOptions& options);
 
-/// A random Fourier motion that keeps all limits: what a start begins with. Amplitudes are as large as the limits let them be.
+/// A random Fourier motion that keeps all limits: what a start begins with. Amplitudes are as large as the limits let
+/// them be.
 [[nodiscard]] FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimits& limits,
                                                    const ExcitationOptions& options, std::uint64_t seed);
 
 /// Information of one period a sample, scaled columns, true Coulomb signs.
-[[nodiscard]] Eigen::MatrixXd series_information(const DesignSpace& space, const FourierSeries& series, int samples = 2000);
+[[nodiscard]] Eigen::MatrixXd series_information(const DesignSpace& space, const FourierSeries& series,
+                                                 int samples = 2000);
 
 }  // namespace deltadyn

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The regressor of paper (2) as a function of the task-space state (z, zd, zdd), with exact derivatives: what the gradient of
-/// every criterion over a trajectory is made of.
+/// The regressor of paper (2) as a function of the task-space state (z, zd, zdd), with exact derivatives: what the
+/// gradient of every criterion over a trajectory is made of.
 
 #include <Eigen/Core>
 #include <memory>
@@ -11,10 +11,11 @@
 
 namespace deltadyn {
 
-/// State x = (z, zd, zdd): 3 N numbers for N drives. Drive motion (q, qd, qdd): 3 N numbers. Immutable, safe for threads.
+/// State x = (z, zd, zdd): 3 N numbers for N drives. Drive motion (q, qd, qdd): 3 N numbers. Immutable, safe for
+/// threads.
 ///
-/// Coulomb columns: with a sign width w > 0 the sign of a joint rate v becomes v / sqrt(v^2 + w^2), so that sums over the
-/// samples of a period are smooth in the coefficients; w = 0 is the sign itself, whose derivative counts as zero.
+/// Coulomb columns: with a sign width w > 0 the sign of a joint rate v becomes v / sqrt(v^2 + w^2), so that sums over
+/// the samples of a period are smooth in the coefficients; w = 0 is the sign itself, whose derivative counts as zero.
 class TaskRegressor {
  public:
   virtual ~TaskRegressor() = default;
@@ -28,8 +29,8 @@ class TaskRegressor {
   /// \param Y            N x parameters
   /// \param drives       3 N: q, qd, qdd
   [[nodiscard]] virtual Status evaluate(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                        const Eigen::Ref<const Eigen::VectorXd>& sign_width, Eigen::Ref<Eigen::MatrixXd> Y,
-                                        Eigen::Ref<Eigen::VectorXd> drives) const = 0;
+                                        const Eigen::Ref<const Eigen::VectorXd>& sign_width,
+                                        Eigen::Ref<Eigen::MatrixXd> Y, Eigen::Ref<Eigen::VectorXd> drives) const = 0;
 
   /// Gradient of sum_ij G_ij Y_ij(x) by x, and the Jacobian of the drive motion.
   /// \param G          N x parameters
@@ -37,7 +38,8 @@ class TaskRegressor {
   /// \param jacobian   3 N x 3 N: d(q, qd, qdd) / dx
   [[nodiscard]] virtual Status differentiate(const Eigen::Ref<const Eigen::VectorXd>& x,
                                              const Eigen::Ref<const Eigen::VectorXd>& sign_width,
-                                             const Eigen::Ref<const Eigen::MatrixXd>& G, Eigen::Ref<Eigen::VectorXd> gradient,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& G,
+                                             Eigen::Ref<Eigen::VectorXd> gradient,
                                              Eigen::Ref<Eigen::MatrixXd> jacobian) const = 0;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The Machine of effects/kinds.hpp without heap: a geometry and the encoders' zeros, with the changes that effects make of them.
+/// The Machine of effects/kinds.hpp without heap: a geometry and the encoders' zeros, with the changes that effects
+/// make of them.
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/effects/kinds.hpp"
@@ -9,8 +10,8 @@
 
 namespace deltadyn {
 
-/// What a controller can take of a change: gravity, lengths and zeros. Of inertias it takes none, because the effects that change
-/// them have laws; of springs none, because they ask for derivatives of the acceleration.
+/// What a controller can take of a change: gravity, lengths and zeros. Of inertias it takes none, because the effects
+/// that change them have laws; of springs none, because they ask for derivatives of the acceleration.
 template <class T, class Robot>
 struct ChangedGeometry {
   Geometry<T, Robot> geometry;

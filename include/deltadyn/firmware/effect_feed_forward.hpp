@@ -9,10 +9,10 @@
 
 namespace deltadyn {
 
-/// Model-based feed-forward of one robot with up to kCapacity effects: drive torques of the wanted motion, with no heap, no exceptions
-/// and a bounded time. Keep one object for the life of the controller: laws with memory follow its set points one after the other.
-/// \tparam T     float or double
-/// \tparam List  EffectList of the effects that may be added; a program holds no code of the others
+/// Model-based feed-forward of one robot with up to kCapacity effects: drive torques of the wanted motion, with no
+/// heap, no exceptions and a bounded time. Keep one object for the life of the controller: laws with memory follow its
+/// set points one after the other. \tparam T     float or double \tparam List  EffectList of the effects that may be
+/// added; a program holds no code of the others
 template <class T, class Robot, Limbs kSharing, int kCapacity, class List = AllEffects>
 class EffectFeedForward {
  public:
@@ -38,18 +38,19 @@ class EffectFeedForward {
 
   [[nodiscard]] int effects() const { return effects_.count(); }
 
-  /// Width of a reversal: Coulomb's friction and all laws that turn with the sign of a rate take rate / sqrt(rate^2 + width^2) for it,
-  /// so that a set point which stops takes no jump of the torque. 0, the value at first: the sign itself.
-  /// \param joint  drive from 0, kTelescopeJoint or kPassiveJoints
-  /// \param width  at least 0 [rad/s | m/s]
+  /// Width of a reversal: Coulomb's friction and all laws that turn with the sign of a rate take rate / sqrt(rate^2 +
+  /// width^2) for it, so that a set point which stops takes no jump of the torque. 0, the value at first: the sign
+  /// itself. \param joint  drive from 0, kTelescopeJoint or kPassiveJoints \param width  at least 0 [rad/s | m/s]
   /// \return out_of_range for another joint or width; then all stays as it was
   Status set_reversal_width(int joint, const T& width) {
-    if (joint < 0 || joint > kPassiveJoints || !(width >= T(0)) || !(width - width == T(0))) return Status::out_of_range;
+    if (joint < 0 || joint > kPassiveJoints || !(width >= T(0)) || !(width - width == T(0)))
+      return Status::out_of_range;
     width_(joint) = width;
     return Status::ok;
   }
 
-  /// Seconds since start, for the laws that depend on it; 0 at first. \return out_of_range if not finite: the last one stays
+  /// Seconds since start, for the laws that depend on it; 0 at first. \return out_of_range if not finite: the last one
+  /// stays
   Status set_time(const T& seconds) {
     if (!(seconds - seconds == T(0))) return Status::out_of_range;
     time_ = seconds;
@@ -61,8 +62,8 @@ class EffectFeedForward {
     return p_.set_payload(mass, position, inertia);
   }
 
-  /// As LiveParameters::set_friction. Bristles of the joint, which are its Coulomb friction near a reversal, follow in proportion; all
-  /// other effects stay as they are.
+  /// As LiveParameters::set_friction. Bristles of the joint, which are its Coulomb friction near a reversal, follow in
+  /// proportion; all other effects stay as they are.
   Status set_friction(int joint, const T& viscous, const T& coulomb) {
     const Status status = p_.set_friction(joint, viscous, coulomb);
     if (status != Status::ok) return status;
@@ -71,16 +72,18 @@ class EffectFeedForward {
     return status;
   }
 
-  /// Starts the memories anew, as of drives that have slid long with the rates qd (a drive at rest remembers nothing). Without this call
-  /// they start so at the first set point. \return out_of_range if a number is not finite; then all stays as it was
+  /// Starts the memories anew, as of drives that have slid long with the rates qd (a drive at rest remembers nothing).
+  /// Without this call they start so at the first set point. \return out_of_range if a number is not finite; then all
+  /// stays as it was
   Status reset(const Drives& q, const Drives& qd) {
     if (!q.allFinite() || !qd.allFinite()) return Status::out_of_range;
     memory_ = effects_.start(q, qd);
     return Status::ok;
   }
 
-  /// Torques [N m | N] for a task-space set point (z, zd, zdd), and the drive set point that belongs to it, as the encoders have it.
-  /// On any status but ok, q, qd, tau and the memories keep their values, so that a loop may go on with the last good ones.
+  /// Torques [N m | N] for a task-space set point (z, zd, zdd), and the drive set point that belongs to it, as the
+  /// encoders have it. On any status but ok, q, qd, tau and the memories keep their values, so that a loop may go on
+  /// with the last good ones.
   Status from_task(const Drives& z, const Drives& zd, const Drives& zdd, Drives& q, Drives& qd, Drives& tau) {
     Motion<T, Robot> motion;
     Status status = motion_from_task(machine_.geometry, z, zd, zdd, motion);
@@ -93,7 +96,8 @@ class EffectFeedForward {
     return status;
   }
 
-  /// Torques for a drive set point (q, qd, qdd), q as the encoders have it. On any status but ok, tau and the memories stay.
+  /// Torques for a drive set point (q, qd, qdd), q as the encoders have it. On any status but ok, tau and the memories
+  /// stay.
   Status from_drives(const Drives& q, const Drives& qd, const Drives& qdd, Drives& tau) {
     Motion<T, Robot> motion;
     const Drives actual = q + machine_.home_offset;

@@ -80,7 +80,8 @@ EffectRefusal refusal_of(const Shape<double>& shape) {
     Effect::change(seeker, 0, unit, shape);
     if (seeker.spring) return EffectRefusal::spring;
   }
-  if constexpr (kIs<Effect, JointMemory> && !detail::is_on_drive(Effect::traits().place)) return EffectRefusal::memory_elsewhere;
+  if constexpr (kIs<Effect, JointMemory> && !detail::is_on_drive(Effect::traits().place))
+    return EffectRefusal::memory_elsewhere;
   return EffectRefusal::none;
 }
 
@@ -97,7 +98,8 @@ constexpr bool has_place(EffectPlace place, int joint) {
   const bool on_drive = joint >= 0 && joint < Robot::kDrives;
   switch (place) {
     case EffectPlace::drive: return on_drive;
-    case EffectPlace::arm: return on_drive && joint < Robot::kLimbs && kHasPlate<Robot> && Robot::kDrive == DriveKind::revolute;
+    case EffectPlace::arm:
+      return on_drive && joint < Robot::kLimbs && kHasPlate<Robot> && Robot::kDrive == DriveKind::revolute;
     case EffectPlace::limb: return on_drive && joint < Robot::kLimbs && kHasPlate<Robot>;
     case EffectPlace::limb_or_all: return joint == -1 || (on_drive && (joint < Robot::kLimbs || !kHasPlate<Robot>));
     case EffectPlace::drive_or_robot: return on_drive || joint == -1;

@@ -24,13 +24,14 @@ struct EffectRow {
 /// One set point as effects see it.
 template <class T, class Robot>
 struct EffectScene {
-  static constexpr int kPassive = Robot::kDrives + 1;  ///< place of the passive joints in `width`, behind drives and telescope
+  /// Place of the passive joints in `width`, behind drives and telescope
+  static constexpr int kPassive = Robot::kDrives + 1;
   using Drives = Vector<T, Robot::kDrives>;
 
   const Motion<T, Robot>& motion;  ///< of the machine as it is
   const Vector3<T>& gravity;
-  const Drives& q;                       ///< as the encoders have it [rad | m]
-  const Drives& load;                    ///< rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
+  const Drives& q;     ///< as the encoders have it [rad | m]
+  const Drives& load;  ///< rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
   const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, telescope, passive joints [rad/s | m/s]
   T time;                                ///< [s]
 
@@ -108,8 +109,9 @@ class EffectSet {
   void add_torque(const EffectScene<T, Robot>& scene, Memory& memory, Drives& tau) const {
     if (!memory.started) memory = start(scene.q, scene.motion.qd);
     for (int k = 0; k < count_; ++k) {
-      visit_effect_in<List>(
-          terms_[k].id, [&](auto effect) { add_torque_of<decltype(effect)>(terms_[k], scene, memory.q, memory.state[k], tau); });
+      visit_effect_in<List>(terms_[k].id, [&](auto effect) {
+        add_torque_of<decltype(effect)>(terms_[k], scene, memory.q, memory.state[k], tau);
+      });
     }
     memory.q = scene.q;
   }
@@ -182,7 +184,8 @@ class EffectSet {
   }
 
   template <class E>
-  static void add_torque_of(const Term& term, const EffectScene<T, Robot>& scene, const Drives& q_before, T& state, Drives& tau) {
+  static void add_torque_of(const Term& term, const EffectScene<T, Robot>& scene, const Drives& q_before, T& state,
+                            Drives& tau) {
     constexpr EffectPlace place = E::traits().place;
     if constexpr (kIs<E, JointMemory> && detail::is_on_drive(place)) {
       const JointInput<T> in = scene.at_drive(term.joint);
@@ -194,7 +197,8 @@ class EffectSet {
       const int first = term.joint >= 0 ? term.joint : 0, end = term.joint >= 0 ? term.joint + 1 : kAlike;
       for (int j = first; j < end; ++j) tau(j) += sum<E>(E::columns(scene.at_drive(j), term.shape), term);
     } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::telescope && Robot::kTelescope) {
-      tau += sum<E>(E::columns(scene.at_telescope(), term.shape), term) * scene.motion.posture.telescope.J_length.transpose();
+      tau += sum<E>(E::columns(scene.at_telescope(), term.shape), term) *
+             scene.motion.posture.telescope.J_length.transpose();
     } else if constexpr (kIs<E, JointLaw> && place == EffectPlace::passive_joints) {
       for_each_passive_joint(scene.motion, [&](int index, const PassiveJoint<T, Robot>& joint) {
         JointInput<T> in = scene.at_rate(joint.rate, EffectScene<T, Robot>::kPassive);

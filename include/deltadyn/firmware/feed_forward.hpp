@@ -8,9 +8,8 @@
 
 namespace deltadyn {
 
-/// Model-based feed-forward of one robot; firmware/effect_feed_forward.hpp is the one with more friction laws and other effects.
-/// Keep one object for the life of the controller.
-/// \tparam T float or double
+/// Model-based feed-forward of one robot; firmware/effect_feed_forward.hpp is the one with more friction laws and other
+/// effects. Keep one object for the life of the controller. \tparam T float or double
 template <class T, class Robot, Limbs kSharing = Limbs::shared>
 class FeedForward {
  public:
@@ -25,7 +24,9 @@ class FeedForward {
     return p_.set_payload(mass, position, inertia);
   }
   /// As LiveParameters::set_friction.
-  Status set_friction(int joint, const T& viscous, const T& coulomb) { return p_.set_friction(joint, viscous, coulomb); }
+  Status set_friction(int joint, const T& viscous, const T& coulomb) {
+    return p_.set_friction(joint, viscous, coulomb);
+  }
 
   /// Torques [N m | N] for a task-space set point (z, zd, zdd), and the drive set point that belongs to it.
   /// On any status but ok, q, qd and tau keep their values, so that a loop may go on with the last good ones.

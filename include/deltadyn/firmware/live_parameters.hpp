@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Parameters of which a controller changes some while it works: what the robot carries, and the friction of its joints.
+/// Parameters of which a controller changes some while it works: what the robot carries, and the friction of its
+/// joints.
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/core/status.hpp"
@@ -19,7 +20,8 @@ template <class T>
   const Matrix3<T> S = skew(position);
   const Matrix3<T> I = inertia - mass * S.lazyProduct(S);
   InertialVector<T> p;
-  p << mass, mass * position.x(), mass * position.y(), mass * position.z(), I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(1, 2), I(0, 2);
+  p << mass, mass * position.x(), mass * position.y(), mass * position.z(), I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(1, 2),
+      I(0, 2);
   return p;
 }
 
@@ -33,8 +35,8 @@ class LiveParameters {
 
   [[nodiscard]] const Parameters& operator()() const { return p_; }
 
-  /// What the tool carries beside the model's own bodies: it takes the place of what was set before, and mass 0 sets it down. The
-  /// frame is that of the tool, of the plate where there is no tool, and of the moving part of an axis.
+  /// What the tool carries beside the model's own bodies: it takes the place of what was set before, and mass 0 sets it
+  /// down. The frame is that of the tool, of the plate where there is no tool, and of the moving part of an axis.
   /// \param mass      at least 0 [kg]
   /// \param position  of the payload's centre of mass [m]
   /// \param inertia   about its centre of mass, along the frame's axes [kg m^2]
@@ -60,7 +62,8 @@ class LiveParameters {
   }
 
  private:
-  static constexpr Body kCarrierBody = Robot::kTelescope ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
+  static constexpr Body kCarrierBody =
+      Robot::kTelescope ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
   static constexpr int kCarrier = kInertialParameters * Layout::body(kCarrierBody, 0);
 
   Parameters p_;

@@ -10,8 +10,9 @@ namespace deltadyn {
 
 /// Noise of one drive as the fit sees it.
 struct DriveNoise {
-  double std = 1;          ///< of the torque residual [N m | N]
-  double correlation = 1;  ///< variance of a mean over the rows in units of that of white noise; above 1: fewer independent rows
+  double std = 1;  ///< of the torque residual [N m | N]
+  /// Variance of a mean over the rows in units of that of white noise; above 1: fewer independent rows
+  double correlation = 1;
 };
 
 /// Least-squares estimate of beta in tau = Y_B beta.

@@ -15,7 +15,8 @@ namespace deltadyn {
 struct BaseParameterOptions {
   int states = 400;  ///< random task-space states; drives x states must be well above the number of columns
   std::uint64_t seed = 1;
-  double tolerance = 1e-9;  ///< a diagonal entry of R below tolerance x the largest counts as zero (columns have norm 1)
+  /// A diagonal entry of R below tolerance x the largest counts as zero (columns have norm 1)
+  double tolerance = 1e-9;
 };
 
 /// beta = B p, with B the identity on the independent columns. Y p = Y_B beta for every state.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Effects of the catalogue as regressor columns over a log: the formulas of effects/ at every sample, then the same low pass and
-/// decimation as torque and regressor.
+/// Effects of the catalogue as regressor columns over a log: the formulas of effects/ at every sample, then the same
+/// low pass and decimation as torque and regressor.
 
 #include <Eigen/Core>
 #include <memory>
@@ -33,7 +33,8 @@ struct EffectSignals {
   Eigen::MatrixXd bar;                               ///< N x 3
   Eigen::MatrixXd passive_rate;                      ///< N x m, of the different passive joints
   Eigen::MatrixXd J_passive;                         ///< N x m n: d rate 1 / d qd, d rate 2 / d qd, ...
-  std::vector<Eigen::MatrixXd> changed;  ///< N x n each: torque per unit of each MachineDifference; empty if not asked for
+  /// N x n each: torque per unit of each MachineDifference; empty if not asked for
+  std::vector<Eigen::MatrixXd> changed;
   double sample_time_s = 0;
 };
 
@@ -70,8 +71,8 @@ class EffectModel {
 
   /// \param p                 parameters in the robot's layout, for the effects that need the model's torque
   /// \param with_differences  of changed machines, too (these need the model some twenty times a sample)
-  /// \param near              of nearly the same motion (encoder noise apart): spares the derivatives along the lags of elastic joints
-  /// Throws deltadyn::Error for poses that the robot cannot have.
+  /// \param near              of nearly the same motion (encoder noise apart): spares the derivatives along the lags of
+  /// elastic joints Throws deltadyn::Error for poses that the robot cannot have.
   [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_differences = true,
                                       const EffectSignals* near = nullptr) const;
 
@@ -104,8 +105,9 @@ class EffectModel {
 [[nodiscard]] Eigen::MatrixXd low_passed_rows(const PreparedLog& log, const Eigen::Ref<const Eigen::MatrixXd>& values);
 
 /// All columns of all effects in the rows of a log, with their fixed shapes: for each drive rows x (sum of amplitudes).
-[[nodiscard]] std::vector<Eigen::MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& log, const Eigen::VectorXd& p,
-                                                       const std::vector<Effect>& effects, int log_number);
+[[nodiscard]] std::vector<Eigen::MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& log,
+                                                       const Eigen::VectorXd& p, const std::vector<Effect>& effects,
+                                                       int log_number);
 
 /// Number of amplitudes of all effects together.
 [[nodiscard]] Eigen::Index amplitude_count(const std::vector<Effect>& effects);

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// A small delay between torque and position beside friction that builds up after reversals. The gate before the fit knows Coulomb's law
-/// only and must not take the one for the other; once bristles and ripples are known, a fraction of a sample shows. Left in, it is
-/// friction that is some per cent off.
+/// A small delay between torque and position beside friction that builds up after reversals. The gate before the fit
+/// knows Coulomb's law only and must not take the one for the other; once bristles and ripples are known, a fraction of
+/// a sample shows. Left in, it is friction that is some per cent off.
 
 #include <vector>
 
@@ -18,11 +18,10 @@ struct FineDelay {
   bool certain = false;  ///< beyond chance, alike in all drives, and of a log that the model explains but for noise
 };
 
-/// Delay, displacement and damping of every bristle and all base parameters together, by Gauss and Newton. Nothing is looked for where
-/// `processing` holds no presliding: there the gate has spoken.
-/// \param processing  as of the fit, with presliding and ripples
-/// \param known       parameters of a finished model: then nothing but the delay is free; null: everything is
-/// Throws deltadyn::Error as prepare_log does.
+/// Delay, displacement and damping of every bristle and all base parameters together, by Gauss and Newton. Nothing is
+/// looked for where `processing` holds no presliding: there the gate has spoken. \param processing  as of the fit, with
+/// presliding and ripples \param known       parameters of a finished model: then nothing but the delay is free; null:
+/// everything is Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] FineDelay find_fine_delay(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                         const ProcessingOptions& processing, const Eigen::VectorXd* known = nullptr);
 

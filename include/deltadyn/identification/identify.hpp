@@ -28,7 +28,8 @@ enum class Reversals {
 
 struct IdentificationOptions {
   ProcessingOptions processing;  ///< cutoff_hz counts only if choose_cutoff is false
-  bool choose_cutoff = true;     ///< from the band in which the motion stands out of the encoders' noise and the model holds
+  /// From the band in which the motion stands out of the encoders' noise and the model holds
+  bool choose_cutoff = true;
   Reversals reversals = Reversals::automatic;
   bool robust = false;  ///< Huber weights: single rows that stand out count less
   /// Waves of the torque over the position become part of the model; only where reversals are automatic.

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// The gate before the fit: are these logs what they seem to be? Delay between torque and position, signs, order, units and zeros of
-/// the drives, the scale of the torque, given derivatives. One hypothesis a kind of fault, judged together on a small part of the logs;
-/// what is certain and harmless is mended.
+/// The gate before the fit: are these logs what they seem to be? Delay between torque and position, signs, order, units
+/// and zeros of the drives, the scale of the torque, given derivatives. One hypothesis a kind of fault, judged together
+/// on a small part of the logs; what is certain and harmless is mended.
 
 #include <Eigen/Core>
 #include <string>
@@ -26,8 +26,8 @@ struct GateResult {
   std::vector<LogFinding> findings;  ///< of the gate alone; Log::findings holds those of the reader
   /// A finding of level fault.
   [[nodiscard]] bool fault() const;
-  /// A fault that makes a fit senseless (signs, order, units), other than one that only scales its result, poses out of reach,
-  /// which the fit refuses with their line, and torque without an explanation, which a diagnosis may find.
+  /// A fault that makes a fit senseless (signs, order, units), other than one that only scales its result, poses out of
+  /// reach, which the fit refuses with their line, and torque without an explanation, which a diagnosis may find.
   [[nodiscard]] bool stop() const;
 };
 

@@ -3,8 +3,8 @@
 /// \file
 /// From a recorded log to rows of the regression tau = Y p: filtering, derivatives, masks, decimation.
 ///
-/// Positions are filtered without phase lag at `cutoff_hz` and differentiated. Regressor and torque then pass one and the same
-/// linear-phase low pass and are decimated together, so that the filter does not bias the parameters.
+/// Positions are filtered without phase lag at `cutoff_hz` and differentiated. Regressor and torque then pass one and
+/// the same linear-phase low pass and are decimated together, so that the filter does not bias the parameters.
 
 #include <Eigen/Core>
 #include <memory>
@@ -29,16 +29,16 @@ enum class Periods {
 struct ProcessingOptions {
   bool filter = true;     ///< false: torque, q, qd, qdd of the log as they are (then qd and qdd are required)
   double cutoff_hz = 50;  ///< of rows: pass band that motion and torque share
-  /// -3 dB point of the positions' filter (two passes together) in units of cutoff_hz. Wider than the rows' low pass, so that what
-  /// the filter bends of the motion lies beyond it; the noise that it lets through does, too.
+  /// -3 dB point of the positions' filter (two passes together) in units of cutoff_hz. Wider than the rows' low pass,
+  /// so that what the filter bends of the motion lies beyond it; the noise that it lets through does, too.
   double motion_over_pass = 2;
   double torque_cutoff_ratio = 1.25;  ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
   Periods periods = Periods::detect;  ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
   double period_s = 0;                ///< used if periods is `given`
   double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
   double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
-  /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after a reversal
-  /// [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
+  /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after
+  /// a reversal [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
@@ -63,9 +63,11 @@ struct PreparedLog {
   std::vector<long> line;          ///< of each sample in the file; empty if unknown
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
       reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> rest;  ///< N x drives: a joint whose friction this drive feels stands still
-  /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for a joint
-  /// without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied by it.
+  /// N x drives: a joint whose friction this drive feels stands still
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> rest;
+  /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for
+  /// a joint without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied
+  /// by it.
   Eigen::MatrixXd coulomb_share;
   Eigen::MatrixXd ripple;    ///< N x drives: torque of ProcessingOptions::ripples; empty: none
   std::vector<char> filled;  ///< marks of Log::filled; empty: all measured
@@ -74,8 +76,8 @@ struct PreparedLog {
 };
 
 /// Filters, differentiates and masks one log.
-/// Throws deltadyn::Error with file and line for poses out of reach, singular poses, logs too short for the cut-off, and missing
-/// derivatives when filter is off.
+/// Throws deltadyn::Error with file and line for poses out of reach, singular poses, logs too short for the cut-off,
+/// and missing derivatives when filter is off.
 [[nodiscard]] PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options);
 
 /// Do samples [first, first + count) hold one that must not enter a row of this drive (Log::filled, Log::torque_out)?
@@ -91,15 +93,16 @@ enum class RowUse : char {
 /// Consecutive rows of a prepared log.
 struct RowBlock {
   Eigen::Index first_row = 0;
-  std::vector<Eigen::MatrixXd> Y;                            ///< for each drive: rows x parameters
-  Eigen::MatrixXd tau;                                       ///< rows x drives, filtered as Y, without the torque of ripples
-  Eigen::MatrixXd ripple;                                    ///< rows x drives: that torque; empty: none
+  std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x parameters
+  Eigen::MatrixXd tau;             ///< rows x drives, filtered as Y, without the torque of ripples
+  Eigen::MatrixXd ripple;          ///< rows x drives: that torque; empty: none
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };
 
-/// Computes rows [first_row, first_row + count). Blocks are independent of each other: call from several threads at will.
+/// Computes rows [first_row, first_row + count). Blocks are independent of each other: call from several threads at
+/// will.
 void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);
 
 /// Sample of a row in the log.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Least squares of which some unknowns may not become negative, from the Gram matrix (Lawson, Hanson, Solving Least Squares Problems,
-/// 1974, chapter 23).
+/// Least squares of which some unknowns may not become negative, from the Gram matrix (Lawson, Hanson, Solving Least
+/// Squares Problems, 1974, chapter 23).
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,12 +15,10 @@ struct NonNegativeSolution {
   double gain = 0;         ///< fall of the sum of squares from that of x = 0
 };
 
-/// Minimises |C x - r|^2 over x with x_i >= 0 where `positive`. Columns whose square in `gram` is not above 0 take no part. Where columns
-/// depend on each other, the solution of least norm in columns of norm 1 is taken.
-/// \param gram      k x k, C^T C
-/// \param inner     k, C^T r
-/// \param positive  k
-/// \param singular  a direction of the columns of norm 1 that is weaker than this share of the strongest is rounding
+/// Minimises |C x - r|^2 over x with x_i >= 0 where `positive`. Columns whose square in `gram` is not above 0 take no
+/// part. Where columns depend on each other, the solution of least norm in columns of norm 1 is taken. \param gram k x
+/// k, C^T C \param inner     k, C^T r \param positive  k \param singular  a direction of the columns of norm 1 that is
+/// weaker than this share of the strongest is rounding
 [[nodiscard]] NonNegativeSolution non_negative_least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner,
                                                              const std::vector<bool>& positive, double singular = 1e-8);
 

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// How friction builds up after a reversal: displacement and damping of each joint's bristles, found from the rows near reversals. With
-/// them these rows take part in the fit instead of being left out (effects/bristle.hpp holds the law and its source).
+/// How friction builds up after a reversal: displacement and damping of each joint's bristles, found from the rows near
+/// reversals. With them these rows take part in the fit instead of being left out (effects/bristle.hpp holds the law
+/// and its source).
 
 #include <Eigen/Core>
 #include <vector>
@@ -21,13 +22,12 @@ struct PreslidingJoint {
   double damping_std_s = 0;  ///< at the displacement found
 };
 
-/// One value a joint with friction: drives, then the telescope. The first pass rests on rows away from reversals, the next ones on
-/// all rows; amplitudes and base parameters are fitted along.
-/// \param processing  with the cut-off of the fit; its presliding is not used
-/// Throws deltadyn::Error as prepare_log and estimate_base_parameters do.
+/// One value a joint with friction: drives, then the telescope. The first pass rests on rows away from reversals, the
+/// next ones on all rows; amplitudes and base parameters are fitted along. \param processing  with the cut-off of the
+/// fit; its presliding is not used Throws deltadyn::Error as prepare_log and estimate_base_parameters do.
 [[nodiscard]] std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParameters& base,
-                                                           const std::vector<Log>& logs, const ProcessingOptions& processing,
-                                                           int threads = 0);
+                                                           const std::vector<Log>& logs,
+                                                           const ProcessingOptions& processing, int threads = 0);
 
 /// The displacements alone, as ProcessingOptions::presliding takes them.
 [[nodiscard]] Eigen::VectorXd displacements(const std::vector<PreslidingJoint>& joints);

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Ripple of a drive's torque over its position (cogging, tooth meshing) as part of a model (effects/wave.hpp holds the law).
+/// Ripple of a drive's torque over its position (cogging, tooth meshing) as part of a model (effects/wave.hpp holds the
+/// law).
 
 #include <vector>
 

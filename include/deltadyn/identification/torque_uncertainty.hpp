@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// How well the torque is known that an identified model gives: the uncertainty of the base parameters carried to the drives.
-/// It says what the relative standard deviations of single parameters cannot: a poorly seen one matters only where it acts.
+/// How well the torque is known that an identified model gives: the uncertainty of the base parameters carried to the
+/// drives. It says what the relative standard deviations of single parameters cannot: a poorly seen one matters only
+/// where it acts.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -38,11 +39,12 @@ struct TorqueUncertainty {
 
 /// On random fast motions over the workspace (WorkspaceSampler), also where the logs did not go.
 [[nodiscard]] TorqueUncertainty torque_uncertainty_in_workspace(const Robot& robot, const BaseParameters& base,
-                                                                const Eigen::MatrixXd& covariance, const Eigen::VectorXd& p,
-                                                                int states = 1000, std::uint64_t seed = 1);
+                                                                const Eigen::MatrixXd& covariance,
+                                                                const Eigen::VectorXd& p, int states = 1000,
+                                                                std::uint64_t seed = 1);
 
-/// How much each parameter does: the rms torque that its value makes on random fast motions over the workspace, as a share of the
-/// drive's rms torque, largest over the drives. One value a parameter.
+/// How much each parameter does: the rms torque that its value makes on random fast motions over the workspace, as a
+/// share of the drive's rms torque, largest over the drives. One value a parameter.
 [[nodiscard]] Eigen::VectorXd parameter_effect(const Robot& robot, const Eigen::VectorXd& p, int states = 1000,
                                                std::uint64_t seed = 1);
 

@@ -29,7 +29,8 @@ struct ValidatedDrive {
   double rms_with_reversals = 0;  ///< rows near reversals included
   double torque_noise = 0;        ///< rms over the logs, weighted by their rows
   Eigen::Index rows = 0, reversal_rows = 0;
-  bool bristles = false;  ///< the model holds how its friction builds up: rows near reversals count where they are predicted
+  /// The model holds how its friction builds up: rows near reversals count where they are predicted
+  bool bristles = false;
 };
 
 struct Validation {
@@ -41,8 +42,8 @@ struct Validation {
 /// Figures of each drive over the given logs.
 [[nodiscard]] std::vector<ValidatedDrive> drive_figures(const std::vector<ValidatedLog>& logs, std::size_t drives);
 
-/// Predicts every log with parameters p. Rows near reversals count as others for drives with presliding if the model predicts them
-/// as it does the others. Throws deltadyn::Error as prepare_log does.
+/// Predicts every log with parameters p. Rows near reversals count as others for drives with presliding if the model
+/// predicts them as it does the others. Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] Validation validate(const Robot& robot, const std::vector<Log>& logs, const Eigen::VectorXd& p,
                                   const ProcessingOptions& processing, int threads = 0);
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A model as its files hold it (parameters, rows of bristles and ripples, effects) against logs: what delta-validate shows, and what
-/// delta-diagnose proves.
+/// A model as its files hold it (parameters, rows of bristles and ripples, effects) against logs: what delta-validate
+/// shows, and what delta-diagnose proves.
 
 #include <optional>
 #include <vector>
@@ -20,7 +20,8 @@ struct WrittenModel {
   std::vector<Ripple> ripples;
 };
 
-/// Does an effect say how torque and positions stand apart in time? Then a delay in a log is the model's to explain and must stay.
+/// Does an effect say how torque and positions stand apart in time? Then a delay in a log is the model's to explain and
+/// must stay.
 [[nodiscard]] bool holds_timing(const std::vector<Effect>& effects);
 
 struct WrittenValidation {

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Which column of a recording is which quantity of which drive, in which unit: read from a TOML file, guessed, written.
+/// Which column of a recording is which quantity of which drive, in which unit: read from a TOML file, guessed,
+/// written.
 
 #include <optional>
 #include <string>
@@ -12,24 +13,25 @@
 
 namespace deltadyn {
 
-/// One channel. In SI units and on the drive's side it is sign * (scale * recorded + offset) [unit], brought to SI with the
-/// constants below and through the gear: positions and their rates divided by gear_ratio, torques multiplied.
+/// One channel. In SI units and on the drive's side it is sign * (scale * recorded + offset) [unit], brought to SI with
+/// the constants below and through the gear: positions and their rates divided by gear_ratio, torques multiplied.
 struct ChannelMap {
   int drive = 0;  ///< from 1
   Quantity quantity = Quantity::position;
   std::string source = {};  ///< name of the column
   std::string unit = {};    ///< as log_unit() knows it; empty: the one the recording states
   double scale = 1.0;
-  double offset = 0.0;                         ///< [unit]
-  double sign = 1.0;                           ///< 1 or -1
-  std::optional<double> gear_ratio = {};       ///< turns of the motor for one of the drive; where the recording is of the motor
+  double offset = 0.0;  ///< [unit]
+  double sign = 1.0;    ///< 1 or -1
+  /// Turns of the motor for one of the drive; where the recording is of the motor
+  std::optional<double> gear_ratio = {};
   std::optional<double> torque_constant = {};  ///< [N m/A], of a prismatic drive without lead [N/A]
   std::optional<double> rated_torque = {};     ///< [N m], of a prismatic drive without lead [N]
   std::optional<double> counts_per_turn = {};  ///< of the encoder
-  std::optional<double> lead = {};             ///< of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
-  std::optional<double> wrap = {};             ///< the recorded number begins again after this much (65536, 360, ...)
-  double delay_s = 0.0;                        ///< the recorded value is this much older than its time stamp
-  long line = 0;                               ///< in the map file, for messages
+  std::optional<double> lead = {};  ///< of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
+  std::optional<double> wrap = {};  ///< the recorded number begins again after this much (65536, 360, ...)
+  double delay_s = 0.0;             ///< the recorded value is this much older than its time stamp
+  long line = 0;                    ///< in the map file, for messages
 };
 
 struct ColumnMap {
@@ -66,7 +68,8 @@ struct MapDefaults {
 ///     quantity = "position"
 ///     source = "Axis 1 [deg]"
 /// with the further keys of ChannelMap (rated_torque_Nm, torque_constant_Nm_A, lead_m_turn, delay_s, ...).
-/// Throws Error(bad_input) with file and line: no TOML, an unknown key, a drive that the robot does not have, one named twice.
+/// Throws Error(bad_input) with file and line: no TOML, an unknown key, a drive that the robot does not have, one named
+/// twice.
 [[nodiscard]] ColumnMap read_column_map(const std::string& path, const RobotDescription& robot);
 
 /// One channel as lines of a map file.
@@ -74,8 +77,8 @@ struct MapDefaults {
 /// The whole map; `remarks` become comments at its top.
 [[nodiscard]] std::string to_toml(const ColumnMap& map, const std::vector<std::string>& remarks);
 
-/// Factor from [unit] to SI at the drive. Throws Error(bad_input) that names the constant that is missing, or the unit that does not fit
-/// the drive. \param where  for messages
+/// Factor from [unit] to SI at the drive. Throws Error(bad_input) that names the constant that is missing, or the unit
+/// that does not fit the drive. \param where  for messages
 [[nodiscard]] double si_factor(const ChannelMap& channel, DriveKind kind, const std::string& where);
 
 }  // namespace deltadyn

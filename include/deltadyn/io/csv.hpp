@@ -18,8 +18,8 @@ class CsvTable;
 /// Reads a CSV file row by row in constant memory.
 class CsvReader {
  public:
-  /// Opens the file and reads the header. Throws Error(bad_input): missing, unreadable, empty or binary file, empty or repeated
-  /// column name.
+  /// Opens the file and reads the header. Throws Error(bad_input): missing, unreadable, empty or binary file, empty or
+  /// repeated column name.
   explicit CsvReader(const std::string& path);
   ~CsvReader();
   CsvReader(const CsvReader&) = delete;
@@ -29,10 +29,12 @@ class CsvReader {
   [[nodiscard]] const std::vector<std::string>& columns() const;
   /// Index of a column, if there is one of this name.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view column) const;
-  /// What follows `key` in the first comment above the header that begins with it: of "# version 2" with the key "version" it is "2".
+  /// What follows `key` in the first comment above the header that begins with it: of "# version 2" with the key
+  /// "version" it is "2".
   [[nodiscard]] std::optional<std::string> comment(std::string_view key) const;
 
-  /// Moves to the next data row; false at the end. Throws Error(bad_input) if the row has not as many fields as the header.
+  /// Moves to the next data row; false at the end. Throws Error(bad_input) if the row has not as many fields as the
+  /// header.
   bool next_row();
   /// Line of the current row in the file, the first line is 1.
   [[nodiscard]] long line() const;

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// Rows of a parameter file that are no columns of the regressor: damping of bristles and ripple of the torque over the position.
-/// `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [waves/turn | waves/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
+/// Rows of a parameter file that are no columns of the regressor: damping of bristles and ripple of the torque over the
+/// position. `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [waves/turn | waves/m] with
+/// `drive1.ripple1.cosine` and `.sine` [N m | N].
 
 #include <Eigen/Core>
 #include <string>
@@ -20,9 +21,11 @@ namespace deltadyn {
 [[nodiscard]] std::string presliding_damping_name(const RobotDescription& robot, int joint);
 
 /// The ripples of all drives.
-/// Throws Error(bad_input) for a drive that the robot does not have, for waves that are not above 0, and for a missing row of the three.
+/// Throws Error(bad_input) for a drive that the robot does not have, for waves that are not above 0, and for a missing
+/// row of the three.
 [[nodiscard]] std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescription& robot);
 /// Their rows.
-[[nodiscard]] std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples, const RobotDescription& robot);
+[[nodiscard]] std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples,
+                                                      const RobotDescription& robot);
 
 }  // namespace deltadyn

@@ -38,7 +38,8 @@ struct LogUnit {
 /// Seconds in a unit of time, "s", "ms", "us", "ns", "min", "filetime" (100 ns).
 [[nodiscard]] std::optional<double> time_unit_s(std::string_view text);
 
-/// A column's name without its unit, and the unit: "q1 [rad]", "Torque (Nm)", "q1_rad_s", "t / s". Unit empty if there is none.
+/// A column's name without its unit, and the unit: "q1 [rad]", "Torque (Nm)", "q1_rad_s", "t / s". Unit empty if there
+/// is none.
 struct NameAndUnit {
   std::string stem, unit;
 };

@@ -14,9 +14,9 @@ namespace deltadyn {
 
 /// A text or binary file under construction.
 ///
-/// The bytes go to a temporary file in the folder of the result; commit() makes sure that every byte reached the disk and then
-/// renames, so a reader sees the old file or the whole new one. Without commit() the destructor removes the temporary file.
-/// A path that is not a regular file (a pipe, a terminal, /dev/null) is written to directly.
+/// The bytes go to a temporary file in the folder of the result; commit() makes sure that every byte reached the disk
+/// and then renames, so a reader sees the old file or the whole new one. Without commit() the destructor removes the
+/// temporary file. A path that is not a regular file (a pipe, a terminal, /dev/null) is written to directly.
 class OutputFile {
  public:
   /// Throws Error(bad_input) if the folder does not exist or is not writable.
@@ -56,7 +56,8 @@ void write_file(const std::string& path, std::string_view bytes);
 void write_table(const std::string& path, const std::string& header, const Eigen::VectorXd& t_s,
                  const std::vector<const Eigen::MatrixXd*>& blocks);
 
-/// Throws Error(usage) if `output` is the same file as one of `inputs`, also through links or other spellings of the path.
+/// Throws Error(usage) if `output` is the same file as one of `inputs`, also through links or other spellings of the
+/// path.
 void refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);
 
 }  // namespace deltadyn

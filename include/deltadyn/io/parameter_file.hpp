@@ -27,27 +27,27 @@ struct ParameterEntry {
 inline constexpr const char* kEffectsNotWritten = "not written";
 
 struct ParameterTable {
-  std::string file;     ///< where it came from, for messages
-  std::string remark;   ///< one line, written as a comment above the header; not read back
-  std::string effects;  ///< effect file that the parameters were found with, from the working folder; empty: none. The comment
-                        ///< `# effects: NAME` holds it relative to the parameter file, so that both may move together
+  std::string file;    ///< where it came from, for messages
+  std::string remark;  ///< one line, written as a comment above the header; not read back
+  /// Effect file that the parameters were found with, from the working folder; empty: none. The comment
+  std::string effects;
+  ///< `# effects: NAME` holds it relative to the parameter file, so that both may move together
   std::vector<ParameterEntry> entries;
 
   /// Null if there is no such name.
   [[nodiscard]] const ParameterEntry* find(const std::string& name) const;
 };
 
-/// Throws Error(bad_input) with file, line and column: missing file, no rows, a name twice or empty, no number, a unit that
-/// does not fit the name, a negative std, a data_share outside [0, 1].
+/// Throws Error(bad_input) with file, line and column: missing file, no rows, a name twice or empty, no number, a unit
+/// that does not fit the name, a negative std, a data_share outside [0, 1].
 [[nodiscard]] ParameterTable read_parameters(const std::string& path);
 
-/// The same for a robot, in the numbers that one of its size can have: throws Error(bad_input) with the line for masses in grams,
-/// moments in kg mm^2, negative masses or friction (runtime/plausibility.hpp).
+/// The same for a robot, in the numbers that one of its size can have: throws Error(bad_input) with the line for masses
+/// in grams, moments in kg mm^2, negative masses or friction (runtime/plausibility.hpp).
 [[nodiscard]] ParameterTable read_parameters(const std::string& path, const RobotDescription& robot);
 
-/// What to tell somebody who uses the parameters without the effects that they were found with, and the flag that mends it.
-/// \param effects_given  the effect file that is given; empty: none
-/// \return empty if nothing is missing
+/// What to tell somebody who uses the parameters without the effects that they were found with, and the flag that mends
+/// it. \param effects_given  the effect file that is given; empty: none \return empty if nothing is missing
 [[nodiscard]] std::string missing_effects(const ParameterTable& table, const std::string& effects_given);
 
 /// Writes the table; the columns std, prior and data_share appear if any row has them. Numbers read back exactly.
@@ -62,18 +62,18 @@ struct ParameterMatch {
 };
 
 /// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
-/// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only plausibility was checked on reading
-/// Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs' own values where
-/// the shared one is wanted.
+/// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only plausibility was checked on
+/// reading Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs'
+/// own values where the shared one is wanted.
 [[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
                                               const std::vector<std::string>& units = {});
 
 /// The columns that a parameter file was written for: limbs of their own, the tool, rotor inertias, offsets.
 [[nodiscard]] ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot);
 
-/// Displacement over which the friction of each joint builds up after a reversal [rad | m], drives first, then the telescope; 0
-/// where the file says nothing (rows driveK.presliding, telescope.presliding).
-/// Throws Error(bad_input) for a joint that the robot does not have and for a negative displacement.
+/// Displacement over which the friction of each joint builds up after a reversal [rad | m], drives first, then the
+/// telescope; 0 where the file says nothing (rows driveK.presliding, telescope.presliding). Throws Error(bad_input) for
+/// a joint that the robot does not have and for a negative displacement.
 [[nodiscard]] Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot);
 
 /// Name of that row.

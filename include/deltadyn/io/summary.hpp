@@ -23,7 +23,9 @@ class Summary {
   }
   /// Commas and line ends in the text, which CSV without quotes cannot hold, become ';' and blanks.
   void add(const std::string& key, const std::string& value, const std::string& unit = "");
-  void add(const std::string& key, const char* value, const std::string& unit = "") { add(key, std::string(value), unit); }
+  void add(const std::string& key, const char* value, const std::string& unit = "") {
+    add(key, std::string(value), unit);
+  }
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   /// Does nothing if `path` is empty (the flag was not given). Throws Error(bad_input) if it cannot write.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Trajectories as CSV: `t_s, x_m, y_m, z_m, psi_rad`, their first and second derivatives (`xd_m_s`, `xdd_m_s2`, ...), and
-/// `q1_rad`, `qd1_rad_s`, `qdd1_rad_s2`, ... of the drives (prismatic: `q1_m`, ...).
+/// Trajectories as CSV: `t_s, x_m, y_m, z_m, psi_rad`, their first and second derivatives (`xd_m_s`, `xdd_m_s2`, ...),
+/// and `q1_rad`, `qd1_rad_s`, `qdd1_rad_s2`, ... of the drives (prismatic: `q1_m`, ...).
 
 #include <string>
 
@@ -12,11 +12,11 @@ namespace deltadyn {
 
 /// Reads a trajectory of `robot`, columns in any order, unknown ones ignored; drives also in degrees as in a log.
 ///
-/// What the file does not hold is computed: task space from the drives and the other way round; rates and accelerations that
-/// are nowhere in the file by central differences of sixth order of the positions (one-sided at the ends), which needs even
-/// sampling. Where both task space and drives are there, both are taken as they are.
-/// Throws Error(bad_input) with file, line and column: missing columns, times that do not increase, numbers that are not
-/// finite, poses the robot cannot take.
+/// What the file does not hold is computed: task space from the drives and the other way round; rates and accelerations
+/// that are nowhere in the file by central differences of sixth order of the positions (one-sided at the ends), which
+/// needs even sampling. Where both task space and drives are there, both are taken as they are. Throws Error(bad_input)
+/// with file, line and column: missing columns, times that do not increase, numbers that are not finite, poses the
+/// robot cannot take.
 [[nodiscard]] TrajectorySamples read_trajectory(const std::string& path, const Robot& robot);
 
 /// Writes all columns; numbers read back exactly.

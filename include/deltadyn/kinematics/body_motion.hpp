@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// The motion of every body in its own frame, one after the other along the limbs. Everything in dynamics/ is built on this one
-/// recursion: regressor, inverse dynamics and mass matrix on BodyMotion, Coriolis matrix, energies and reactions on BodyState.
+/// The motion of every body in its own frame, one after the other along the limbs. Everything in dynamics/ is built on
+/// this one recursion: regressor, inverse dynamics and mass matrix on BodyMotion, Coriolis matrix, energies and
+/// reactions on BodyState.
 
 #include <Eigen/Geometry>
 
@@ -33,16 +34,16 @@ struct BodyState : BodyMotion<T, N> {
   Vector3<T> p_WB;       ///< place of the origin from W [m]; of two struts that move alike, of the point between them
 };
 
-/// Calls visit(Body kind, int index, int count, const BodyMotion&) for every body: `index` is the limb or the part of the plate,
-/// `count` the number of bodies that move alike (the two struts of a limb: same orientation, elbows and attachments offset by a
-/// constant vector along the arm's axis, hence the same rates).
+/// Calls visit(Body kind, int index, int count, const BodyMotion&) for every body: `index` is the limb or the part of
+/// the plate, `count` the number of bodies that move alike (the two struts of a limb: same orientation, elbows and
+/// attachments offset by a constant vector along the arm's axis, hence the same rates).
 template <class T, class Robot, class Visitor>
 void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, Visitor&& visit);
 
 /// The same with BodyState; `rates` are jacobian_rates() of the motion, or zeros where nobody looks at Jd_v and Jd_w.
 template <class T, class Robot, class Visitor>
-void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const JacobianRates<T, Robot>& rates,
-                   Visitor&& visit);
+void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                   const JacobianRates<T, Robot>& rates, Visitor&& visit);
 
 }  // namespace deltadyn
 

@@ -40,14 +40,14 @@ void upper_arm_motion(const LimbGeometry<T>& geometry, const LimbPosture<T, Robo
 
 /// Strut: R_LS = Ry(beta) Rz(gamma), origin at the elbow.
 template <class T, int N, class BodyType>
-void strut_motion(const LimbPosture<T, N>& limb, const LimbMotion<T>& rates, int i, const Vector3<T>& gravity_L, const T& qd,
-                  const T& qdd, BodyType& body) {
+void strut_motion(const LimbPosture<T, N>& limb, const LimbMotion<T>& rates, int i, const Vector3<T>& gravity_L,
+                  const T& qd, const T& qdd, BodyType& body) {
   const Matrix3<T> R_SL = rot_z(limb.gamma).transpose() * rot_y(limb.beta).transpose();
   const T& s = limb.gamma.sin;
   const T& c = limb.gamma.cos;
   body.w << s * rates.beta_d, c * rates.beta_d, rates.gamma_d;
-  body.w_d << s * rates.beta_dd + c * rates.gamma_d * rates.beta_d, c * rates.beta_dd - s * rates.gamma_d * rates.beta_d,
-      rates.gamma_dd;
+  body.w_d << s * rates.beta_dd + c * rates.gamma_d * rates.beta_d,
+      c * rates.beta_dd - s * rates.gamma_d * rates.beta_d, rates.gamma_dd;
   body.J_w.row(0) = s * limb.J_beta;
   body.J_w.row(1) = c * limb.J_beta;
   body.J_w.row(2) = limb.J_gamma;
@@ -58,8 +58,9 @@ void strut_motion(const LimbPosture<T, N>& limb, const LimbMotion<T>& rates, int
 
 /// What strut_motion() leaves of a BodyState.
 template <class T, class Robot>
-void strut_state(const LimbGeometry<T>& geometry, const LimbPosture<T, Robot::kDrives>& limb, const LimbMotion<T>& motion,
-                 const typename JacobianRates<T, Robot>::Limb& rates, int i, const T& qd, BodyState<T, Robot::kDrives>& body) {
+void strut_state(const LimbGeometry<T>& geometry, const LimbPosture<T, Robot::kDrives>& limb,
+                 const LimbMotion<T>& motion, const typename JacobianRates<T, Robot>::Limb& rates, int i, const T& qd,
+                 BodyState<T, Robot::kDrives>& body) {
   const Matrix3<T> R_WL = rot_z(limb.azimuth);
   const Matrix3<T> R_LS = rot_y(limb.beta) * rot_z(limb.gamma);
   const T& s = limb.gamma.sin;
@@ -137,7 +138,8 @@ void tool_motion(const Vector3<T>& gravity, const Motion<T, Robot>& motion, cons
   }
 }
 
-/// Both parts of the bar: R_WT = Rz(psi) Rx(a) Ry(b); the upper part about its fixed joint, the lower one about the plate's.
+/// Both parts of the bar: R_WT = Rz(psi) Rx(a) Ry(b); the upper part about its fixed joint, the lower one about the
+/// plate's.
 template <class T, class Robot, class BodyType>
 void telescope_motion(const TelescopeGeometry<T>& geometry, const Vector3<T>& gravity, const Motion<T, Robot>& motion,
                       const JacobianRates<T, Robot>* rates, BodyType& upper, BodyType& lower) {
@@ -170,7 +172,8 @@ void telescope_motion(const TelescopeGeometry<T>& geometry, const Vector3<T>& gr
     upper.Jd_w.row(0) = cb * rates->J_a - (sb * r.b_d) * bar.J_a;
     upper.Jd_w.row(1) = rates->J_b;
     upper.Jd_w.row(2) = sb * rates->J_a + (cb * r.b_d) * bar.J_a;
-    upper.Jd_w.col(kPsi) += Vector3<T>(sb * sa * r.a_d - cb * ca * r.b_d, ca * r.a_d, -sb * ca * r.b_d - cb * sa * r.a_d);
+    upper.Jd_w.col(kPsi) +=
+        Vector3<T>(sb * sa * r.a_d - cb * ca * r.b_d, ca * r.a_d, -sb * ca * r.b_d - cb * sa * r.a_d);
     upper.R_WB = R_TW.transpose();
     upper.p_WB = geometry.p_WU;
     lower.Jd_v = R_TW * rates->J_plate.template topRows<3>();
@@ -185,8 +188,8 @@ void telescope_motion(const TelescopeGeometry<T>& geometry, const Vector3<T>& gr
 
 /// \param rates  only looked at for a BodyState
 template <class BodyType, class T, class Robot, class Visitor>
-void visit_bodies(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const JacobianRates<T, Robot>* rates,
-                  Visitor&& visit) {
+void visit_bodies(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                  const JacobianRates<T, Robot>* rates, Visitor&& visit) {
   BodyType body;
   for (int i = 0; i < Robot::kLimbs; ++i) {
     const auto& limb = motion.posture.limbs[i];
@@ -224,8 +227,8 @@ void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& m
 }
 
 template <class T, class Robot, class Visitor>
-void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion, const JacobianRates<T, Robot>& rates,
-                   Visitor&& visit) {
+void for_each_body(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
+                   const JacobianRates<T, Robot>& rates, Visitor&& visit) {
   detail::visit_bodies<BodyState<T, Robot::kDrives>>(geometry, motion, &rates, visit);
 }
 

@@ -39,7 +39,8 @@ Status lower_intersection(const Vector3<T> (&c)[3], const T (&radius)[3], Vector
 
 /// Task coordinates of the drive coordinates; an axis has z = q.
 template <class T, class Robot>
-Status forward_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q, Vector<T, Robot::kDrives>& z) {
+Status forward_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
+                          Vector<T, Robot::kDrives>& z) {
   if (!q.allFinite()) return Status::out_of_range;
   z = q;
   if constexpr (kHasPlate<Robot>) {
@@ -62,7 +63,8 @@ Status forward_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Ro
 
 /// Posture at drive coordinates q.
 template <class T, class Robot>
-Status posture_from_drives(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q, Posture<T, Robot>& posture) {
+Status posture_from_drives(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
+                           Posture<T, Robot>& posture) {
   Vector<T, Robot::kDrives> z;
   const Status status = forward_kinematics(geometry, q, z);
   return status == Status::ok ? assemble_posture(geometry, q, z, posture) : status;

@@ -10,8 +10,8 @@
 namespace deltadyn {
 
 /// Angle of a revolute drive that puts the elbow at strut length from the attachment.
-/// With d = p_DE_0 and p = p_DA in L: Ry(q) d . p = k, i.e. rho cos(q - phi) = k; elbow = +1 takes the arm turned less far down.
-/// \return unreachable if no angle does it
+/// With d = p_DE_0 and p = p_DA in L: Ry(q) d . p = k, i.e. rho cos(q - phi) = k; elbow = +1 takes the arm turned less
+/// far down. \return unreachable if no angle does it
 template <class T>
 Status revolute_drive_angle(const LimbGeometry<T>& limb, const Vector3<T>& p_DA, T& q) {
   using std::acos;
@@ -30,7 +30,8 @@ Status revolute_drive_angle(const LimbGeometry<T>& limb, const Vector3<T>& p_DA,
   return Status::ok;
 }
 
-/// Position of a prismatic drive: |p_DA - p_DE_0 - q axis| = strut; elbow = +1 takes the carriage behind the plate along the axis.
+/// Position of a prismatic drive: |p_DA - p_DE_0 - q axis| = strut; elbow = +1 takes the carriage behind the plate
+/// along the axis.
 template <class T>
 Status prismatic_drive_position(const LimbGeometry<T>& limb, const Vector3<T>& p_DA, T& q) {
   using std::sqrt;
@@ -44,15 +45,16 @@ Status prismatic_drive_position(const LimbGeometry<T>& limb, const Vector3<T>& p
 
 /// Drive coordinates of the task coordinates z = (r, theta | psi); an axis has z = q.
 template <class T, class Robot>
-Status inverse_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z, Vector<T, Robot::kDrives>& q) {
+Status inverse_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z,
+                          Vector<T, Robot::kDrives>& q) {
   if (!z.allFinite()) return Status::out_of_range;
   q = z;
   if constexpr (kHasPlate<Robot>) {
     const T theta = Robot::kPlateTurns ? z(kPlateCoordinates<Robot> - 1) : T(0);
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const LimbGeometry<T>& limb = geometry.limbs[i];
-      const Vector3<T> p_DA =
-          rot_z(SinCos<T>(limb.azimuth)).transpose() * (z.template head<3>() + attachment(geometry, i, theta).value - limb.p_WD);
+      const Vector3<T> p_DA = rot_z(SinCos<T>(limb.azimuth)).transpose() *
+                              (z.template head<3>() + attachment(geometry, i, theta).value - limb.p_WD);
       const Status status = Robot::kDrive == DriveKind::revolute ? revolute_drive_angle(limb, p_DA, q(i))
                                                                  : prismatic_drive_position(limb, p_DA, q(i));
       if (status != Status::ok) return status;

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Time derivatives of a posture's Jacobians along a motion: what the Coriolis matrix C(q, qd) is made of, beside the Jacobians.
+/// Time derivatives of a posture's Jacobians along a motion: what the Coriolis matrix C(q, qd) is made of, beside the
+/// Jacobians.
 
 #include "deltadyn/kinematics/motion.hpp"
 
@@ -34,7 +35,8 @@ void set_telescope_jacobian_rates(const Motion<T, Robot>& motion, JacobianRates<
   const auto J_r_d = rates.J_plate.template topRows<3>();
   const Vector3<T> e_d = bar.J_e.lazyProduct(motion.qd);
   rates.J_length = -(e_d.transpose().lazyProduct(J_r) + bar.e.transpose().lazyProduct(J_r_d));
-  const Matrix<T, 3, N> J_e_d = (-J_r_d - e_d * bar.J_length - bar.e * rates.J_length - r.length_d * bar.J_e) / bar.length;
+  const Matrix<T, 3, N> J_e_d =
+      (-J_r_d - e_d * bar.J_length - bar.e * rates.J_length - r.length_d * bar.J_e) / bar.length;
 
   // As seen from the frame P that turns with psi: e_P = R_PW e, so J_e_P = R_PW J_e - (e_z x e_P) dpsi/dq.
   const Matrix3<T> R_PW = rot_z(bar.psi).transpose();
@@ -46,8 +48,8 @@ void set_telescope_jacobian_rates(const Motion<T, Robot>& motion, JacobianRates<
   J_e_P_d.col(kPsi) -= cross_z(e_P_d);
   const T tan_b = bar.b.sin / bar.b.cos;
   rates.J_b = J_e_P_d.row(0) / bar.b.cos + tan_b * r.b_d * bar.J_b;
-  rates.J_a =
-      -(bar.a.cos * J_e_P_d.row(1) + bar.a.sin * J_e_P_d.row(2)) / bar.b.cos + tan_b * (r.a_d * bar.J_b + r.b_d * bar.J_a);
+  rates.J_a = -(bar.a.cos * J_e_P_d.row(1) + bar.a.sin * J_e_P_d.row(2)) / bar.b.cos +
+              tan_b * (r.a_d * bar.J_b + r.b_d * bar.J_a);
 }
 
 }  // namespace detail

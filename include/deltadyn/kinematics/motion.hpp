@@ -39,7 +39,8 @@ void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::
 /// \return out_of_range if a number is not finite, else the status of the forward kinematics
 template <class T, class Robot>
 Status motion_from_drives(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
-                          const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& qdd, Motion<T, Robot>& motion) {
+                          const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& qdd,
+                          Motion<T, Robot>& motion) {
   if (!qd.allFinite() || !qdd.allFinite()) return Status::out_of_range;
   const Status status = posture_from_drives(geometry, q, motion.posture);
   if (status != Status::ok) return status;
@@ -50,14 +51,16 @@ Status motion_from_drives(const Geometry<T, Robot>& geometry, const Vector<T, Ro
 /// Drive rates of a task-space motion at a posture: dz/dq qd = zd and its derivative.
 /// \return singular where a drive cannot follow the plate
 template <class T, class Robot>
-Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture, const Vector<T, Robot::kDrives>& zd,
-                   const Vector<T, Robot::kDrives>& zdd, Vector<T, Robot::kDrives>& qd, Vector<T, Robot::kDrives>& qdd);
+Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                   const Vector<T, Robot::kDrives>& zd, const Vector<T, Robot::kDrives>& zdd,
+                   Vector<T, Robot::kDrives>& qd, Vector<T, Robot::kDrives>& qdd);
 
 /// Motion of a task-space state (z, zd, zdd).
 /// \return out_of_range if a number is not finite, else the status of the inverse kinematics or of drive_rates
 template <class T, class Robot>
 Status motion_from_task(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z,
-                        const Vector<T, Robot::kDrives>& zd, const Vector<T, Robot::kDrives>& zdd, Motion<T, Robot>& motion) {
+                        const Vector<T, Robot::kDrives>& zd, const Vector<T, Robot::kDrives>& zdd,
+                        Motion<T, Robot>& motion) {
   if (!zd.allFinite() || !zdd.allFinite()) return Status::out_of_range;
   Vector<T, Robot::kDrives> q, qd, qdd;
   Status status = inverse_kinematics(geometry, z, q);

@@ -7,7 +7,8 @@ namespace detail {
 /// Velocity and acceleration of p_EA of limb i, in L, from the plate's and the drive's.
 template <class T, class Robot>
 void strut_end_rates(const LimbPosture<T, Robot::kDrives>& limb, const Vector<T, Robot::kDrives>& zd,
-                     const Vector<T, Robot::kDrives>& zdd, const T& qd, const T& qdd, Vector3<T>& first, Vector3<T>& second) {
+                     const Vector<T, Robot::kDrives>& zdd, const T& qd, const T& qdd, Vector3<T>& first,
+                     Vector3<T>& second) {
   const Matrix3<T> R_LW = rot_z(limb.azimuth).transpose();
   first = R_LW * zd.template head<3>() - limb.p_DE.first * qd;
   second = R_LW * zdd.template head<3>() - limb.p_DE.first * qdd - limb.p_DE.second * (qd * qd);
@@ -39,7 +40,8 @@ void set_telescope_rates(Motion<T, Robot>& motion) {
   rates.b_d = e_P_d.x() / bar.b.cos;
   rates.a_d = -(bar.a.cos * e_P_d.y() + bar.a.sin * e_P_d.z()) / bar.b.cos;
   rates.b_dd = (e_P_dd.x() + bar.b.sin * rates.b_d * rates.b_d) / bar.b.cos;
-  rates.a_dd = (-(bar.a.cos * e_P_dd.y() + bar.a.sin * e_P_dd.z()) + T(2) * bar.b.sin * rates.a_d * rates.b_d) / bar.b.cos;
+  rates.a_dd =
+      (-(bar.a.cos * e_P_dd.y() + bar.a.sin * e_P_dd.z()) + T(2) * bar.b.sin * rates.a_d * rates.b_d) / bar.b.cos;
 }
 
 }  // namespace detail
@@ -75,17 +77,18 @@ void set_drive_rates(const Geometry<T, Robot>& geometry, const Vector<T, Robot::
       rates.gamma_d = first.y() / limb.gamma.cos;
       rates.beta_d = -(limb.beta.sin * first.x() + limb.beta.cos * first.z()) / limb.gamma.cos;
       rates.gamma_dd = (second.y() + limb.gamma.sin * rates.gamma_d * rates.gamma_d) / limb.gamma.cos;
-      rates.beta_dd =
-          (-(limb.beta.sin * second.x() + limb.beta.cos * second.z()) + T(2) * limb.gamma.sin * rates.beta_d * rates.gamma_d) /
-          limb.gamma.cos;
+      rates.beta_dd = (-(limb.beta.sin * second.x() + limb.beta.cos * second.z()) +
+                       T(2) * limb.gamma.sin * rates.beta_d * rates.gamma_d) /
+                      limb.gamma.cos;
     }
     if constexpr (Robot::kTelescope) detail::set_telescope_rates(motion);
   }
 }
 
 template <class T, class Robot>
-Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture, const Vector<T, Robot::kDrives>& zd,
-                   const Vector<T, Robot::kDrives>& zdd, Vector<T, Robot::kDrives>& qd, Vector<T, Robot::kDrives>& qdd) {
+Status drive_rates(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
+                   const Vector<T, Robot::kDrives>& zd, const Vector<T, Robot::kDrives>& zdd,
+                   Vector<T, Robot::kDrives>& qd, Vector<T, Robot::kDrives>& qdd) {
   qd = zd;
   qdd = zdd;
   if constexpr (kHasPlate<Robot>) {

@@ -11,7 +11,8 @@ namespace deltadyn {
 template <class Robot>
 inline constexpr int kPassiveJoints = (kHasPlate<Robot> ? 3 * Robot::kLimbs : 0) + (Robot::kTelescope ? 2 : 0);
 
-/// Equal joints of the robot that one of them stands for: both ends of the two struts of each limb have the turn about the strut's own z.
+/// Equal joints of the robot that one of them stands for: both ends of the two struts of each limb have the turn about
+/// the strut's own z.
 template <class Robot>
 constexpr int passive_joints_alike(int index) {
   return index < 3 * Robot::kLimbs && index % 3 == 2 ? 4 : 2;
@@ -24,8 +25,9 @@ struct PassiveJoint {
   RowVector<T, Robot::kDrives> J;  ///< d rate / d qd
 };
 
-/// Calls function(index, joint) for each: of each limb the elbow (where beta turns against the arm, whose own rotation is the drive's),
-/// the strut's other end, and the turn gamma of both; then the two universal joints of a telescope bar.
+/// Calls function(index, joint) for each: of each limb the elbow (where beta turns against the arm, whose own rotation
+/// is the drive's), the strut's other end, and the turn gamma of both; then the two universal joints of a telescope
+/// bar.
 template <class T, class Robot, class Function>
 void for_each_passive_joint(const Motion<T, Robot>& motion, Function function) {
   using Joint = PassiveJoint<T, Robot>;

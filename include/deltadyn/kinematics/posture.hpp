@@ -3,8 +3,8 @@
 /// \file
 /// Everything about one robot posture that does not depend on speed: positions, joint angles, Jacobians.
 ///
-/// Notation: q drives; y plate coordinates (r, and theta if the plate turns); z task coordinates. For limb i: D drive origin,
-/// E elbow, A attachment, u the unit vector from E to A, L the limb frame with R_WL = Rz(azimuth).
+/// Notation: q drives; y plate coordinates (r, and theta if the plate turns); z task coordinates. For limb i: D drive
+/// origin, E elbow, A attachment, u the unit vector from E to A, L the limb frame with R_WL = Rz(azimuth).
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/core/status.hpp"
@@ -24,13 +24,13 @@ struct PointCurve {
 /// Posture of one limb; vectors in the limb frame L.
 template <class T, int N>
 struct LimbPosture {
-  SinCos<T> azimuth;                  ///< of R_WL
-  SinCos<T> q;                        ///< of the drive angle (revolute drives)
-  PointCurve<T> p_DE;                 ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
-  PointCurve<T> p_BA;                 ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
-  Vector3<T> u = Vector3<T>::Zero();  ///< unit vector of the strut
-  SinCos<T> beta;                     ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
-  SinCos<T> gamma;                    ///< strut angle about its own z
+  SinCos<T> azimuth;   ///< of R_WL
+  SinCos<T> q;         ///< of the drive angle (revolute drives)
+  PointCurve<T> p_DE;  ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
+  PointCurve<T> p_BA;  ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  Vector3<T> u = Vector3<T>::Zero();                  ///< unit vector of the strut
+  SinCos<T> beta;                                     ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
+  SinCos<T> gamma;                                    ///< strut angle about its own z
   RowVector<T, N> J_beta = RowVector<T, N>::Zero();   ///< d beta / dq
   RowVector<T, N> J_gamma = RowVector<T, N>::Zero();  ///< d gamma / dq
 };
@@ -39,11 +39,11 @@ struct LimbPosture {
 template <class T, int N>
 struct TelescopePosture {
   SinCos<T> psi, a, b;
-  T length = T(1);                                     ///< distance of the universal joints [m]
-  Vector3<T> e = Vector3<T>::Zero();                   ///< unit vector along the bar from the lower to the upper joint, in W
-  Vector3<T> e_P = Vector3<T>::Zero();                 ///< the same in the frame turned by psi
-  Matrix<T, 3, N> J_e = Matrix<T, 3, N>::Zero();       ///< de/dq, in W
-  RowVector<T, N> J_length = RowVector<T, N>::Zero();  ///< d length / dq [m/rad]
+  T length = T(1);                                ///< distance of the universal joints [m]
+  Vector3<T> e = Vector3<T>::Zero();              ///< unit vector along the bar from the lower to the upper joint, in W
+  Vector3<T> e_P = Vector3<T>::Zero();            ///< the same in the frame turned by psi
+  Matrix<T, 3, N> J_e = Matrix<T, 3, N>::Zero();  ///< de/dq, in W
+  RowVector<T, N> J_length = RowVector<T, N>::Zero();                            ///< d length / dq [m/rad]
   RowVector<T, N> J_a = RowVector<T, N>::Zero(), J_b = RowVector<T, N>::Zero();  ///< da/dq, db/dq
 };
 
@@ -99,8 +99,9 @@ PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& the
   return p;
 }
 
-/// Fills `posture` from consistent q and z: joint angles and every Jacobian. The two must belong together (see forward.hpp, inverse.hpp).
-/// \return singular where the drives do not determine the plate, or a strut lies along its limb's axis
+/// Fills `posture` from consistent q and z: joint angles and every Jacobian. The two must belong together (see
+/// forward.hpp, inverse.hpp). \return singular where the drives do not determine the plate, or a strut lies along its
+/// limb's axis
 template <class T, class Robot>
 Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
                         const Vector<T, Robot::kDrives>& z, Posture<T, Robot>& posture);

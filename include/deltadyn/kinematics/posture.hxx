@@ -6,7 +6,8 @@ namespace deltadyn {
 
 namespace detail {
 
-/// Strut angles and their Jacobians from u and du/dq, both in L: u = (cos beta cos gamma, sin gamma, -sin beta cos gamma).
+/// Strut angles and their Jacobians from u and du/dq, both in L: u = (cos beta cos gamma, sin gamma, -sin beta cos
+/// gamma).
 template <class T, int N>
 Status strut_angles(const Matrix<T, 3, N>& J_u, LimbPosture<T, N>& limb) {
   using std::sqrt;

@@ -7,7 +7,8 @@ namespace deltadyn {
 
 enum class Body { upper_arm, strut, platform, tool, telescope_upper, telescope_lower };
 
-inline constexpr const char* kBodyNames[] = {"upper_arm", "strut", "platform", "tool", "telescope_upper", "telescope_lower"};
+inline constexpr const char* kBodyNames[] = {"upper_arm", "strut",           "platform",
+                                             "tool",      "telescope_upper", "telescope_lower"};
 constexpr const char* name(Body body) {
   return kBodyNames[static_cast<int>(body)];
 }

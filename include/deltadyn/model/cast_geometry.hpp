@@ -13,10 +13,15 @@ Geometry<To, Robot> cast_geometry(const Geometry<From, Robot>& from) {
   Geometry<To, Robot> to;
   for (int i = 0; i < Robot::kLimbs; ++i) {
     const LimbGeometry<From>& limb = from.limbs[i];
-    to.limbs[i] = {
-        To(limb.azimuth), limb.p_WD.template cast<To>(), limb.axis_L.template cast<To>(), limb.p_DE_0.template cast<To>(),
-        To(limb.strut),   To(limb.strut_spacing),        limb.p_BA.template cast<To>(),   limb.part,
-        To(limb.elbow)};
+    to.limbs[i] = {To(limb.azimuth),
+                   limb.p_WD.template cast<To>(),
+                   limb.axis_L.template cast<To>(),
+                   limb.p_DE_0.template cast<To>(),
+                   To(limb.strut),
+                   To(limb.strut_spacing),
+                   limb.p_BA.template cast<To>(),
+                   limb.part,
+                   To(limb.elbow)};
   }
   for (int k = 0; k < Robot::kPlateParts; ++k) {
     const PlatePart<From>& part = from.parts[k];

@@ -3,8 +3,8 @@
 /// \file
 /// Lengths and places of a Delta-like robot.
 ///
-/// Base frame W: origin in the plane of the arm axes, z up. Limb frame L of a limb: R_WL = Rz(azimuth), x radially outwards,
-/// y the axis of a revolute drive. A drive angle of 0 is horizontal outwards and positive turns the arm down.
+/// Base frame W: origin in the plane of the arm axes, z up. Limb frame L of a limb: R_WL = Rz(azimuth), x radially
+/// outwards, y the axis of a revolute drive. A drive angle of 0 is horizontal outwards and positive turns the arm down.
 
 #include <Eigen/Core>
 
@@ -25,10 +25,12 @@ struct LimbGeometry {
   Vector3<T> p_BA = Vector3<T>::Zero();     ///< attachment centre A from the origin B of the plate part, in W [m]
   int part = 0;                             ///< plate part that holds the attachment
   T elbow =
-      T(1);  ///< +1: posture with the elbow outwards (revolute) or the carriage behind the plate along -axis; -1: the other one
+      /// +1: posture with the elbow outwards (revolute) or the carriage behind the plate along -axis; -1: the other one
+      T(1);
 };
 
-/// Pose of one part of the plate as a function of (r, theta): offset = c + Rz(theta) a + theta b, orientation Rz(kappa theta).
+/// Pose of one part of the plate as a function of (r, theta): offset = c + Rz(theta) a + theta b, orientation Rz(kappa
+/// theta).
 template <class T>
 struct PlatePart {
   Vector3<T> c = Vector3<T>::Zero();

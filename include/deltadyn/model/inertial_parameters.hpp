@@ -52,7 +52,8 @@ template <class T>
 template <class T>
 [[nodiscard]] InertialVector<T> from_pseudo_inertia(const PseudoInertia<T>& M) {
   InertialVector<T> p;
-  p << M(3, 3), M(0, 3), M(1, 3), M(2, 3), M(1, 1) + M(2, 2), M(0, 0) + M(2, 2), M(0, 0) + M(1, 1), -M(0, 1), -M(1, 2), -M(0, 2);
+  p << M(3, 3), M(0, 3), M(1, 3), M(2, 3), M(1, 1) + M(2, 2), M(0, 0) + M(2, 2), M(0, 0) + M(1, 1), -M(0, 1), -M(1, 2),
+      -M(0, 2);
   return p;
 }
 
@@ -72,9 +73,9 @@ template <class T>
   return G;
 }
 
-/// True if a body with positive density has these parameters: Mbar(p) is positive definite (V.A), which holds for the mass,
-/// the triangle inequality of the inertias about the centre of mass, and the centre of mass itself.
-/// \param tolerance smallest admitted pivot of Mbar scaled to a unit diagonal: free of units, 0 asks for strict definiteness.
+/// True if a body with positive density has these parameters: Mbar(p) is positive definite (V.A), which holds for the
+/// mass, the triangle inequality of the inertias about the centre of mass, and the centre of mass itself. \param
+/// tolerance smallest admitted pivot of Mbar scaled to a unit diagonal: free of units, 0 asks for strict definiteness.
 template <class T>
 [[nodiscard]] bool is_physically_consistent(const InertialVector<T>& p, T tolerance = T(0)) {
   using std::sqrt;

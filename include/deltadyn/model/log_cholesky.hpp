@@ -13,8 +13,9 @@
 /// Every pi gives a physically consistent p, and every consistent p has exactly one pi.
 ///
 /// Multiplied out, U^T U differs from (14) as printed in two places: the paper's list has nine entries because
-/// Izz = e^{2 alpha} (s12^2 + e^{2 d1} + e^{2 d2}) is missing, and its Iyy has s12^2 + s13^2 where the product has s13^2 + s23^2.
-/// With s = 0 both agree with the paper's own (16). Here the product is used; tests/model/log_cholesky_test.cpp shows it.
+/// Izz = e^{2 alpha} (s12^2 + e^{2 d1} + e^{2 d2}) is missing, and its Iyy has s12^2 + s13^2 where the product has
+/// s13^2 + s23^2. With s = 0 both agree with the paper's own (16). Here the product is used;
+/// tests/model/log_cholesky_test.cpp shows it.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -55,8 +56,8 @@ template <class T>
   const T S22 = s12 * s12 + e2 * e2;
   const T S33 = s13 * s13 + s23 * s23 + e3 * e3;
   InertialVector<T> p;
-  p << t1 * t1 + t2 * t2 + t3 * t3 + T(1), t1 * e1, t1 * s12 + t2 * e2, t1 * s13 + t2 * s23 + t3 * e3, S22 + S33, S11 + S33,
-      S11 + S22, -s12 * e1, -s12 * s13 - s23 * e2, -s13 * e1;
+  p << t1 * t1 + t2 * t2 + t3 * t3 + T(1), t1 * e1, t1 * s12 + t2 * e2, t1 * s13 + t2 * s23 + t3 * e3, S22 + S33,
+      S11 + S33, S11 + S22, -s12 * e1, -s12 * s13 - s23 * e2, -s13 * e1;
   return p * exp(T(2) * pi(kAlpha));
 }
 

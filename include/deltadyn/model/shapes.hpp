@@ -3,9 +3,10 @@
 /// \file
 /// Inertial parameters of simple shapes: what a drawing tells before anything is measured (Gnad et al. 2024, VIII.A).
 ///
-/// All functions give the 10-vector of paper (4), `m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz`, about the origin of the frame in
-/// which the places are given. Shapes are homogeneous. Cylinders lie along z with their centre at the origin, or between two
-/// points. Masses in kg, lengths in m. Bodies are built by adding the vectors of their parts, which share one frame.
+/// All functions give the 10-vector of paper (4), `m mcx mcy mcz Ixx Iyy Izz Ixy Iyz Ixz`, about the origin of the
+/// frame in which the places are given. Shapes are homogeneous. Cylinders lie along z with their centre at the origin,
+/// or between two points. Masses in kg, lengths in m. Bodies are built by adding the vectors of their parts, which
+/// share one frame.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -28,8 +29,8 @@ template <class T>
   return from_pseudo_inertia<T>(half.lazyProduct(X.transpose()));
 }
 
-/// The body seen from frame A: frame B of `p_B` is parallel to A with its origin at p_AB. The law of parallel axes holds for
-/// any origin here, not only for the centre of mass.
+/// The body seen from frame A: frame B of `p_B` is parallel to A with its origin at p_AB. The law of parallel axes
+/// holds for any origin here, not only for the centre of mass.
 template <class T>
 [[nodiscard]] InertialVector<T> translated(const InertialVector<T>& p_B, const Vector3<T>& p_AB) {
   PseudoInertia<T> X = PseudoInertia<T>::Identity();
@@ -41,7 +42,8 @@ template <class T>
 /// The round shape that lies along z around the origin, moved so that it reaches from `from` to `to`.
 /// A shape of no length (from = to) keeps its direction.
 template <class T>
-[[nodiscard]] InertialVector<T> between(const InertialVector<T>& along_z, const Vector3<T>& from, const Vector3<T>& to) {
+[[nodiscard]] InertialVector<T> between(const InertialVector<T>& along_z, const Vector3<T>& from,
+                                        const Vector3<T>& to) {
   using std::sqrt;
   const Vector3<T> direction = to - from;
   const Vector3<T> centre = T(0.5) * (from + to);
@@ -58,7 +60,8 @@ template <class T>
   return translated<T>(rotated<T>(along_z, R), centre);
 }
 
-/// Hollow cylinder along z, centre at the origin: Izz = m (Ro^2 + Ri^2) / 2, Ixx = Iyy = m (L^2 + 3 (Ro^2 + Ri^2)) / 12.
+/// Hollow cylinder along z, centre at the origin: Izz = m (Ro^2 + Ri^2) / 2, Ixx = Iyy = m (L^2 + 3 (Ro^2 + Ri^2))
+/// / 12.
 template <class T>
 [[nodiscard]] InertialVector<T> hollow_cylinder(T mass, T outer_radius, T inner_radius, T length) {
   const T squares = outer_radius * outer_radius + inner_radius * inner_radius;

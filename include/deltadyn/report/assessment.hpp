@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Can the result be trusted? The judgement behind the verdict of the reports, apart from the page it is printed on, so that a
-/// tool can print it, too, and choose its exit code by it.
+/// Can the result be trusted? The judgement behind the verdict of the reports, apart from the page it is printed on, so
+/// that a tool can print it, too, and choose its exit code by it.
 
 #include <string>
 #include <vector>
@@ -90,7 +90,8 @@ struct IdentificationEvidence {
   std::optional<StructureLeft> structure;  ///< of the training logs
   TorqueUncertainty on_logs, in_workspace;
   Eigen::VectorXd parameter_effect;  ///< parameter_effect() of the fit
-  std::vector<double> torque_noise;  ///< of each drive's record, rms in the rows of the training logs [N m | N]; may be empty
+  /// Of each drive's record, rms in the rows of the training logs [N m | N]; may be empty
+  std::vector<double> torque_noise;
 };
 
 [[nodiscard]] IdentificationEvidence gather_evidence(const Robot& robot, const Identification& identification,

@@ -26,8 +26,8 @@ struct ExcitationReportInput {
   Eigen::VectorXd torque_noise = {};   ///< standard deviation a drive [N m | N]
   Eigen::VectorXd predicted_std = {};  ///< of each base parameter, for one run of the samples
   Eigen::VectorXd base_values = {};    ///< what the base parameters are expected to be
-  /// Size that each base parameter may have [its unit]: what its standard deviation is judged by. The value alone would not do,
-  /// because that of a symmetric part is zero.
+  /// Size that each base parameter may have [its unit]: what its standard deviation is judged by. The value alone would
+  /// not do, because that of a symmetric part is zero.
   Eigen::VectorXd base_scale = {};
   bool values_are_nominal = true;  ///< from simple shapes, not from a known model
   const TrajectorySamples* validation = nullptr;

@@ -20,7 +20,8 @@ namespace deltadyn {
 /// The section that stands first in a report: heading and table; nothing if all findings are fine.
 void add_log_check(HtmlReport& report, const std::vector<LogFinding>& findings);
 
-/// A fault in the logs outweighs whatever the fit looks like, a warning that bears on the result makes it one to use with care.
+/// A fault in the logs outweighs whatever the fit looks like, a warning that bears on the result makes it one to use
+/// with care.
 void weigh_findings(const std::vector<LogFinding>& findings, Assessment& assessment);
 
 /// The worst level among the findings.

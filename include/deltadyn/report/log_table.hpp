@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What is measured of the channels of logs, as one compact table a log: for the terminal, and for the page of the check.
+/// What is measured of the channels of logs, as one compact table a log: for the terminal, and for the page of the
+/// check.
 
 #include <limits>
 #include <string>

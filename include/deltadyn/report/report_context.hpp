@@ -11,7 +11,8 @@ namespace deltadyn {
 struct ReportContext {
   std::string robot_file;
   std::vector<std::string> log_files;
-  std::string parameter_file;  ///< prior of an identification, model of a validation; empty: nominal values of simple shapes
+  /// Prior of an identification, model of a validation; empty: nominal values of simple shapes
+  std::string parameter_file;
   std::string command_line;
   std::vector<LogFinding> findings = {};  ///< of the check of the logs; they stand first
 };

@@ -17,9 +17,9 @@ struct PlotFrame {
 };
 
 /// Leaves out what cannot be seen at this size. Lines, steps and impulses with increasing x keep the smallest and the
-/// largest value of each pixel column, so that no peak is lost, and their gaps. Curves that run back and forth keep what
-/// moves by at least a pixel; points keep one a cell and the extremes of each column.
-/// Short series come back unchanged, except that samples that cannot be drawn on these axes became NaN.
+/// largest value of each pixel column, so that no peak is lost, and their gaps. Curves that run back and forth keep
+/// what moves by at least a pixel; points keep one a cell and the extremes of each column. Short series come back
+/// unchanged, except that samples that cannot be drawn on these axes became NaN.
 [[nodiscard]] Series thin(const Series& series, const PlotFrame& frame);
 
 }  // namespace deltadyn

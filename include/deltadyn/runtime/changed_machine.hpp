@@ -17,7 +17,7 @@ namespace deltadyn {
 
 struct ChangedMachine {
   RobotDescription description;
-  Eigen::VectorXd home_offset;                             ///< true drive coordinate minus the one that the encoder knows
+  Eigen::VectorXd home_offset;  ///< true drive coordinate minus the one that the encoder knows
   std::vector<std::pair<ParameterId, double>> parameters;  ///< what is added to parameters, each limb with its own
   std::vector<std::pair<int, SpringInDrive>> springs;      ///< by drive from 0
 
@@ -39,7 +39,9 @@ struct ChangedMachine {
     parameters.push_back({{ParameterKind::inertial, limb + 1, Body::upper_arm, inertial::kMcx}, moment});
     parameters.push_back({{ParameterKind::inertial, limb + 1, Body::upper_arm, inertial::kIyy}, inertia});
   }
-  void add_rotor(int drive, double inertia) { parameters.push_back({{ParameterKind::rotor_inertia, drive + 1}, inertia}); }
+  void add_rotor(int drive, double inertia) {
+    parameters.push_back({{ParameterKind::rotor_inertia, drive + 1}, inertia});
+  }
   void add_to_plate(double mass) { parameters.push_back({{ParameterKind::inertial, 0, Body::platform}, mass}); }
   void soften(int drive, const SpringInDrive& spring) { springs.emplace_back(drive, spring); }
 };

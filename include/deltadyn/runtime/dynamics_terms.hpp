@@ -29,7 +29,8 @@ struct TorqueSlopes {
 
 /// What one body exerts on another in a joint; vectors in the base frame.
 struct JointReaction {
-  std::string joint;  ///< "drive1", "strut1a.elbow", "strut1a.plate", "telescope.base", "telescope.slide", "tool.bearing", ...
+  /// "drive1", "strut1a.elbow", "strut1a.plate", "telescope.base", "telescope.slide", "tool.bearing", ...
+  std::string joint;
   std::string from, onto;  ///< names of the bodies, e.g. "upper_arm1" onto "strut1a"
   Eigen::Vector3d place;   ///< centre of the joint [m]
   Eigen::Vector3d force;   ///< [N]

@@ -44,14 +44,16 @@ struct Effect {
 [[nodiscard]] bool of_one_log(EffectId id);
 /// Start values of a shape parameter, in its scale.
 [[nodiscard]] std::vector<double> start_values(const ShapeTraits& shape);
-/// Throws deltadyn::Error for amplitudes of the wrong sign or beyond their largest size, and shapes that must be positive and are not.
-/// \param where  place of the parameter of this name, for the message
+/// Throws deltadyn::Error for amplitudes of the wrong sign or beyond their largest size, and shapes that must be
+/// positive and are not. \param where  place of the parameter of this name, for the message
 void check_sizes(const Effect& effect, const std::function<std::string(std::string_view)>& where, ExitCode code);
 
 /// "drive2", "telescope", "platform", "robot".
 [[nodiscard]] std::string effect_joint_name(EffectId id, int joint);
-/// The joint of a name, as Effect::joint. Accepts "2" for "drive2". Throws deltadyn::Error if the effect cannot act there on this robot.
-[[nodiscard]] int effect_joint(EffectId id, std::string_view name, const RobotDescription& robot, const std::string& where);
+/// The joint of a name, as Effect::joint. Accepts "2" for "drive2". Throws deltadyn::Error if the effect cannot act
+/// there on this robot.
+[[nodiscard]] int effect_joint(EffectId id, std::string_view name, const RobotDescription& robot,
+                               const std::string& where);
 /// Does an effect with joint -1 act on this drive (from 0), as one of all that are alike?
 [[nodiscard]] bool acts_on_all(EffectId id, int drive, const RobotDescription& robot);
 /// Every place of a robot where the effect can act, as Effect::joint; empty if the robot has none.

@@ -21,7 +21,7 @@ struct EffectState {
   Eigen::RowVectorXd J_bar;                                ///< d length / dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
   Eigen::VectorXd passive_rate;                            ///< of each different passive joint [rad/s]
-  Eigen::MatrixXd J_passive;                               ///< d rate / d qd, times the number of joints alike: joints x drives
+  Eigen::MatrixXd J_passive;  ///< d rate / d qd, times the number of joints alike: joints x drives
 };
 
 /// Dispatches once on the type of the robot.
@@ -29,7 +29,8 @@ class EffectStates {
  public:
   virtual ~EffectStates() = default;
   using ConstRef = Eigen::Ref<const Eigen::VectorXd>;
-  [[nodiscard]] virtual Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state) const = 0;
+  [[nodiscard]] virtual Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                  EffectState& state) const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<EffectStates> make_effect_states(const RobotDescription& description);

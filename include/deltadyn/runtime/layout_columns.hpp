@@ -17,7 +17,8 @@ std::vector<int> layout_columns(const ParameterOptions& options) {
   using Layout = ParameterLayout<R, kSharing>;
   std::vector<int> columns;
   for (int column = 0; column < Layout::kColumns; ++column) {
-    const bool tool = R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
+    const bool tool =
+        R::kTelescope && column / kInertialParameters == Layout::body(Body::tool, 0) && column < Layout::kFriction;
     const bool rotor = column >= Layout::kRotorInertia && column < Layout::kOffset;
     const bool wanted_rotor =
         std::count(options.rotor_inertia.begin(), options.rotor_inertia.end(), column - Layout::kRotorInertia + 1) > 0;

@@ -32,29 +32,31 @@ struct PartShapes {
   double telescope_upper_share;  ///< of that mass
   double telescope_upper_length, telescope_upper_diameter;
   double telescope_lower_length, telescope_lower_outer_diameter, telescope_lower_inner_diameter;
-  // Friction: of a limb's drive [N m s/rad, N m | N s/m, N], the telescope's drive, and the sliding of the bar [N s/m, N].
+  // Friction: of a limb's drive [N m s/rad, N m | N s/m, N], the telescope's drive, and the sliding of the bar [N s/m,
+  // N].
   double drive_viscous, drive_coulomb;
   double telescope_drive_viscous, telescope_drive_coulomb;
   double telescope_viscous, telescope_coulomb;
   // Assumed standard deviation as a share of the value.
   double body_std = 0.5, friction_std = 1.0;
 
-  /// The parts of the paper's robot, each scaled to the lengths of this one. What the paper leaves open is assumed so that the
-  /// values of its Table I come out.
+  /// The parts of the paper's robot, each scaled to the lengths of this one. What the paper leaves open is assumed so
+  /// that the values of its Table I come out.
   explicit PartShapes(const RobotDescription& robot);
 };
 
-/// One value for each name of Robot::parameter_names(). A value of zero has a standard deviation, too: the second moments
-/// bound every product (Cauchy-Schwarz), so their geometric mean sets its scale.
+/// One value for each name of Robot::parameter_names(). A value of zero has a standard deviation, too: the second
+/// moments bound every product (Cauchy-Schwarz), so their geometric mean sets its scale.
 struct NominalParameters {
   Eigen::VectorXd value, std;
 };
 
-/// Every body is physically consistent. Throws deltadyn::Error(usage) if a shape is not possible (wall thicker than the tube,
-/// mass not positive) and names it.
+/// Every body is physically consistent. Throws deltadyn::Error(usage) if a shape is not possible (wall thicker than the
+/// tube, mass not positive) and names it.
 [[nodiscard]] NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shapes);
 
-/// Standard deviations of a body's ten parameters for the same relative error `share` of every moment of its mass distribution.
+/// Standard deviations of a body's ten parameters for the same relative error `share` of every moment of its mass
+/// distribution.
 [[nodiscard]] InertialVector<double> inertial_std(const InertialVector<double>& p, double share);
 
 }  // namespace deltadyn

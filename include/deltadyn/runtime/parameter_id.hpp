@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Which parameter of a robot a column is. Its name is made from this, and nothing else reads names but parameter_id(), for files.
+/// Which parameter of a robot a column is. Its name is made from this, and nothing else reads names but parameter_id(),
+/// for files.
 
 #include <optional>
 #include <string>
@@ -14,7 +15,8 @@ enum class ParameterKind { inertial, viscous, coulomb, rotor_inertia, offset };
 
 struct ParameterId {
   ParameterKind kind = ParameterKind::inertial;
-  /// Inertial: of the limb's own body from 1, or 0 where all limbs share one. Else of the drive from 1; 0: the telescope's slide.
+  /// Inertial: of the limb's own body from 1, or 0 where all limbs share one. Else of the drive from 1; 0: the
+  /// telescope's slide.
   int number = 0;
   Body body = Body::upper_arm;  ///< inertial
   int entry = 0;                ///< inertial: place in kInertialNames

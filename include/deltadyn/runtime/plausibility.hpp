@@ -1,12 +1,14 @@
 #pragma once
 
 /// \file
-/// Which numbers a Delta-like robot can have: one set of rules for every door (robot files, flags, config files, parameter files).
+/// Which numbers a Delta-like robot can have: one set of rules for every door (robot files, flags, config files,
+/// parameter files).
 ///
-/// A number that no such machine has is nearly always one in another unit: millimetres, degrees, grams, N mm, kg mm^2. Taken as
-/// it stands it would give a prior of 4e8 kg, or a motion that breaks the machine. The rules are wide: arms from a few
-/// millimetres to some metres, the fastest and the heaviest machines built, and a margin beyond; each says why it stands where it
-/// does. What is outside is refused in words that name the unit in which the number would make sense.
+/// A number that no such machine has is nearly always one in another unit: millimetres, degrees, grams, N mm, kg mm^2.
+/// Taken as it stands it would give a prior of 4e8 kg, or a motion that breaks the machine. The rules are wide: arms
+/// from a few millimetres to some metres, the fastest and the heaviest machines built, and a margin beyond; each says
+/// why it stands where it does. What is outside is refused in words that name the unit in which the number would make
+/// sense.
 
 #include <string>
 
@@ -66,9 +68,8 @@ void require_limits(const RobotDescription& robot, int drive, const DriveLimits&
 [[nodiscard]] std::string compare_limits(const RobotDescription& robot, int drive, const DriveLimits& asked,
                                          const std::string& where);
 
-/// Mass, first moments and inertias of a body against the size of the robot; a mass of zero (not given) passes, a negative one
-/// does not.
-/// \param what the body in words
+/// Mass, first moments and inertias of a body against the size of the robot; a mass of zero (not given) passes, a
+/// negative one does not. \param what the body in words
 void require_body(const RobotDescription& robot, Body body, const InertialVector<double>& p, const std::string& what,
                   const std::string& where, ExitCode code = ExitCode::bad_input);
 

@@ -1,10 +1,10 @@
 #pragma once
 
 /// \file
-/// Random numbers that are the same with every standard library. The generators of <random> are defined to the bit, its distributions
-/// are not: with those, the same seed would give another log, another study and another verdict elsewhere.
-/// The distributions below give the numbers of the GNU library. They are called as those of <random> are, with a generator such as
-/// std::mt19937_64.
+/// Random numbers that are the same with every standard library. The generators of <random> are defined to the bit, its
+/// distributions are not: with those, the same seed would give another log, another study and another verdict
+/// elsewhere. The distributions below give the numbers of the GNU library. They are called as those of <random> are,
+/// with a generator such as std::mt19937_64.
 
 #include <cmath>
 #include <cstddef>
@@ -18,8 +18,8 @@ namespace deltadyn {
 template <class Generator>
 [[nodiscard]] double canonical(Generator& random) {
   constexpr std::uint64_t kLargest = Generator::max();
-  static_assert(Generator::min() == 0 &&
-                (kLargest == std::numeric_limits<std::uint32_t>::max() || kLargest == std::numeric_limits<std::uint64_t>::max()));
+  static_assert(Generator::min() == 0 && (kLargest == std::numeric_limits<std::uint32_t>::max() ||
+                                          kLargest == std::numeric_limits<std::uint64_t>::max()));
   double value = 0;
   if constexpr (kLargest == std::numeric_limits<std::uint64_t>::max()) {
     value = static_cast<double>(random()) * 0x1.0p-64;
@@ -51,8 +51,8 @@ class UniformDistribution {
   double low_, high_;
 };
 
-/// Normal, by the polar method of Marsaglia (SIAM Review 6, 1964), which gives two numbers at a time: the second is kept for the next
-/// call, so that each generator should have a distribution of its own.
+/// Normal, by the polar method of Marsaglia (SIAM Review 6, 1964), which gives two numbers at a time: the second is
+/// kept for the next call, so that each generator should have a distribution of its own.
 class NormalDistribution {
  public:
   explicit NormalDistribution(double mean = 0, double std = 1) : mean_(mean), std_(std) {}
@@ -110,7 +110,8 @@ class UniformIndex {
   };
   static Product times(std::uint64_t a, std::uint64_t b) {
     constexpr std::uint64_t kLow32 = 0xFFFFFFFFU;
-    const std::uint64_t low = (a & kLow32) * (b & kLow32), left = (a >> 32U) * (b & kLow32), right = (a & kLow32) * (b >> 32U);
+    const std::uint64_t low = (a & kLow32) * (b & kLow32), left = (a >> 32U) * (b & kLow32),
+                        right = (a & kLow32) * (b >> 32U);
     const std::uint64_t middle = (low >> 32U) + (left & kLow32) + (right & kLow32);
     return {(a >> 32U) * (b >> 32U) + (left >> 32U) + (right >> 32U) + (middle >> 32U), a * b};
   }

@@ -28,7 +28,8 @@ struct Reach {
   Eigen::VectorXd condition;         ///< at the centres
 };
 
-/// Throws deltadyn::Error if the robot has no plate, an option is out of range, or no pose at all is within reach and limits.
+/// Throws deltadyn::Error if the robot has no plate, an option is out of range, or no pose at all is within reach and
+/// limits.
 [[nodiscard]] Reach find_reach(const Robot& robot, const ReachOptions& options = {});
 
 }  // namespace deltadyn

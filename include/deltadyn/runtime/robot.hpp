@@ -56,7 +56,8 @@ class Robot {
   [[nodiscard]] virtual Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd,
                                          Eigen::Ref<Vector> qdd) const = 0;
   /// Task-space motion of a drive motion.
-  [[nodiscard]] virtual Status to_task(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, TaskState& task) const = 0;
+  [[nodiscard]] virtual Status to_task(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                       TaskState& task) const = 0;
   /// Jacobian dz/dq (drives x drives).
   [[nodiscard]] virtual Status jacobian(const ConstRef& q, Eigen::Ref<Eigen::MatrixXd> J_q_z) const = 0;
 
@@ -64,33 +65,38 @@ class Robot {
   [[nodiscard]] virtual Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
                                          Eigen::Ref<Eigen::MatrixXd> Y) const = 0;
   /// tau = Y p without forming Y [N m | N].
-  [[nodiscard]] virtual Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
-                                                Eigen::Ref<Vector> tau) const = 0;
+  [[nodiscard]] virtual Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                                const ConstRef& p, Eigen::Ref<Vector> tau) const = 0;
   /// M(q) of (1), drives x drives, symmetric.
-  [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M) const = 0;
-  /// qdd of drive torques tau, (1) solved by Cholesky's factorisation of M [rad/s^2 | m/s^2]. At rest Coulomb friction gives no
-  /// torque (sign(0) = 0). out_of_range if M is not positive definite, i.e. p is not physically consistent.
-  [[nodiscard]] virtual Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau, const ConstRef& p,
-                                                Eigen::Ref<Vector> qdd) const = 0;
+  [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p,
+                                           Eigen::Ref<Eigen::MatrixXd> M) const = 0;
+  /// qdd of drive torques tau, (1) solved by Cholesky's factorisation of M [rad/s^2 | m/s^2]. At rest Coulomb friction
+  /// gives no torque (sign(0) = 0). out_of_range if M is not positive definite, i.e. p is not physically consistent.
+  [[nodiscard]] virtual Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau,
+                                                const ConstRef& p, Eigen::Ref<Vector> qdd) const = 0;
   /// The equations of motion (1) term by term.
   [[nodiscard]] virtual Status equations_of_motion(const ConstRef& q, const ConstRef& qd, const ConstRef& p,
                                                    Coordinates coordinates, EquationTerms& terms) const = 0;
-  [[nodiscard]] virtual Status energies(const ConstRef& q, const ConstRef& qd, const ConstRef& p, Energies& energies) const = 0;
+  [[nodiscard]] virtual Status energies(const ConstRef& q, const ConstRef& qd, const ConstRef& p,
+                                        Energies& energies) const = 0;
   /// Derivatives of the drive torques by q, qd and qdd, exact; Coulomb friction counts as constant.
   [[nodiscard]] virtual Status inverse_dynamics_derivatives(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
                                                             const ConstRef& p, TorqueSlopes& slopes) const = 0;
   /// Forces and moments in all joints, by Newton and Euler (dynamics/joint_reactions.hpp says what carries what).
-  [[nodiscard]] virtual Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
-                                               std::vector<JointReaction>& reactions) const = 0;
+  [[nodiscard]] virtual Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
+                                               const ConstRef& p, std::vector<JointReaction>& reactions) const = 0;
   /// Rates of the joints with friction: drives, then the telescope's prismatic joint if there is one [rad/s | m/s].
-  [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const = 0;
+  [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd,
+                                                    Eigen::Ref<Vector> rates) const = 0;
   [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
 };
 
 /// Columns of the Coulomb friction of each joint, in the order of friction_joint_rates().
 [[nodiscard]] std::vector<Eigen::Index> coulomb_columns(const Robot& robot);
 
-/// Throws deltadyn::Error if the description is not a robot we know, or a rotor inertia is asked for of a drive that it has not.
-[[nodiscard]] std::unique_ptr<Robot> make_robot(const RobotDescription& description, const ParameterOptions& options = {});
+/// Throws deltadyn::Error if the description is not a robot we know, or a rotor inertia is asked for of a drive that it
+/// has not.
+[[nodiscard]] std::unique_ptr<Robot> make_robot(const RobotDescription& description,
+                                                const ParameterOptions& options = {});
 
 }  // namespace deltadyn

@@ -34,7 +34,8 @@ struct RobotDescription {
   [[nodiscard]] DriveKind kind_of_drive(int drive) const {
     return drive < static_cast<int>(limbs.size()) ? drive_kind : DriveKind::revolute;
   }
-  /// Throws deltadyn::Error if a length is not positive, a count is wrong, or a number is not finite. `where` names the file.
+  /// Throws deltadyn::Error if a length is not positive, a count is wrong, or a number is not finite. `where` names the
+  /// file.
   void validate(const std::string& where) const;
 };
 

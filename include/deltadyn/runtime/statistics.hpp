@@ -24,8 +24,8 @@ template <class Value>
   return *place;
 }
 
-/// Value that a share of all does not exceed, always one of the values: the one at place floor(share (n - 1)) when sorted; 0 for none.
-/// \param share  0 (the least value) to 1 (the largest)
+/// Value that a share of all does not exceed, always one of the values: the one at place floor(share (n - 1)) when
+/// sorted; 0 for none. \param share  0 (the least value) to 1 (the largest)
 template <class Value>
 [[nodiscard]] Value quantile(std::vector<Value> values, double share) {
   if (values.empty()) return Value{};
@@ -33,13 +33,15 @@ template <class Value>
   return order_statistic(std::move(values), rank);
 }
 
-/// The middle value; of an even number the lower one of the two in the middle, so that it is always one of the values. 0 for none.
+/// The middle value; of an even number the lower one of the two in the middle, so that it is always one of the values.
+/// 0 for none.
 template <class Value>
 [[nodiscard]] Value lower_median(std::vector<Value> values) {
   return quantile(std::move(values), 0.5);
 }
 
-/// The middle value; of an even number the upper one of the two in the middle, so that it is always one of the values. 0 for none.
+/// The middle value; of an even number the upper one of the two in the middle, so that it is always one of the values.
+/// 0 for none.
 template <class Value>
 [[nodiscard]] Value upper_median(std::vector<Value> values) {
   if (values.empty()) return Value{};
@@ -47,8 +49,8 @@ template <class Value>
   return order_statistic(std::move(values), middle);
 }
 
-/// Standard deviation of normal noise from its absolute values: their mean without the largest hundredth. Robust like a median, but
-/// not itself a multiple of an encoder's count. 0 for none.
+/// Standard deviation of normal noise from its absolute values: their mean without the largest hundredth. Robust like a
+/// median, but not itself a multiple of an encoder's count. 0 for none.
 [[nodiscard]] inline double std_of_sizes(std::vector<double> sizes) {
   if (sizes.empty()) return 0.0;
   constexpr double kKept = 0.99;

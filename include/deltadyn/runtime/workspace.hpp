@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Random states of a robot in its task space (paper IV.A): what base parameters and statements over the workspace are computed on.
+/// Random states of a robot in its task space (paper IV.A): what base parameters and statements over the workspace are
+/// computed on.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -17,8 +18,8 @@ struct WorkspaceBall {
   double radius = 0.0;                               ///< [m]
 };
 
-/// Draws drive states (q, qd, qdd) whose task-space state is uniform in a ball, with poses that are near-singular left out.
-/// Same seed, same states. For an axis the drive coordinate itself is drawn.
+/// Draws drive states (q, qd, qdd) whose task-space state is uniform in a ball, with poses that are near-singular left
+/// out. Same seed, same states. For an axis the drive coordinate itself is drawn.
 class WorkspaceSampler {
  public:
   /// Throws deltadyn::Error if no regular pose can be found: then the geometry is wrong.

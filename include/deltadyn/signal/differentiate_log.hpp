@@ -9,7 +9,8 @@
 
 namespace deltadyn {
 
-/// Motion of the drives at the sample times of the log. Rows outside [first, last) are disturbed by the ends of the log.
+/// Motion of the drives at the sample times of the log. Rows outside [first, last) are disturbed by the ends of the
+/// log.
 struct DriveMotion {
   Eigen::MatrixXd q;    ///< N x drives [rad | m]
   Eigen::MatrixXd qd;   ///< N x drives [rad/s | m/s]

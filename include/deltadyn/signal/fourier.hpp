@@ -25,7 +25,8 @@ struct FourierFit {
 /// \param columns  N x channels
 /// Throws Error(usage) if an argument is out of range.
 [[nodiscard]] FourierFit fit_fourier(const Eigen::Ref<const Eigen::VectorXd>& t_s,
-                                     const Eigen::Ref<const Eigen::MatrixXd>& columns, double base_frequency_hz, int harmonics);
+                                     const Eigen::Ref<const Eigen::MatrixXd>& columns, double base_frequency_hz,
+                                     int harmonics);
 
 struct Period {
   double period_s = 0.0;  ///< not necessarily a whole number of samples
@@ -42,9 +43,9 @@ struct PeriodMean {
   int periods = 0;    ///< that were averaged
 };
 
-/// Fits the series to all whole periods and averages the torque over them (interpolated if a period is no whole number of
-/// samples). Samples that were filled in do not enter the torque; a phase without a sample is marked in PeriodMean::log.filled.
-/// Throws Error(bad_input) if the log holds fewer than two periods.
+/// Fits the series to all whole periods and averages the torque over them (interpolated if a period is no whole number
+/// of samples). Samples that were filled in do not enter the torque; a phase without a sample is marked in
+/// PeriodMean::log.filled. Throws Error(bad_input) if the log holds fewer than two periods.
 [[nodiscard]] PeriodMean average_periods(const Log& log, double period_s, int harmonics);
 
 }  // namespace deltadyn

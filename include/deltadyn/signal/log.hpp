@@ -15,19 +15,21 @@ struct Log {
   /// Marks of single samples.
   static constexpr char kMeasured = 0;
   static constexpr char kLeftOut = 1;  ///< filled in or spoilt: a row that feels this sample is no evidence
-  static constexpr char kBridged = 2;  ///< filled in, as good as measured: the error of the filling is no more than the noise
+  /// Filled in, as good as measured: the error of the filling is no more than the noise
+  static constexpr char kBridged = 2;
 
-  std::string file;          ///< where it came from, for messages
-  int part = 0;              ///< of a file that was split at its gaps: 1, 2, ...; 0: the file as a whole
-  Eigen::VectorXd t_s;       ///< N time stamps, strictly increasing, even to rounding
-  Eigen::MatrixXd q;         ///< N x drives [rad | m]
-  Eigen::MatrixXd qd;        ///< N x drives or empty [rad/s | m/s]
-  Eigen::MatrixXd qdd;       ///< N x drives or empty [rad/s^2 | m/s^2]
-  Eigen::MatrixXd tau;       ///< N x drives [N m | N]; empty if the file holds a motion only
-  std::vector<long> line;    ///< line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
+  std::string file;     ///< where it came from, for messages
+  int part = 0;         ///< of a file that was split at its gaps: 1, 2, ...; 0: the file as a whole
+  Eigen::VectorXd t_s;  ///< N time stamps, strictly increasing, even to rounding
+  Eigen::MatrixXd q;    ///< N x drives [rad | m]
+  Eigen::MatrixXd qd;   ///< N x drives or empty [rad/s | m/s]
+  Eigen::MatrixXd qdd;  ///< N x drives or empty [rad/s^2 | m/s^2]
+  Eigen::MatrixXd tau;  ///< N x drives [N m | N]; empty if the file holds a motion only
+  /// Line of each sample in `file` (1 is the first line, 0: filled in); empty if not read from a file
+  std::vector<long> line;
   std::vector<char> filled;  ///< mark of each sample; empty: all measured
-  /// N x drives: the torque of this drive says nothing about the machine's motion here (cut off, servo off, drive at rest, where
-  /// static friction takes any value); empty: nowhere.
+  /// N x drives: the torque of this drive says nothing about the machine's motion here (cut off, servo off, drive at
+  /// rest, where static friction takes any value); empty: nowhere.
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;
   std::vector<std::string> notes;    ///< what the reader repaired or wants to say, with line numbers
   std::vector<LogFinding> findings;  ///< what checks found out about this log

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What a recording would have looked like with its encoders turned by a part of a step: the error that their steps make follows the
-/// motion where few steps pass, and then averages out less than white noise does.
+/// What a recording would have looked like with its encoders turned by a part of a step: the error that their steps
+/// make follows the motion where few steps pass, and then averages out less than white noise does.
 
 #include <Eigen/Core>
 #include <random>

@@ -8,11 +8,11 @@
 
 namespace deltadyn {
 
-/// 1 for each sample with |rate| < threshold, at a change of sign between two samples, and for `grow` samples on either side.
-/// \param rate       N rates of one joint [rad/s | m/s]
-/// \param threshold  [rad/s | m/s], not negative
-/// Throws Error(usage) if threshold or grow is negative.
-[[nodiscard]] std::vector<char> reversal_mask(const Eigen::Ref<const Eigen::VectorXd>& rate, double threshold, Eigen::Index grow);
+/// 1 for each sample with |rate| < threshold, at a change of sign between two samples, and for `grow` samples on either
+/// side. \param rate       N rates of one joint [rad/s | m/s] \param threshold  [rad/s | m/s], not negative Throws
+/// Error(usage) if threshold or grow is negative.
+[[nodiscard]] std::vector<char> reversal_mask(const Eigen::Ref<const Eigen::VectorXd>& rate, double threshold,
+                                              Eigen::Index grow);
 
 /// Std of the white noise (mostly quantisation) on recorded positions, by their fourth differences; robust against
 /// single outliers. For an encoder at rest, its resolution over sqrt(12); 0 for a constant column.
@@ -24,6 +24,7 @@ namespace deltadyn {
 /// \param cutoff_hz,order of zero_phase_filter()
 /// \param derivative      1 or 2
 /// \return                [rad/s | m/s] or [rad/s^2 | m/s^2]
-[[nodiscard]] double derivative_noise(double position_noise, double sample_rate_hz, double cutoff_hz, int order, int derivative);
+[[nodiscard]] double derivative_noise(double position_noise, double sample_rate_hz, double cutoff_hz, int order,
+                                      int derivative);
 
 }  // namespace deltadyn

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Controllers of the virtual robot, as a drive runs them: sampled, on encoder readings, with a model for the feed-forward.
+/// Controllers of the virtual robot, as a drive runs them: sampled, on encoder readings, with a model for the
+/// feed-forward.
 
 #include <Eigen/Core>
 #include <vector>
@@ -14,14 +15,17 @@ namespace deltadyn {
 enum class ControlLaw {
   pd_feedforward,   ///< tau = tau_ff(q_r, qd_r, qdd_r) + Kp e + Kd ed, every drive on its own
   computed_torque,  ///< tau = M(q)(qdd_r + kp e + kd ed) + C(q, qd) qd + g(q) + f(qd_r) (Khalil; paper ref. 1)
-  augmented_pd      ///< tau = M(q) qdd_r + C(q, qd) qd_r + g(q) + f(qd_r) + Kp e + Kd ed (Kelly, Carelli 1993; paper ref. 3)
+  augmented_pd  ///< tau = M(q) qdd_r + C(q, qd) qd_r + g(q) + f(qd_r) + Kp e + Kd ed (Kelly, Carelli 1993; paper ref.
+                ///< 3)
 };
 
 struct ControllerOptions {
   ControlLaw law = ControlLaw::pd_feedforward;
-  double bandwidth_hz = 12;    ///< of the closed loop: kp = (2 pi b)^2, kd = 2 z 2 pi b, times the drive's inertia in Kp and Kd
+  /// Of the closed loop: kp = (2 pi b)^2, kd = 2 z 2 pi b, times the drive's inertia in Kp and Kd
+  double bandwidth_hz = 12;
   double damping_ratio = 0.9;  ///< z
-  std::vector<double> kp, kd;  ///< one a drive [N m/rad | N/m], [N m s/rad | N s/m]; computed torque [1/s^2], [1/s]; empty: above
+  /// One a drive [N m/rad | N/m], [N m s/rad | N s/m]; computed torque [1/s^2], [1/s]; empty: above
+  std::vector<double> kp, kd;
   double rate_filter_hz = 60;  ///< first-order low pass of the differenced position error
   bool feed_forward = true;    ///< false: Kp e + Kd ed alone (pd-feedforward only)
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Everything that resists the motion of one joint in the plant: viscous and Coulomb friction and the laws of effects that act there,
-/// put together so that rest, sliding either way and load fit.
+/// Everything that resists the motion of one joint in the plant: viscous and Coulomb friction and the laws of effects
+/// that act there, put together so that rest, sliding either way and load fit.
 
 #include <array>
 #include <vector>
@@ -27,19 +27,22 @@ struct JointMotion {
 
 class FrictionLaw {
  public:
-  FrictionLaw(double viscous, double coulomb, double offset = 0) : viscous_(viscous), coulomb_(coulomb), offset_(offset) {}
+  FrictionLaw(double viscous, double coulomb, double offset = 0)
+      : viscous_(viscous), coulomb_(coulomb), offset_(offset) {}
 
   /// True if the effect is one of those that act inside a joint by their law.
   [[nodiscard]] static bool takes(EffectId id);
   /// \param count  joints alike that this one stands for
-  /// Throws Error(usage) if the friction would push at rest (a friction that is taken away must be there in the first place), or
-  /// if a second effect of a kind with memory is added.
+  /// Throws Error(usage) if the friction would push at rest (a friction that is taken away must be there in the first
+  /// place), or if a second effect of a kind with memory is added.
   void add(const Effect& effect, double count = 1);
 
   /// What reaches the mechanism of the drive's torque tau (0 for a passive joint), friction taken off [N m | N].
   [[nodiscard]] double transmitted(double tau, const JointMotion& motion) const;
   /// The torque that brings `load` to the mechanism: inverse of transmitted().
-  [[nodiscard]] double required(double load, const JointMotion& motion) const { return load + resistance(motion, load); }
+  [[nodiscard]] double required(double load, const JointMotion& motion) const {
+    return load + resistance(motion, load);
+  }
 
   /// True if the resistance jumps with the sign of the rate, or has a memory that needs to know reversals.
   [[nodiscard]] bool minds_reversals() const { return jumps_ || memories_ > 0; }

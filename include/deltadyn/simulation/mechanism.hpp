@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The rigid robot as a simulation sees it: M, bias and all joints that can stick, at one state of the drives. One virtual call
-/// a state; the mathematics stays in the fixed-size templates of kinematics/ and dynamics/.
+/// The rigid robot as a simulation sees it: M, bias and all joints that can stick, at one state of the drives. One
+/// virtual call a state; the mathematics stays in the fixed-size templates of kinematics/ and dynamics/.
 
 #include <Eigen/Core>
 #include <memory>
@@ -25,15 +25,15 @@ using JointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJ
 
 /// Everything at one state (q, qd). tau = M qdd + bias + sum_j J_j^T F_j with the forces F_j that joint j resists with.
 struct MechanismTerms {
-  DriveMatrix M;                                     ///< mass matrix with rotor inertias
-  DriveVector bias;                                  ///< C qd + g, without friction and offsets [N m | N]
-  JointVector position;                              ///< of each joint [rad | m]; of passive joints 0: nothing depends on it
-  JointVector rate;                                  ///< J qd [rad/s | m/s]
-  JointVector bias_rate;                             ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
-  JointRows J;                                       ///< joints x drives
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();       ///< plate centre in W [m]
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();       ///< its velocity [m/s]
-  Eigen::Vector3d a_bias = Eigen::Vector3d::Zero();  ///< its acceleration at qdd = 0 [m/s^2]
+  DriveMatrix M;                                ///< mass matrix with rotor inertias
+  DriveVector bias;                             ///< C qd + g, without friction and offsets [N m | N]
+  JointVector position;                         ///< of each joint [rad | m]; of passive joints 0: nothing depends on it
+  JointVector rate;                             ///< J qd [rad/s | m/s]
+  JointVector bias_rate;                        ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
+  JointRows J;                                  ///< joints x drives
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< plate centre in W [m]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< its velocity [m/s]
+  Eigen::Vector3d a_bias = Eigen::Vector3d::Zero();                ///< its acceleration at qdd = 0 [m/s^2]
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxDrives> J_r;  ///< dr/dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();                  ///< unit vector along the telescope
 };
@@ -56,7 +56,8 @@ class Mechanism {
   /// Drives, then the telescope's prismatic joint, then passive joints.
   [[nodiscard]] int joints() const { return static_cast<int>(multiplicity_.size()); }
   [[nodiscard]] int telescope_joint() const { return telescope_; }  ///< -1 without telescope
-  /// How many equal joints of the robot an entry stands for: 1 for drives and telescope, e.g. 4 for the strut's turn about its z.
+  /// How many equal joints of the robot an entry stands for: 1 for drives and telescope, e.g. 4 for the strut's turn
+  /// about its z.
   [[nodiscard]] double multiplicity(int joint) const { return multiplicity_[static_cast<std::size_t>(joint)]; }
 
  protected:
@@ -67,8 +68,8 @@ class Mechanism {
 /// The columns that make_mechanism() wants: every limb on its own, tool, all rotor inertias and offsets.
 [[nodiscard]] ParameterOptions mechanism_options(const RobotDescription& description);
 
-/// \param p  as of a Robot with mechanism_options(); friction and offsets in it are ignored, they are the plant's business
-/// Throws deltadyn::Error if the description is not a robot we know.
+/// \param p  as of a Robot with mechanism_options(); friction and offsets in it are ignored, they are the plant's
+/// business Throws deltadyn::Error if the description is not a robot we know.
 [[nodiscard]] std::unique_ptr<Mechanism> make_mechanism(const RobotDescription& description, const Eigen::VectorXd& p,
                                                         const MechanismOptions& options = {});
 

@@ -9,12 +9,13 @@
 
 namespace deltadyn {
 
-/// Drives between the samples of a trajectory: the polynomial of fifth degree that takes position, rate and acceleration of both
-/// neighbours, so that the samples come back exactly and the motion is smooth.
+/// Drives between the samples of a trajectory: the polynomial of fifth degree that takes position, rate and
+/// acceleration of both neighbours, so that the samples come back exactly and the motion is smooth.
 class ReferenceMotion {
  public:
   /// \param repeats  how often a periodic trajectory runs; 1: once, as it is
-  /// Throws deltadyn::Error for fewer than two samples, and if a trajectory that is to be repeated does not end where it begins.
+  /// Throws deltadyn::Error for fewer than two samples, and if a trajectory that is to be repeated does not end where
+  /// it begins.
   explicit ReferenceMotion(const TrajectorySamples& samples, int repeats = 1);
 
   [[nodiscard]] int drives() const { return static_cast<int>(q_.cols()); }

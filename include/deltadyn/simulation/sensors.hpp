@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What a log shows of a motion: encoders that count, torque with noise, and effects that act on the recorded torque only.
+/// What a log shows of a motion: encoders that count, torque with noise, and effects that act on the recorded torque
+/// only.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -38,11 +39,9 @@ class Encoders {
 /// True for effects on the recorded torque alone.
 [[nodiscard]] bool is_log_effect(EffectId id);
 
-/// The torque that is recorded of the torque that acted, in the order in which a drive spoils it (kStage of the effects),
-/// noise last.
-/// \param t_s    even times
-/// \param tau    samples x drives [N m | N]
-/// \param effects  those that are not log effects are passed over
+/// The torque that is recorded of the torque that acted, in the order in which a drive spoils it (kStage of the
+/// effects), noise last. \param t_s    even times \param tau    samples x drives [N m | N] \param effects  those that
+/// are not log effects are passed over
 [[nodiscard]] Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& tau,
                                               const std::vector<Effect>& effects, const SensorOptions& options,
                                               std::uint64_t seed);

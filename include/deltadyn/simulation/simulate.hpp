@@ -40,13 +40,13 @@ struct SimulationResult {
   long clipped = 0;                ///< control samples at a drive's effort limit
   PlantCounts counts;
   double work = 0, losses = 0;  ///< of the drives, in friction and the like, over the whole run [J]
-  double energy_change = 0;     ///< kinetic, potential and spring energy at the end minus at the start [J]; work - losses
+  double energy_change = 0;  ///< kinetic, potential and spring energy at the end minus at the start [J]; work - losses
 };
 
 /// Moves the plant along the reference.
 ///
-/// The torque acts as a staircase. Its value at a sample is the mean of the two stairs that meet there: what a drive that averages
-/// its current over the sampling period reports, in phase with the positions. qdd is given likewise.
+/// The torque acts as a staircase. Its value at a sample is the mean of the two stairs that meet there: what a drive
+/// that averages its current over the sampling period reports, in phase with the positions. qdd is given likewise.
 /// \param plant        the virtual robot
 /// \param model, p     what the controller knows of it
 /// \param effects      those of the plant have been built in already; here those of the log act

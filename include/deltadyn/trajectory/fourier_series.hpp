@@ -11,7 +11,8 @@ namespace deltadyn {
 
 /// Derivative by the phase of the basis (1, sin phi, cos phi, sin 2 phi, cos 2 phi, ...) at the given phases.
 /// \return phases x (1 + 2 harmonics)
-[[nodiscard]] Eigen::MatrixXd fourier_basis(const Eigen::Ref<const Eigen::VectorXd>& phases, int harmonics, int derivative);
+[[nodiscard]] Eigen::MatrixXd fourier_basis(const Eigen::Ref<const Eigen::VectorXd>& phases, int harmonics,
+                                            int derivative);
 
 /// n phases evenly over one period, the first one 0.
 [[nodiscard]] Eigen::VectorXd even_phases(Eigen::Index n);

@@ -36,9 +36,10 @@ struct LimitCheck {
   void merge(const LimitCheck& other, double starts_at_s);
 };
 
-/// Samples the motion `samples` + 1 times, ends included. Between two samples a smooth curve leaves the chord by at most an
-/// eighth of its second difference; twice the largest one found near each sample is added to the load there.
-/// A torque is that of the model with its Coulomb friction on the side of the rest, whichever way the joints turn.
-[[nodiscard]] LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const SmoothMotion& motion, int samples);
+/// Samples the motion `samples` + 1 times, ends included. Between two samples a smooth curve leaves the chord by at
+/// most an eighth of its second difference; twice the largest one found near each sample is added to the load there. A
+/// torque is that of the model with its Coulomb friction on the side of the rest, whichever way the joints turn.
+[[nodiscard]] LimitCheck check_limits(const Robot& robot, const MotionLimits& limits, const SmoothMotion& motion,
+                                      int samples);
 
 }  // namespace deltadyn

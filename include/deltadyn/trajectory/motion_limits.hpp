@@ -42,8 +42,8 @@ struct MotionLimits {
   [[nodiscard]] DriveLimits of_drive(int drive) const;
   /// All rates times `share`, all accelerations times its square: the same motions, slower.
   [[nodiscard]] MotionLimits slowed(double share) const;
-  /// Throws deltadyn::Error(usage) that names the limits that contradict each other, and if velocity or acceleration are not
-  /// limited at all.
+  /// Throws deltadyn::Error(usage) that names the limits that contradict each other, and if velocity or acceleration
+  /// are not limited at all.
   void validate(const RobotDescription& robot) const;
   /// The robot file holds what the machine can do: a sentence for each drive that is asked for more. Throws
   /// deltadyn::Error(usage) if far more is asked for.
@@ -59,8 +59,8 @@ struct LimitedState {
 
 /// The value that a limit is on [m, rad, ...]; for a wall of the region its Region::usage.
 double limited_value(const Limit& limit, const MotionLimits& limits, const LimitedState& state);
-/// Usage of a value: -1 at the lower and 1 at the upper end of the range; one-sided limits: 1 at the end, and a unit from it
-/// counts as one; walls: the value itself.
+/// Usage of a value: -1 at the lower and 1 at the upper end of the range; one-sided limits: 1 at the end, and a unit
+/// from it counts as one; walls: the value itself.
 double usage_of(const Limit& limit, double value);
 /// d usage / d value.
 double usage_slope(const Limit& limit);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// From Fourier series to a motion a controller can run: from rest, along the same curve with rising speed into the periodic
-/// motion, and out of it again; several such segments one after the other.
+/// From Fourier series to a motion a controller can run: from rest, along the same curve with rising speed into the
+/// periodic motion, and out of it again; several such segments one after the other.
 
 #include <vector>
 
@@ -40,14 +40,15 @@ struct MotionPlan {
 [[nodiscard]] SmoothMotion one_period(const FourierSeries& series);
 
 /// \param periodic_only  leave out run-in, run-out and transfers; then one segment only
-/// Run-in: the phase starts at rest and reaches its rate after the shortest time (a whole number of samples) with which all
-/// limits are kept; the phase where it joins is chosen for that. Transfers are straight lines.
-/// Throws deltadyn::Error(no_convergence) that names the limit that stands in the way.
+/// Run-in: the phase starts at rest and reaches its rate after the shortest time (a whole number of samples) with which
+/// all limits are kept; the phase where it joins is chosen for that. Transfers are straight lines. Throws
+/// deltadyn::Error(no_convergence) that names the limit that stands in the way.
 [[nodiscard]] MotionPlan make_plan(const Robot& robot, const std::vector<PlanSegment>& segments, double rate_hz,
                                    bool periodic_only);
 
 /// Largest use of every limit over the whole plan, between the samples too.
-[[nodiscard]] LimitCheck check_plan(const Robot& robot, const std::vector<PlanSegment>& segments, const MotionPlan& plan);
+[[nodiscard]] LimitCheck check_plan(const Robot& robot, const std::vector<PlanSegment>& segments,
+                                    const MotionPlan& plan);
 
 /// Task space and drives at the controller's rate.
 [[nodiscard]] TrajectorySamples sample_plan(const Robot& robot, const MotionPlan& plan, double rate_hz);

@@ -10,7 +10,8 @@ namespace deltadyn {
 
 enum class RegionShape { ball, half_ball, cylinder, cone, box };
 
-/// half_ball is the lower half of the ball; cylinder and cone (frustum) stand upright, with `centre` in the middle of their axis.
+/// half_ball is the lower half of the ball; cylinder and cone (frustum) stand upright, with `centre` in the middle of
+/// their axis.
 struct Region {
   RegionShape shape = RegionShape::ball;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< [m]
@@ -22,8 +23,8 @@ struct Region {
   /// Number of inequalities usage(k) <= 1 that make the body.
   [[nodiscard]] int walls() const;
   [[nodiscard]] std::string wall_name(int wall) const;
-  /// Share of the way to the wall, 1 on it, and its gradient by p. Round walls: the squared distance from the axis or centre
-  /// over the squared radius.
+  /// Share of the way to the wall, 1 on it, and its gradient by p. Round walls: the squared distance from the axis or
+  /// centre over the squared radius.
   double usage(int wall, const Eigen::Vector3d& p, Eigen::Vector3d* gradient = nullptr) const;
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;
   /// Corners of the upright box around the body.

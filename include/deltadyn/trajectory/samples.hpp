@@ -25,7 +25,8 @@ struct TrajectorySamples {
   }
 };
 
-/// Fills q, qd, qdd from t_s, z, zd, zdd. Throws Error(bad_input) that names the time of the first pose the robot cannot take.
+/// Fills q, qd, qdd from t_s, z, zd, zdd. Throws Error(bad_input) that names the time of the first pose the robot
+/// cannot take.
 void complete_drives(const Robot& robot, TrajectorySamples& samples);
 
 /// Fills z, zd, zdd from t_s, q, qd, qdd. Throws as complete_drives().

@@ -17,7 +17,8 @@ struct TaskColumns {
   bool rotation = false;  ///< an angle, else a length
 };
 
-/// One entry a task coordinate. An axis has its drive's coordinate for task coordinate, so the names are those of the drive.
+/// One entry a task coordinate. An axis has its drive's coordinate for task coordinate, so the names are those of the
+/// drive.
 [[nodiscard]] std::vector<TaskColumns> task_columns(const RobotDescription& robot);
 
 }  // namespace deltadyn

@@ -50,8 +50,9 @@ std::vector<Log> parts_of(const std::vector<Log>& logs, std::vector<Part>& which
   return parts;
 }
 
-/// Straight line through the delays of one file's parts; nothing if they do not lie on one that rises or falls. How far they are off
-/// it says more of their uncertainty than their own deviations do, in which the drift inside of a part counts as noise.
+/// Straight line through the delays of one file's parts; nothing if they do not lie on one that rises or falls. How far
+/// they are off it says more of their uncertainty than their own deviations do, in which the drift inside of a part
+/// counts as noise.
 std::optional<ClockDrift> line_through(const VectorXd& t, const VectorXd& delay) {
   if (t.size() < 3) return std::nullopt;
   const auto count = static_cast<double>(t.size());
@@ -70,8 +71,8 @@ std::optional<ClockDrift> line_through(const VectorXd& t, const VectorXd& delay)
 
 }  // namespace
 
-std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                            double highest_band_hz) {
+std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParameters& base,
+                                            const std::vector<Log>& logs, double highest_band_hz) {
   std::vector<Part> which;
   const std::vector<Log> parts = parts_of(logs, which);
   SampleOptions options;

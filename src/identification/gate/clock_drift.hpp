@@ -24,9 +24,8 @@ struct ClockDrifts {
   double rms_before = 0, rms_after = 0;
 };
 
-/// Looks for it by the delays of parts of the files. Nothing unless these lie on a line that rises or falls clearly, and take a quarter of
-/// the residual away.
-/// \param highest_band_hz  of the sample in which delays are looked for
+/// Looks for it by the delays of parts of the files. Nothing unless these lie on a line that rises or falls clearly,
+/// and take a quarter of the residual away. \param highest_band_hz  of the sample in which delays are looked for
 [[nodiscard]] std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParameters& base,
                                                           const std::vector<Log>& logs, double highest_band_hz);
 

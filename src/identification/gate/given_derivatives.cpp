@@ -52,8 +52,8 @@ bool is_motion(const Log& log) {
 }
 
 /// \param own, slope  the positions' derivative and its own derivative by time
-Comparison compare(const Eigen::VectorXd& given, const Eigen::VectorXd& own, const Eigen::VectorXd& slope, double step_s,
-                   double independent) {
+Comparison compare(const Eigen::VectorXd& given, const Eigen::VectorXd& own, const Eigen::VectorXd& slope,
+                   double step_s, double independent) {
   Comparison out;
   const Index n = given.size();
   const auto reach = std::min<Index>(n / 4, static_cast<Index>(std::ceil(kLatest_s / step_s)));
@@ -83,7 +83,8 @@ Comparison compare(const Eigen::VectorXd& given, const Eigen::VectorXd& own, con
   const double noise = std::sqrt(left / std::max(1.0, independent));
   const double rows = static_cast<double>(inner);
   out.factor_std = noise / std::sqrt(A.col(0).squaredNorm() / rows) / std::sqrt(std::max(1.0, independent));
-  out.delay_std = noise / (std::abs(x(0)) * std::sqrt(A.col(1).squaredNorm() / rows)) / std::sqrt(std::max(1.0, independent));
+  out.delay_std =
+      noise / (std::abs(x(0)) * std::sqrt(A.col(1).squaredNorm() / rows)) / std::sqrt(std::max(1.0, independent));
   return out;
 }
 
@@ -153,9 +154,10 @@ std::vector<LogFinding> examine_derivatives(const RobotDescription& robot, const
       finding.std = std::abs(c.delay_s) > kLate_s ? c.delay_std : c.factor_std;
       finding.unit = std::abs(c.delay_s) > kLate_s ? "s" : "";
       finding.text = text + (used ? "" : "; it is not used, the positions are differentiated");
-      finding.mend = used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
-                                (derivative == 1 ? names.qd : names.qdd)
-                          : "";
+      finding.mend =
+          used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
+                     (derivative == 1 ? names.qd : names.qdd)
+               : "";
       out.push_back(std::move(finding));
     }
   }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Hypothesis: the recorded rates and accelerations are not the derivatives of the recorded positions: late, in another unit, of the
-/// other sign, or zero.
+/// Hypothesis: the recorded rates and accelerations are not the derivatives of the recorded positions: late, in another
+/// unit, of the other sign, or zero.
 
 #include <vector>
 

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kSoundResidual =
-    0.02;                            // of the torque: friction of another law, load and noise leave less; wrong signs leave more
+    0.02;  // of the torque: friction of another law, load and noise leave less; wrong signs leave more
 constexpr double kSoundRatio = 1.2;  // all drives together over each drive by itself: one machine explains all torques
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
 constexpr double kWinsNoisy =
@@ -27,19 +27,20 @@ constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for t
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
 constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent
 constexpr double kAlike = 1.1;                 // residuals within this ratio do not tell explanations apart
-constexpr double kSprings = 0.9;               // of an explanation's residual: springs on the drives explain the log better
-constexpr double kOutOfReach = 0.01;           // share of poses that a recording of this robot cannot have
-constexpr Index kCoarsePoints = 120;           // for searches over a factor or a zero
-constexpr int kBestStarts = 2;                 // of a search, refined
-constexpr double kWorthRefining = 2.0;         // times the smallest residual of all searches
-constexpr double kNoOffset = 0.6;              // steps of a search for a zero
-constexpr double kScaleWorth = 0.25;           // a factor of one torque nearer to 1 is a matter for the fit and the diagnosis
+constexpr double kSprings = 0.9;        // of an explanation's residual: springs on the drives explain the log better
+constexpr double kOutOfReach = 0.01;    // share of poses that a recording of this robot cannot have
+constexpr Index kCoarsePoints = 120;    // for searches over a factor or a zero
+constexpr int kBestStarts = 2;          // of a search, refined
+constexpr double kWorthRefining = 2.0;  // times the smallest residual of all searches
+constexpr double kNoOffset = 0.6;       // steps of a search for a zero
+constexpr double kScaleWorth = 0.25;    // a factor of one torque nearer to 1 is a matter for the fit and the diagnosis
 constexpr int kFewestRowsPerParameter = 2;
 
 /// What can be said of one reading of the positions.
 class Judge {
  public:
-  Judge(const Robot& robot, const BaseParameters& base, const Points& points) : robot_(robot), base_(base), points_(points) {}
+  Judge(const Robot& robot, const BaseParameters& base, const Points& points)
+      : robot_(robot), base_(base), points_(points) {}
 
   Judgement run() {
     const int n = robot_.drives();
@@ -74,7 +75,8 @@ class Judge {
     std::vector<Eigen::MatrixXd> tau;
     for (const DriveRows& drive : rows.drives) {
       Eigen::MatrixXd one(drive.count(), points.tau.cols());
-      for (Index k = 0; k < drive.count(); ++k) one.row(k) = points.tau.row(drive.at[static_cast<std::size_t>(k)].point);
+      for (Index k = 0; k < drive.count(); ++k)
+        one.row(k) = points.tau.row(drive.at[static_cast<std::size_t>(k)].point);
       tau.push_back(std::move(one));
     }
     return tau;
@@ -104,11 +106,13 @@ class Judge {
     out.unreachable = rows.unreachable;
     alone_ = root_mean_square(own_residuals(blocks));
     with_springs_ = relative_residual(
-        residual_form(fold_torques(with_springs(rows), torques(rows, points_)), out.assignment, out.factor), out.factor);
+        residual_form(fold_torques(with_springs(rows), torques(rows, points_)), out.assignment, out.factor),
+        out.factor);
     return out;
   }
 
-  /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault of a record is.
+  /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault
+  /// of a record is.
   [[nodiscard]] Rows with_springs(Rows rows) const {
     const auto n = static_cast<Index>(rows.drives.size());
     for (Index j = 0; j < n; ++j) {
@@ -143,7 +147,8 @@ class Judge {
     double least = std::numeric_limits<double>::infinity();
     for (const PositionFamily& family : families) {
       std::vector<double> residual(family.start.size());
-      in_parallel(residual.size(), [&](std::size_t k) { residual[k] = best_torques(family, start, family.start[k], few); });
+      in_parallel(residual.size(),
+                  [&](std::size_t k) { residual[k] = best_torques(family, start, family.start[k], few); });
       std::vector<Start> own;
       for (std::size_t k = 0; k < residual.size(); ++k) {
         if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
@@ -157,8 +162,8 @@ class Judge {
       if (one.residual > kWorthRefining * least) continue;
       const PositionFamily& family = *one.family;
       const double value = plausible(family, start, refine(family, start, one.value));
-      const bool nothing =
-          family.geometric ? std::abs(value - 1) < 0.1 : (std::abs(value) < kNoOffset * family.step && family.sign.front() > 0);
+      const bool nothing = family.geometric ? std::abs(value - 1) < 0.1
+                                            : (std::abs(value) < kNoOffset * family.step && family.sign.front() > 0);
       if (!nothing) add_torque_readings(member(family, robot_.description(), value, 0.01), start, before);
     }
   }
@@ -166,7 +171,8 @@ class Judge {
   [[nodiscard]] std::optional<Explanation> best_of_positions() const {
     std::optional<Explanation> best;
     for (const Explanation& e : all_) {
-      const bool torques_as_given = std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
+      const bool torques_as_given =
+          std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
       if (torques_as_given && (!best || e.residual < best->residual)) best = e;
     }
     return best;
@@ -196,7 +202,8 @@ class Judge {
     const int n = robot_.drives();
     const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
     Eigen::VectorXd s(n);
-    // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is taken.
+    // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is
+    // taken.
     for (int set = 0; set < (1 << (n - 1)); ++set) {
       for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
       if (2 * (s.array() < 0).count() > n) s = -s;
@@ -217,8 +224,9 @@ class Judge {
     }
   }
 
-  void add(const PositionHypothesis& h, const Reading& reading, const Explanation* before, const std::vector<int>& order,
-           const Eigen::VectorXd& factor, double residual, int scaled_drive, const Factor& scale) {
+  void add(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
+           const std::vector<int>& order, const Eigen::VectorXd& factor, double residual, int scaled_drive,
+           const Factor& scale) {
     Explanation e;
     e.reading = reading;
     e.assignment = order;
@@ -258,10 +266,13 @@ class Judge {
     e.changes += static_cast<double>(moved.size()) - 0.1;  // one column moved back is less than one turned
     const std::string words =
         moved.size() == 2
-            ? fmt::format("the torques of drives {} and {} are swapped against their positions", moved[0] + 1, moved[1] + 1)
-            : fmt::format("the torques are in another order than the positions: drives 1 to {} have the torque columns {}",
-                          order.size(), columns);
-    say("torque_order", words, "bring positions and torques of each drive together (delta-log import: source in the map)");
+            ? fmt::format("the torques of drives {} and {} are swapped against their positions", moved[0] + 1,
+                          moved[1] + 1)
+            : fmt::format(
+                  "the torques are in another order than the positions: drives 1 to {} have the torque columns {}",
+                  order.size(), columns);
+    say("torque_order", words,
+        "bring positions and torques of each drive together (delta-log import: source in the map)");
   }
 
   template <class Say>
@@ -278,16 +289,17 @@ class Judge {
   }
 
   template <class Say>
-  void tell_factor(const Eigen::VectorXd& factor, int drive, const Factor& scale, Explanation& e, const Say& say) const {
+  void tell_factor(const Eigen::VectorXd& factor, int drive, const Factor& scale, Explanation& e,
+                   const Say& say) const {
     // The form's factor turns the column into the torque; what the user sees is its inverse.
     e.changes += factor(drive) < 0 ? 2.5 : 1.5;
     e.value = 1 / factor(drive);
     e.std = scale.std / (factor(drive) * factor(drive));
     e.drive = drive;
     say("torque_scale_drive",
-        fmt::format(
-            "the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque constant or gear ratio?",
-            drive + 1, e.value, e.std),
+        fmt::format("the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque "
+                    "constant or gear ratio?",
+                    drive + 1, e.value, e.std),
         "give the torque of every drive in N m at the joint (N for a carriage)");
   }
 
@@ -319,8 +331,8 @@ class Judge {
     return value;
   }
 
-  /// Smallest residual over the signs of the torques, for the motor side of one drive over its factor, too; not finite where the
-  /// poses are out of reach.
+  /// Smallest residual over the signs of the torques, for the motor side of one drive over its factor, too; not finite
+  /// where the poses are out of reach.
   [[nodiscard]] double best_torques(const PositionFamily& family, const Reading& start, double value,
                                     const Points& points) const {
     const Reading reading = compose(member(family, robot_.description(), value, 0).reading, start);
@@ -390,13 +402,16 @@ class Judge {
     }
     out = std::move(distinct);
     const double fewest = out.front().changes;
-    out.erase(std::remove_if(out.begin(), out.end(), [&](const Explanation& e) { return e.changes > fewest + 0.5; }), out.end());
+    out.erase(std::remove_if(out.begin(), out.end(), [&](const Explanation& e) { return e.changes > fewest + 0.5; }),
+              out.end());
     return out;
   }
 
-  /// Noise may cover most of a residual. What is left of a fault then is that all drives together fit worse than each one alone.
+  /// Noise may cover most of a residual. What is left of a fault then is that all drives together fit worse than each
+  /// one alone.
   [[nodiscard]] bool heals(const Explanation& e, double as_given) const {
-    const bool torques_as_given = std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
+    const bool torques_as_given =
+        std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
     if (e.odd && e.key == "position_scale") return false;  // a wrong length of the robot file looks like that, too
     return torques_as_given && as_given > kBreaks * alone_ && e.residual < (e.odd ? kWinsOdd : kWinsNoisy) * as_given &&
            e.residual < kHeals * e.alone;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// All hypotheses about signs, order, units and zeros of positions and torques, judged together: the one whose residual falls most,
-/// and to that of a sound fit, wins; others that explain as much are said beside it.
+/// All hypotheses about signs, order, units and zeros of positions and torques, judged together: the one whose residual
+/// falls most, and to that of a sound fit, wins; others that explain as much are said beside it.
 
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ struct Explanation {
   Eigen::VectorXd factor;
   double residual = 1;     ///< relative, over all drives
   double unreachable = 0;  ///< share of the poses
-  double alone = 0;        ///< residual of each drive with parameters of its own: what one machine for all drives could reach
+  double alone = 0;  ///< residual of each drive with parameters of its own: what one machine for all drives could reach
   double changes = 0;
   std::string key, words, mend;
   int drive = -1;

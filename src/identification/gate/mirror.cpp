@@ -17,8 +17,8 @@ constexpr double kMirrorOutOfReach = 0.01;  // share of poses
 constexpr double kMirrorRidge = 1e-11;      // of the scaled normal equations
 constexpr int kWeightPasses = 4;            // of the weights
 constexpr Index kFewestYawRows = 300;       // of the yaw's drive
-// Chi^2 of independent rows. Where a log cannot tell, the margin scatters by 2 to 4 about 0; the right reading of a log that can tell has
-// -30 and less.
+// Chi^2 of independent rows. Where a log cannot tell, the margin scatters by 2 to 4 about 0; the right reading of a log
+// that can tell has -30 and less.
 constexpr double kClear = 15;
 
 struct DriveFit {
@@ -36,7 +36,8 @@ std::vector<Eigen::VectorXd> torques_at(const Sample& sample, const Rows& rows, 
     const auto drive = static_cast<Index>(j);
     std::vector<Eigen::VectorXd> column;
     for (const Stretch& stretch : sample.stretches) column.emplace_back(stretch.tau.col(drive));
-    out.emplace_back(reading.factor(drive) * values_at(sample, column, rows.drives[j].at, no_shift, 0, sample.sigma_s).col(0));
+    out.emplace_back(reading.factor(drive) *
+                     values_at(sample, column, rows.drives[j].at, no_shift, 0, sample.sigma_s).col(0));
   }
   return out;
 }
@@ -67,14 +68,16 @@ DriveFit figures_of(const Eigen::VectorXd& e) {
 }
 
 /// Empty if this reading has too few rows to judge by.
-std::vector<DriveFit> fit_of(const Robot& robot, const BaseParameters& base, const Sample& sample, const Reading& reading) {
+std::vector<DriveFit> fit_of(const Robot& robot, const BaseParameters& base, const Sample& sample,
+                             const Reading& reading) {
   const Rows rows = low_passed_rows(robot, base, sample, reading);
   Index fewest = rows.drives.back().count();
   for (const DriveRows& drive : rows.drives) fewest = std::min(fewest, drive.count() + kFewestYawRows - 1);
   if (rows.unreachable > kMirrorOutOfReach || fewest < kFewestYawRows) return {};
   const std::vector<Eigen::VectorXd> tau = torques_at(sample, rows, reading);
   std::vector<double> weight;
-  for (const Eigen::VectorXd& t : tau) weight.push_back(static_cast<double>(t.size()) / std::max(t.squaredNorm(), 1e-300));
+  for (const Eigen::VectorXd& t : tau)
+    weight.push_back(static_cast<double>(t.size()) / std::max(t.squaredNorm(), 1e-300));
   std::vector<DriveFit> out;
   for (int pass = 0; pass < kWeightPasses; ++pass) {
     const Eigen::VectorXd beta = solve(rows, tau, weight);
@@ -127,14 +130,17 @@ std::optional<LogFinding> mirror_finding(const Robot& robot, const BaseParameter
   f.drive = yaw - 1;
   f.value = pairing->margin;
   f.text = fmt::format(
-      "the numbering of the limbs and the sign of drive {0} do not belong together: residual of drive {0} {1:.4g} N m as given, "
+      "the numbering of the limbs and the sign of drive {0} do not belong together: residual of drive {0} {1:.4g} N m "
+      "as given, "
       "{2:.4g} "
       "N m with the yaw turned (chi^2 less by {3:.0f}); the parameters are those of the columns as they are",
       yaw, pairing->rms, pairing->rms_turned, pairing->margin);
   f.mend = fmt::format(
-      "move one drive by hand: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above, and a positive angle of "
+      "move one drive by hand: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above, and a positive "
+      "angle of "
       "drive {} turns "
-      "the tool counter-clockwise; turn position and torque of drive {} (sign = -1 in the map), or swap the columns of limbs 2 "
+      "the tool counter-clockwise; turn position and torque of drive {} (sign = -1 in the map), or swap the columns of "
+      "limbs 2 "
       "and 3",
       yaw, yaw);
   return f;

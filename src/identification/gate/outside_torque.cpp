@@ -21,7 +21,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kBand_hz = 3;      // pushes last some tenths of a second; encoder noise and vibration are far below them here
+// Pushes last some tenths of a second; encoder noise and vibration are far below them here
+constexpr double kBand_hz = 3;
 constexpr double kThin_hz = 60;     // rate that this band needs: long logs cost no more than they must
 constexpr double kThinPass = 0.3;   // of that rate: the low pass in front of it
 constexpr double kStrong = 8;       // robust standard deviations of the residual, and the largest torque of the drive
@@ -59,7 +60,8 @@ Log thinned(const Log& log) {
     if (log.torque_out.size() > 0) thin.torque_out.row(k) = log.torque_out.middleRows(first, width).colwise().any();
     if (log.filled.empty()) continue;
     const auto begin = log.filled.begin() + first;
-    if (std::find(begin, begin + width, Log::kLeftOut) != begin + width) thin.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
+    if (std::find(begin, begin + width, Log::kLeftOut) != begin + width)
+      thin.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
   }
   return thin;
 }
@@ -105,7 +107,8 @@ struct Seen {
 /// A fit that a minority of rows cannot pull.
 class RobustFit {
  public:
-  RobustFit(const Robot& robot, const BaseParameters& base, std::vector<Seen>& seen) : robot_(robot), base_(base), seen_(seen) {}
+  RobustFit(const Robot& robot, const BaseParameters& base, std::vector<Seen>& seen)
+      : robot_(robot), base_(base), seen_(seen) {}
 
   /// False if the motion does not tell the parameters.
   bool run() {
@@ -201,11 +204,13 @@ class DriveRowsSeen {
     return out;
   }
 
-  [[nodiscard]] Index moving_in(const Push& push) const { return moves_.segment(push.first, push.last - push.first + 1).count(); }
+  [[nodiscard]] Index moving_in(const Push& push) const {
+    return moves_.segment(push.first, push.last - push.first + 1).count();
+  }
 
  private:
-  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold. Where the machine
-  /// moves and the torque is left out (servo off), it is missing anyway.
+  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold.
+  /// Where the machine moves and the torque is left out (servo off), it is missing anyway.
   static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen, int drive) {
     const PreparedLog& log = seen.prepared;
     Eigen::Array<bool, Eigen::Dynamic, 1> out = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(seen.rows.rows(), true);
@@ -213,7 +218,8 @@ class DriveRowsSeen {
     for (Index k = 0; k < out.size(); ++k) {
       const auto [first, count] = inner_half(log, k);
       if (log.torque_out.size() > 0) {
-        out(k) = !log.torque_out.col(drive).segment(first, count).any() || log.rest.col(drive).segment(first, count).any();
+        out(k) =
+            !log.torque_out.col(drive).segment(first, count).any() || log.rest.col(drive).segment(first, count).any();
       }
       if (log.filled.empty()) continue;
       const auto begin = log.filled.begin() + (sample_of_row(log, k) - reach), end = begin + 2 * reach + 1;
@@ -273,7 +279,8 @@ LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& ro
   f.value = length_s;
   f.unit = "s";
   f.text = fmt::format(
-      "drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where the drive gives at most {:.3g}; "
+      "drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where the drive gives at "
+      "most {:.3g}; "
       "left "
       "out: t_s = {} ({:.2g} s)",
       drive + 1, largest, unit, seen.largest_torque(), times, length_s);
@@ -297,7 +304,8 @@ std::vector<Seen> see(const Robot& robot, const std::vector<Log>& logs) {
 
 }  // namespace
 
-std::vector<LogFinding> leave_out_outside_torque(const Robot& robot, const BaseParameters& base, std::vector<Log>& logs) {
+std::vector<LogFinding> leave_out_outside_torque(const Robot& robot, const BaseParameters& base,
+                                                 std::vector<Log>& logs) {
   std::vector<LogFinding> findings;
   std::vector<Seen> seen = see(robot, logs);
   if (seen.empty()) return findings;

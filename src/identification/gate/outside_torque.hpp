@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Torque that did not come from the drive: a hand that pushes the machine, a stop, something that it hits. The motion shows it, the
-/// torque column does not, so that no model of the machine explains these rows.
+/// Torque that did not come from the drive: a hand that pushes the machine, a stop, something that it hits. The motion
+/// shows it, the torque column does not, so that no model of the machine explains these rows.
 
 #include <vector>
 
@@ -12,9 +12,9 @@
 
 namespace deltadyn::gate {
 
-/// Finds stretches in which a drive would have needed more torque than it gave anywhere in the log, and weaker ones besides once a
-/// log has one of them; marks them in Log::torque_out and says so, one finding a log and drive. Logs in which such stretches were
-/// more than a quarter of the motion stay as they are: there the model is wrong, not the log.
+/// Finds stretches in which a drive would have needed more torque than it gave anywhere in the log, and weaker ones
+/// besides once a log has one of them; marks them in Log::torque_out and says so, one finding a log and drive. Logs in
+/// which such stretches were more than a quarter of the motion stay as they are: there the model is wrong, not the log.
 [[nodiscard]] std::vector<LogFinding> leave_out_outside_torque(const Robot& robot, const BaseParameters& base,
                                                                std::vector<Log>& logs);
 

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index;
 
-// |ln ratio| beyond kFault + kFaultTrust x (relative deviation of the prior) is no machine of this prior: with simple shapes (50 %) a
-// factor of 3.3, with parts weighed to 2 % a factor of 1.27; a prior that is 30 % off raises nothing.
+// |ln ratio| beyond kFault + kFaultTrust x (relative deviation of the prior) is no machine of this prior: with simple
+// shapes (50 %) a factor of 3.3, with parts weighed to 2 % a factor of 1.27; a prior that is 30 % off raises nothing.
 constexpr double kFault = 0.2, kFaultTrust = 2.0;
 constexpr double kWarning = 0.12, kWarningTrust = 1.3;
 constexpr double kCertain = 5.0;       // standard deviations of the data for a sign
@@ -52,18 +52,20 @@ std::string units_of(const RobotDescription& robot, double ratio, double relativ
   return words.empty() ? "unit, torque constant or gear ratio?" : words + " Else torque constant or gear ratio";
 }
 
-LogFinding scale_finding(const RobotDescription& robot, const Ratio& ratio, double prior_std, bool fault, const std::string& who,
-                         int drive) {
+LogFinding scale_finding(const RobotDescription& robot, const Ratio& ratio, double prior_std, bool fault,
+                         const std::string& who, int drive) {
   LogFinding f;
   f.level = fault ? FindingLevel::fault : FindingLevel::warning;
   f.key = drive >= 0 ? "torque_scale" : "scale";
   f.drive = drive;
   f.value = ratio.value;
   f.std = ratio.std;
-  f.text = fmt::format("torque is {:.3g} +- {:.2g} times what the masses of the prior need, {}: {}", ratio.value, ratio.std, who,
-                       units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std)));
+  f.text =
+      fmt::format("torque is {:.3g} +- {:.2g} times what the masses of the prior need, {}: {}", ratio.value, ratio.std,
+                  who, units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std)));
   f.mend =
-      "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille --rated-torque .. (or "
+      "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille "
+      "--rated-torque .. (or "
       "--torque-unit A, a gear ratio) makes such a log; or, if it is right, give a --prior with the weighed masses";
   return f;
 }
@@ -93,8 +95,9 @@ bool add_sign_findings(const RobotDescription& robot, const TorqueScale& scale, 
   f.drive = negative.size() == 1 ? negative.front() : -1;
   f.value = worst;
   f.std = worst_std;
-  f.text = fmt::format("torque of {} has the wrong sign{}: the inertia comes out at {:.3g} +- {:.2g} times that of the prior",
-                       drives_in_words(negative, robot.drives()), all_limbs ? "" : " (or its position has)", worst, worst_std);
+  f.text = fmt::format(
+      "torque of {} has the wrong sign{}: the inertia comes out at {:.3g} +- {:.2g} times that of the prior",
+      drives_in_words(negative, robot.drives()), all_limbs ? "" : " (or its position has)", worst, worst_std);
   f.mend = "turn the sign of the torque (delta-log import: sign = -1 in the map)";
   out.push_back(std::move(f));
   (void)known;
@@ -132,7 +135,8 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
     f.value = g.value;
     f.std = g.data_std;
     f.text = fmt::format(
-        "gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} times",
+        "gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} "
+        "times",
         g.value, g.data_std, inertia);
     f.mend = "check how the base hangs: gravity in the robot file, and the direction of positive positions";
     out.push_back(std::move(f));
@@ -165,11 +169,12 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   const bool small = yaw.value < 1;
   // Rotor inertia makes it large as a rule: only beside weighed parts, or beyond what rotors do, is that worth a word.
   if (yaw_far > 0 && (small || yaw_prior < kWeighed || yaw.value > kBeyondRotors)) {
-    LogFinding f = scale_finding(robot, yaw, yaw_prior, small, fmt::format("on drive {}", limbs + 1), static_cast<int>(limbs));
-    f.text =
-        fmt::format("the inertia about drive {} is {:.3g} +- {:.2g} times that of the prior: {}", limbs + 1, yaw.value, yaw.std,
-                    small ? "position in degrees, or unit of the torque?"
-                          : "rotor inertia of a geared motor (--rotor-inertia), or unit of the torque?");
+    LogFinding f =
+        scale_finding(robot, yaw, yaw_prior, small, fmt::format("on drive {}", limbs + 1), static_cast<int>(limbs));
+    f.text = fmt::format("the inertia about drive {} is {:.3g} +- {:.2g} times that of the prior: {}", limbs + 1,
+                         yaw.value, yaw.std,
+                         small ? "position in degrees, or unit of the torque?"
+                               : "rotor inertia of a geared motor (--rotor-inertia), or unit of the torque?");
     out.push_back(std::move(f));
   }
   return out;
@@ -187,7 +192,8 @@ double usual_rate(const Log& log, int drive) {
 }
 
 /// A rate that no drive of this limit has: positions or time in another unit.
-void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& logs, int drive, std::vector<LogFinding>& out) {
+void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& logs, int drive,
+                      std::vector<LogFinding>& out) {
   const double limit = robot.limits[static_cast<std::size_t>(drive)].velocity;
   if (!(limit > 0 && limit < 1e9)) return;
   for (const Log& log : logs) {
@@ -201,8 +207,8 @@ void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& log
     f.value = rate;
     f.unit = robot.kind_of_drive(drive) == DriveKind::revolute ? "rad/s" : "m/s";
     f.text = fmt::format(
-        "a velocity of {:.4g} is far beyond the limit of {:.4g} of drive {} (SI): positions or time have another unit", rate,
-        limit, drive + 1);
+        "a velocity of {:.4g} is far beyond the limit of {:.4g} of drive {} (SI): positions or time have another unit",
+        rate, limit, drive + 1);
     f.mend = "give positions in rad or m, or name the column _deg; give the time in seconds";
     out.push_back(std::move(f));
     return;
@@ -227,8 +233,8 @@ std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std:
       f.key = "effort";
       f.drive = j;
       f.value = torque / limit.effort;
-      f.text = fmt::format("torque of drive {} reaches {:.4g} {}, {:.3g} times the effort in the robot file: unit?", j + 1,
-                           torque, turns ? "N m" : "N", f.value);
+      f.text = fmt::format("torque of drive {} reaches {:.4g} {}, {:.3g} times the effort in the robot file: unit?",
+                           j + 1, torque, turns ? "N m" : "N", f.value);
       f.mend = "give the torque in N m at the joint (N for a carriage), or mend the effort in the robot file";
       out.push_back(std::move(f));
     }
@@ -241,9 +247,10 @@ std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std:
       f.drive = j;
       f.value = position;
       f.unit = turns ? "rad" : "m";
-      f.text = fmt::format("position of drive {} reaches {:.4g} {}, the robot file allows {:.3g}: {}?", j + 1, position, f.unit,
-                           farthest, turns ? "degrees, or the motor's side of a gear" : "millimetres");
-      f.mend = turns ? "name the column with its unit (q1_deg ...), or divide by the gear ratio" : "convert the column to m";
+      f.text = fmt::format("position of drive {} reaches {:.4g} {}, the robot file allows {:.3g}: {}?", j + 1, position,
+                           f.unit, farthest, turns ? "degrees, or the motor's side of a gear" : "millimetres");
+      f.mend =
+          turns ? "name the column with its unit (q1_deg ...), or divide by the gear ratio" : "convert the column to m";
       out.push_back(std::move(f));
     }
   }

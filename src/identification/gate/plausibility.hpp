@@ -17,6 +17,7 @@ namespace deltadyn::gate {
 
 /// Torques, positions and rates far beyond the limits of the robot file.
 /// \param moving  the rows follow one another in time
-[[nodiscard]] std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs, bool moving);
+[[nodiscard]] std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs,
+                                                     bool moving);
 
 }  // namespace deltadyn::gate

@@ -32,7 +32,9 @@ void add_signs(const RobotDescription& robot, std::vector<PositionHypothesis>& o
     }
     h.key = "position_sign";
     h.words = fmt::format("the position of {} has the wrong sign", drives_in_words(drives, n));
-    h.mend = "turn the sign of the column (delta-log import: sign = -1 in the map), or the direction of counting in the drive";
+    h.mend =
+        "turn the sign of the column (delta-log import: sign = -1 in the map), or the direction of counting in the "
+        "drive";
     h.drive = drives.size() == 1 ? drives.front() : -1;
     // All limbs alike is one convention, not several faults.
     const bool all_limbs = drives.size() == robot.limbs.size() && drives.back() < static_cast<int>(robot.limbs.size());
@@ -41,7 +43,8 @@ void add_signs(const RobotDescription& robot, std::vector<PositionHypothesis>& o
   }
 }
 
-/// Columns of other drives: of the positions, and of positions and torques where that is more than limbs numbered in another way.
+/// Columns of other drives: of the positions, and of positions and torques where that is more than limbs numbered in
+/// another way.
 void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& out) {
   const int n = robot.drives();
   std::vector<int> order(static_cast<std::size_t>(n));
@@ -55,7 +58,8 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
     h.key = "position_order";
     std::string columns;
     for (const int j : order) columns += fmt::format("{}{}", columns.empty() ? "" : ", ", j + 1);
-    h.words = fmt::format("the positions are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
+    h.words =
+        fmt::format("the positions are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
     h.mend = "put the position columns in the order of the limbs, counter-clockwise from above (limb 1 on +x)";
     h.changes = moved;
     out.push_back(h);
@@ -63,12 +67,14 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
     h.key = "drive_order";
     h.drives_moved = true;
     h.words = fmt::format(
-        "the drives are in another order: the drive that turns the tool is in the columns of drive {}, the limbs, counted from "
+        "the drives are in another order: the drive that turns the tool is in the columns of drive {}, the limbs, "
+        "counted from "
         "any of them, in "
         "those of drives {}",
         order.back() + 1, columns.substr(0, columns.rfind(',')));
     h.mend =
-        "put the columns in the order of the limbs, counter-clockwise from above (limb 1 on +x), then the drive that turns the "
+        "put the columns in the order of the limbs, counter-clockwise from above (limb 1 on +x), then the drive that "
+        "turns the "
         "tool (delta-log import: source in the map)";
     out.push_back(std::move(h));
   }
@@ -114,11 +120,14 @@ PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& 
   }
   const double ratio = 1 / value;
   const double whole = std::round(ratio), inverse = std::round(value);
-  const auto is_whole = [&](double x) { return x > 1.5 && std::abs(x / std::round(x) - 1) < std::max(tolerance, 0.01); };
+  const auto is_whole = [&](double x) {
+    return x > 1.5 && std::abs(x / std::round(x) - 1) < std::max(tolerance, 0.01);
+  };
   const bool gear = is_whole(ratio);
   if (is_whole(value)) {
-    h.words = fmt::format("the position of {} is 1/{:g} of the joint's: a gear ratio taken out of what is the joint's already?",
-                          who, inverse);
+    h.words = fmt::format(
+        "the position of {} is 1/{:g} of the joint's: a gear ratio taken out of what is the joint's already?", who,
+        inverse);
     h.mend = fmt::format(
         "multiply the positions by {:g}, and divide the torque by it if it was multiplied (delta-log import: leave "
         "gear_ratio out of the map's blocks)",
@@ -127,9 +136,10 @@ PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& 
   }
   h.odd = !gear;
   if (!gear) h.changes += 0.7;  // no unit and no whole ratio: less likely than any of these
-  h.words = fmt::format("the position of {} is {:.4g} times the joint's: motor side of a gear{}?", who, gear ? whole : ratio,
-                        gear ? "" : ", or another unit");
-  h.mend = "divide the positions by the gear ratio and multiply the torque by it (delta-log import: gear_ratio in the map)";
+  h.words = fmt::format("the position of {} is {:.4g} times the joint's: motor side of a gear{}?", who,
+                        gear ? whole : ratio, gear ? "" : ", or another unit");
+  h.mend =
+      "divide the positions by the gear ratio and multiply the torque by it (delta-log import: gear_ratio in the map)";
   return h;
 }
 
@@ -240,12 +250,13 @@ PositionHypothesis member(const PositionFamily& family, const RobotDescription& 
   if (right_angle) degrees = quarter;
   h.odd = !right_angle;
   if (!right_angle) h.changes += 0.5;
-  h.words =
-      sign > 0
-          ? fmt::format("the zero of the angle of {} is off: {:+.1f} deg must be added", who, degrees)
-          : fmt::format(
-                "the angle of {} counts upwards{}", who,
-                degrees == 0 ? "" : fmt::format(" from another zero ({:.1f} deg minus the recorded angle is right)", degrees));
+  h.words = sign > 0
+                ? fmt::format("the zero of the angle of {} is off: {:+.1f} deg must be added", who, degrees)
+                : fmt::format(
+                      "the angle of {} counts upwards{}", who,
+                      degrees == 0
+                          ? ""
+                          : fmt::format(" from another zero ({:.1f} deg minus the recorded angle is right)", degrees));
   h.mend = fmt::format("arm angles count from horizontal outwards, positive down: use {} {} q",
                        fmt::format("{:.4g} rad", right_angle ? degrees * kPi / 180 : value), sign > 0 ? "+" : "-");
   return h;

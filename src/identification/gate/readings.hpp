@@ -43,7 +43,8 @@ struct PositionFamily {
                                         double tolerance);
 
 /// Units, whole ratios or right angles near a value of a family, the likeliest first.
-[[nodiscard]] std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot, double value);
+[[nodiscard]] std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot,
+                                                   double value);
 
 /// First `inner`, then `outer` on what it gives.
 [[nodiscard]] Reading compose(const Reading& outer, const Reading& inner);

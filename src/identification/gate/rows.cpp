@@ -17,8 +17,8 @@ constexpr double kReach = 4.5;          // standard deviations of the Gaussian t
 constexpr double kMaskFloor = 0.003;    // of a joint's largest rate: below, the sign of the friction is uncertain
 constexpr Index kFewestUnmasked = 300;  // rows of a drive; with fewer, those near reversals count, too
 constexpr double kLookUp_s = 0.05;      // torque is looked up so far from a row
-constexpr double kSmear = 2.5;          // standard deviations of the Gaussian about a reversal, for rows at single points
-constexpr double kRowsPerBand = 0.4;    // spacing of rows in periods of the band: nearly independent rows
+constexpr double kSmear = 2.5;        // standard deviations of the Gaussian about a reversal, for rows at single points
+constexpr double kRowsPerBand = 0.4;  // spacing of rows in periods of the band: nearly independent rows
 
 Index reach_of(const Sample& sample, const Stretch& stretch) {
   return static_cast<Index>(std::ceil(kReach * sample.sigma_s / stretch.step_s));
@@ -67,7 +67,8 @@ struct PointRegressor {
   PointRegressor(const Robot& robot, const BaseParameters& base, const Stretch& stretch, const Reading& reading) {
     const Index N = stretch.points();
     const int n = robot.drives();
-    const Eigen::MatrixXd q = reading.apply(stretch.q, 0), qd = reading.apply(stretch.qd, 1), qdd = reading.apply(stretch.qdd, 2);
+    const Eigen::MatrixXd q = reading.apply(stretch.q, 0), qd = reading.apply(stretch.qd, 1),
+                          qdd = reading.apply(stretch.qdd, 2);
     Y.assign(static_cast<std::size_t>(n), Eigen::MatrixXd::Zero(N, base.count()));
     out_of_reach.assign(static_cast<std::size_t>(N), 0);
     Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(N, robot.friction_joints());
@@ -148,7 +149,8 @@ Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sampl
   for (std::size_t s = 0; s < sample.stretches.size(); ++s) {
     const Stretch& stretch = sample.stretches[s];
     PointRegressor regressor(robot, base, stretch, reading);
-    for (Index k = stretch.first; k < stretch.last; ++k) unreachable += regressor.out_of_reach[static_cast<std::size_t>(k)];
+    for (Index k = stretch.first; k < stretch.last; ++k)
+      unreachable += regressor.out_of_reach[static_cast<std::size_t>(k)];
     looked_at += static_cast<double>(std::max<Index>(0, stretch.last - stretch.first));
     const Kernel kernel(sample.sigma_s, stretch.step_s, 0.0);
     const Index reach = reach_of(sample, stretch);
@@ -210,7 +212,8 @@ Points pick_points(const Sample& sample, Index count) {
 
 Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points& points, const Reading& reading) {
   const int n = robot.drives();
-  const Eigen::MatrixXd q = reading.apply(points.q, 0), qd = reading.apply(points.qd, 1), qdd = reading.apply(points.qdd, 2);
+  const Eigen::MatrixXd q = reading.apply(points.q, 0), qd = reading.apply(points.qd, 1),
+                        qdd = reading.apply(points.qdd, 2);
   const Eigen::RowVectorXd floor = 0.02 * qd.cwiseAbs().colwise().maxCoeff();
   Rows rows;
   rows.drives.resize(static_cast<std::size_t>(n));
@@ -240,8 +243,9 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
   return rows;
 }
 
-Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorXd>& column, const std::vector<Place>& at,
-                          const std::vector<double>& shift_s_of_log, int derivatives, double sigma_s) {
+Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorXd>& column,
+                          const std::vector<Place>& at, const std::vector<double>& shift_s_of_log, int derivatives,
+                          double sigma_s) {
   Eigen::MatrixXd out(static_cast<Index>(at.size()), 1 + derivatives);
   std::vector<Kernel> kernels;  // one a stretch: steps and shifts may differ
   for (const Stretch& stretch : sample.stretches) {

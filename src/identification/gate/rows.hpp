@@ -43,9 +43,10 @@ struct Rows {
   std::vector<std::vector<Eigen::MatrixXd>> Y_of_points;
 };
 
-/// Regressor under the Gaussian of the sample: for what needs precision (delays). Rows within reach of a reversal are left out
-/// unless few others remain.
-[[nodiscard]] Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sample& sample, const Reading& reading);
+/// Regressor under the Gaussian of the sample: for what needs precision (delays). Rows within reach of a reversal are
+/// left out unless few others remain.
+[[nodiscard]] Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sample& sample,
+                                   const Reading& reading);
 
 /// Motion under the Gaussian at few points: cheap, good to some per cent, for signs, orders and units.
 struct Points {
@@ -56,12 +57,13 @@ struct Points {
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< points x drives: this torque is no evidence
 };
 [[nodiscard]] Points pick_points(const Sample& sample, Eigen::Index count);
-[[nodiscard]] Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points& points, const Reading& reading);
+[[nodiscard]] Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points& points,
+                                  const Reading& reading);
 
-/// Values of one column a stretch and their time derivatives at places shifted by the log's `shift_s` (later ones for a positive
-/// shift), under a Gaussian of `sigma_s`, at most three times that of the sample: rows x (1 + derivatives).
+/// Values of one column a stretch and their time derivatives at places shifted by the log's `shift_s` (later ones for a
+/// positive shift), under a Gaussian of `sigma_s`, at most three times that of the sample: rows x (1 + derivatives).
 [[nodiscard]] Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorXd>& column,
-                                        const std::vector<Place>& at, const std::vector<double>& shift_s_of_log, int derivatives,
-                                        double sigma_s);
+                                        const std::vector<Place>& at, const std::vector<double>& shift_s_of_log,
+                                        int derivatives, double sigma_s);
 
 }  // namespace deltadyn::gate

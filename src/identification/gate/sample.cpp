@@ -18,8 +18,8 @@ using Eigen::Index;
 constexpr double kMargin = 1.8;     // periods of the band that either end of a stretch loses to the filters
 constexpr double kSearch_s = 0.06;  // further margin: delays are looked for so far
 constexpr double kPerPeriod = 13;   // grid points a period of the band
-// The motion's own filter ends well above the Gaussian that torque and regressor share: what it takes off the regressor alone would
-// look like a lag.
+// The motion's own filter ends well above the Gaussian that torque and regressor share: what it takes off the regressor
+// alone would look like a lag.
 constexpr double kMotionRatio = 2.0;
 constexpr Index kFewestSamples = 60;  // of a stretch
 
@@ -40,7 +40,8 @@ Eigen::MatrixXd thin(const Eigen::MatrixXd& columns, Index factor) {
   const double sigma = 0.6 * static_cast<double>(factor);
   const auto reach = static_cast<Index>(std::ceil(4 * sigma));
   Eigen::VectorXd weight(2 * reach + 1);
-  for (Index k = -reach; k <= reach; ++k) weight(k + reach) = std::exp(-0.5 * std::pow(static_cast<double>(k) / sigma, 2));
+  for (Index k = -reach; k <= reach; ++k)
+    weight(k + reach) = std::exp(-0.5 * std::pow(static_cast<double>(k) / sigma, 2));
   weight /= weight.sum();
   Eigen::MatrixXd out((columns.rows() + factor - 1) / factor, columns.cols());
   for (Index row = 0; row < out.rows(); ++row) {

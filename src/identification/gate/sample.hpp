@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A small part of the logs, ready for the hypotheses of the gate: whatever their length, some ten seconds of motion are enough to
-/// see a wrong sign, a delay or a unit.
+/// A small part of the logs, ready for the hypotheses of the gate: whatever their length, some ten seconds of motion
+/// are enough to see a wrong sign, a delay or a unit.
 
 #include <Eigen/Core>
 #include <vector>
@@ -20,7 +20,7 @@ struct Stretch {
   Eigen::MatrixXd tau;         ///< N x drives; a mean over the grid's step where the log is sampled finer
   std::vector<char> spoilt;    ///< 1: filled in or spoilt, no evidence
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< N x drives: Log::torque_out
-  Eigen::Index first = 0, last = 0;                               ///< [first, last): not disturbed by the ends of the filter
+  Eigen::Index first = 0, last = 0;  ///< [first, last): not disturbed by the ends of the filter
 
   [[nodiscard]] Eigen::Index points() const { return q.rows(); }
 };
@@ -30,7 +30,8 @@ struct Sample {
   double band_hz = 0;  ///< -6 dB point of the Gaussian low pass that regressor and torque share
   double sigma_s = 0;  ///< of that Gaussian
   bool coarse =
-      false;  ///< even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
+      /// Even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
+      false;
 };
 
 struct SampleOptions {
@@ -38,13 +39,15 @@ struct SampleOptions {
   int stretches = 12;           ///< a log that is longer than its share
   double highest_band_hz = 40;
   double lowest_band_hz = 8;
-  double acceleration_noise = 0.003;  ///< the band falls until the noise of the acceleration is below this share of its rms
+  /// The band falls until the noise of the acceleration is below this share of its rms
+  double acceleration_noise = 0.003;
 };
 
-/// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the log with
-/// the strongest motion. No torque takes part, so that a fault of the torque cannot move it.
-/// \param coarse  set if the noise is too large even in the lowest band
-[[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options, bool* coarse = nullptr);
+/// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the
+/// log with the strongest motion. No torque takes part, so that a fault of the torque cannot move it. \param coarse set
+/// if the noise is too large even in the lowest band
+[[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options,
+                                           bool* coarse = nullptr);
 
 /// The number of each log's file, from 0 in the order of the list: parts of one file share its delays.
 [[nodiscard]] std::vector<int> file_numbers(const std::vector<Log>& logs);

@@ -17,8 +17,8 @@ using Eigen::Index;
 constexpr double kScanStep_s = 0.002;  // fine enough for Gauss-Newton to start in the right valley
 constexpr double kLongestDelay_s = 0.04;
 constexpr double kFarthest_s = 0.048;  // the rows leave this margin to the ends of their stretch
-constexpr double kCalm = 3.0;          // times the Gaussian of the sample: instruments see the motion, not the encoders' noise
-constexpr int kParts = 10;             // of the rows for the jackknife
+constexpr double kCalm = 3.0;  // times the Gaussian of the sample: instruments see the motion, not the encoders' noise
+constexpr int kParts = 10;     // of the rows for the jackknife
 constexpr double kMostOfDelay = 1e-6;  // s; Gauss-Newton ends below this step
 
 }  // namespace
@@ -59,7 +59,8 @@ bool TimingProblem::solvable() const {
 double TimingProblem::prepare() {
   const std::vector<double> none(static_cast<std::size_t>(logs_), 0.0);
   for (int j = 0; j < drives_; ++j) {
-    const Eigen::VectorXd tau = values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), none, 0, sample_.sigma_s);
+    const Eigen::VectorXd tau =
+        values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), none, 0, sample_.sigma_s);
     weight_(j) = std::sqrt(static_cast<double>(tau.size()) / std::max(tau.squaredNorm(), 1e-300));
   }
   make_basis();
@@ -189,7 +190,8 @@ Eigen::MatrixXd TimingProblem::model_slopes(const Eigen::VectorXd& tau, const Ei
     for (const auto& Y : rows_.Y_of_points) model.emplace_back(Y[static_cast<std::size_t>(j)] * beta);
     model = behind_low_pass(model, -lag.col(j).cwiseAbs());
     const Index count = places_count(j);
-    out.middleRows(row, count) = weight_(j) * values_at(sample_, model, places(j), none, 2, calm * sample_.sigma_s).rightCols(2);
+    out.middleRows(row, count) =
+        weight_(j) * values_at(sample_, model, places(j), none, 2, calm * sample_.sigma_s).rightCols(2);
     row += count;
   }
   return out;
@@ -203,10 +205,12 @@ Eigen::VectorXd TimingProblem::torque(const Eigen::MatrixXd& delay, const Eigen:
   for (int j = 0; j < drives_; ++j) {
     const Index count = places_count(j);
     std::vector<double> shift(static_cast<std::size_t>(logs_));
-    for (int l = 0; l < logs_; ++l) shift[static_cast<std::size_t>(l)] = std::clamp(delay(l, j), -kFarthest_s, kFarthest_s);
+    for (int l = 0; l < logs_; ++l)
+      shift[static_cast<std::size_t>(l)] = std::clamp(delay(l, j), -kFarthest_s, kFarthest_s);
     const std::vector<Eigen::VectorXd>& recorded = recorded_[static_cast<std::size_t>(j)];
     const bool lead = (lag.col(j).array() < 0).any();
-    const Eigen::MatrixXd t = weight_(j) * values_at(sample_, recorded, places(j), shift, with_slopes ? 2 : 1, sample_.sigma_s);
+    const Eigen::MatrixXd t =
+        weight_(j) * values_at(sample_, recorded, places(j), shift, with_slopes ? 2 : 1, sample_.sigma_s);
     Eigen::MatrixXd once, twice;
     if (lead) {
       const std::vector<Eigen::VectorXd> y = behind_low_pass(recorded, lag.col(j));
@@ -248,7 +252,8 @@ void TimingProblem::linearise(const Freedom& free, const Eigen::VectorXd& theta,
   all.col(0) = tau;
   // The noise of a recorded torque is orthogonal to its own derivative: a delay alone needs no instrument.
   const bool lags = std::any_of(free.lag.begin(), free.lag.end(), [](int k) { return k >= 0; });
-  const Eigen::VectorXd model = lags ? Eigen::VectorXd(model_slopes(tau, lag, kCalm).col(0)) : Eigen::VectorXd(slopes.col(0));
+  const Eigen::VectorXd model =
+      lags ? Eigen::VectorXd(model_slopes(tau, lag, kCalm).col(0)) : Eigen::VectorXd(slopes.col(0));
   Index row = 0;
   for (int j = 0; j < drives_; ++j) {
     for (const Place& place : places(j)) {
@@ -315,10 +320,12 @@ void TimingProblem::reweigh(double delay) {
   make_basis();
 }
 
-Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen::MatrixXd& J, const Eigen::MatrixXd& Z) const {
+Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen::MatrixXd& J,
+                                          const Eigen::MatrixXd& Z) const {
   const double variance = r.squaredNorm() / static_cast<double>(std::max<Index>(1, total_ - basis_.cols()));
   const Eigen::MatrixXd inverse = (Z.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
-  const Eigen::MatrixXd covariance = inverse * (Z.transpose() * Z) * inverse.transpose() * (std::max(variance, 1e-30) * memory_);
+  const Eigen::MatrixXd covariance =
+      inverse * (Z.transpose() * Z) * inverse.transpose() * (std::max(variance, 1e-30) * memory_);
   const Index Q = basis_.cols(), G = J.cols();
   // [basis Z]^T [basis J r] by part; leaving one out and solving again is cheap.
   std::vector<Eigen::MatrixXd> part(kParts, Eigen::MatrixXd::Zero(Q + G, Q + G + 1));

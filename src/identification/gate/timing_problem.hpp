@@ -52,11 +52,12 @@ class TimingProblem {
   /// Fills in Solution::std.
   void add_deviations(Solution& s) const;
 
-  /// Noise that a solution leaves, memory allowed for, in units of Solution::chi2: what a worse timing leaves is no noise.
+  /// Noise that a solution leaves, memory allowed for, in units of Solution::chi2: what a worse timing leaves is no
+  /// noise.
   [[nodiscard]] double noise_unit(const Solution& s) const;
 
-  /// What a timing leaves of the torque's second derivative, with its standard deviation [s^2]: 0 if the timing is of the right kind.
-  /// A delay c and a lag c are alike to first order; in the second one they differ by c^2 / 2.
+  /// What a timing leaves of the torque's second derivative, with its standard deviation [s^2]: 0 if the timing is of
+  /// the right kind. A delay c and a lag c are alike to first order; in the second one they differ by c^2 / 2.
   [[nodiscard]] std::pair<double, double> curvature(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const;
 
   /// Delays and lags, or their standard deviations, logs x drives [s].
@@ -66,25 +67,29 @@ class TimingProblem {
   [[nodiscard]] int drives() const { return drives_; }
 
  private:
-  [[nodiscard]] const std::vector<Place>& places(int drive) const { return rows_.drives[static_cast<std::size_t>(drive)].at; }
-  [[nodiscard]] Eigen::Index places_count(int drive) const { return rows_.drives[static_cast<std::size_t>(drive)].count(); }
+  [[nodiscard]] const std::vector<Place>& places(int drive) const {
+    return rows_.drives[static_cast<std::size_t>(drive)].at;
+  }
+  [[nodiscard]] Eigen::Index places_count(int drive) const {
+    return rows_.drives[static_cast<std::size_t>(drive)].count();
+  }
 
   void spread(const Freedom& free, const Eigen::VectorXd& theta, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const;
 
   /// Orthonormal basis of what base parameters and an offset of each drive can explain.
   void make_basis();
 
-  /// First and second time derivative of the torque that the base parameters give, behind a low pass of |lag| and a calmer Gaussian:
-  /// instruments free of noise, which would pull a lag towards whatever smooths the record.
-  /// \param tau   that the base parameters are fitted to, weighted
-  /// \param calm  width of the Gaussian over that of the sample
+  /// First and second time derivative of the torque that the base parameters give, behind a low pass of |lag| and a
+  /// calmer Gaussian: instruments free of noise, which would pull a lag towards whatever smooths the record. \param tau
+  /// that the base parameters are fitted to, weighted \param calm  width of the Gaussian over that of the sample
   [[nodiscard]] Eigen::MatrixXd model_slopes(const Eigen::VectorXd& tau, const Eigen::MatrixXd& lag, double calm) const;
 
   /// Weighted torque with delay and lag taken out; columns of `slopes`: by delay and by lag.
-  [[nodiscard]] Eigen::VectorXd torque(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag, Eigen::MatrixXd& slopes,
-                                       bool with_slopes) const;
+  [[nodiscard]] Eigen::VectorXd torque(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag,
+                                       Eigen::MatrixXd& slopes, bool with_slopes) const;
 
-  /// Columns behind a first-order low pass with the time constant -lag of their log; as they are where the lag is not negative.
+  /// Columns behind a first-order low pass with the time constant -lag of their log; as they are where the lag is not
+  /// negative.
   [[nodiscard]] std::vector<Eigen::VectorXd> behind_low_pass(const std::vector<Eigen::VectorXd>& columns,
                                                              const Eigen::VectorXd& lag_of_log) const;
 
@@ -103,9 +108,10 @@ class TimingProblem {
   /// Weights by the residual at a common delay, and the memory of that residual.
   void reweigh(double delay);
 
-  /// Of the step (Z^T J)^-1 Z^T r: the larger one of the deviation by the noise and that by a jackknife over parts of the rows. What
-  /// the model lacks is no white noise, but it differs from part to part.
-  [[nodiscard]] Eigen::VectorXd deviations(const Eigen::VectorXd& r, const Eigen::MatrixXd& J, const Eigen::MatrixXd& Z) const;
+  /// Of the step (Z^T J)^-1 Z^T r: the larger one of the deviation by the noise and that by a jackknife over parts of
+  /// the rows. What the model lacks is no white noise, but it differs from part to part.
+  [[nodiscard]] Eigen::VectorXd deviations(const Eigen::VectorXd& r, const Eigen::MatrixXd& J,
+                                           const Eigen::MatrixXd& Z) const;
 
   const Sample& sample_;
   const Rows& rows_;

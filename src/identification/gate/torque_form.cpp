@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRidge = 1e-11;  // of the scaled normal equations: directions that the motion does not show stay finite
+// Of the scaled normal equations: directions that the motion does not show stay finite
+constexpr double kRidge = 1e-11;
 
 /// Columns scaled to norm 1, so that the ridge means the same for all.
 Eigen::LDLT<Eigen::MatrixXd> factorise(const Eigen::MatrixXd& A, Eigen::VectorXd& scale) {

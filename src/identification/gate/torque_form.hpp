@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Every way to assign, turn and scale the recorded torques, judged from one fold: for a given reading of the positions the residual
-/// is a quadratic form of the drives' torque factors.
+/// Every way to assign, turn and scale the recorded torques, judged from one fold: for a given reading of the positions
+/// the residual is a quadratic form of the drives' torque factors.
 
 #include <Eigen/Core>
 #include <vector>
@@ -11,8 +11,9 @@
 
 namespace deltadyn::gate {
 
-/// Rows of one drive folded with all torque columns beside each other, means taken off (a torque offset is nobody's fault here).
-/// Normal equations: what they lose in precision, a millionth of the torque, is far below what is told apart here.
+/// Rows of one drive folded with all torque columns beside each other, means taken off (a torque offset is nobody's
+/// fault here). Normal equations: what they lose in precision, a millionth of the torque, is far below what is told
+/// apart here.
 struct TorqueBlock {
   Eigen::MatrixXd YtY;   ///< base x base
   Eigen::MatrixXd Ytau;  ///< base x columns
@@ -23,8 +24,8 @@ struct TorqueBlock {
 /// \param tau  of each drive's rows: rows x columns
 [[nodiscard]] std::vector<TorqueBlock> fold_torques(const Rows& rows, const std::vector<Eigen::MatrixXd>& tau);
 
-/// S with s^T S s = sum over the drives of (residual / torque)^2 when drive j's torque is s_j factor_j times column assignment[j].
-/// \param factor  none of them 0; each drive's residual is counted against its torque times this
+/// S with s^T S s = sum over the drives of (residual / torque)^2 when drive j's torque is s_j factor_j times column
+/// assignment[j]. \param factor  none of them 0; each drive's residual is counted against its torque times this
 [[nodiscard]] Eigen::MatrixXd residual_form(const std::vector<TorqueBlock>& blocks, const std::vector<int>& assignment,
                                             const Eigen::VectorXd& factor);
 
@@ -34,7 +35,8 @@ struct TorqueBlock {
 /// Relative residual of each drive with parameters of its own.
 [[nodiscard]] Eigen::VectorXd own_residuals(const std::vector<TorqueBlock>& blocks);
 
-/// The factor of one drive's torque that leaves least, the others' being 1, with its standard deviation by the residual.
+/// The factor of one drive's torque that leaves least, the others' being 1, with its standard deviation by the
+/// residual.
 struct Factor {
   double value = 1, std = 0;
 };

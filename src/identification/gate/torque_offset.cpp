@@ -128,14 +128,17 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
     f.unit = unit;
     out.value(drive) = best.value(k);
     const bool last = k + 1 == best.value.size();
-    sizes += fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : (last ? " and " : ", "), best.value(k), best.std(k), unit);
+    sizes +=
+        fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : (last ? " and " : ", "), best.value(k), best.std(k), unit);
   }
   f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
                        drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual);
   f.mend =
-      "if the zero of the sensor or amplifier is off, fit it (delta-identify --offset) or take it out (delta-log import: offset "
+      "if the zero of the sensor or amplifier is off, fit it (delta-identify --offset) or take it out (delta-log "
+      "import: offset "
       "in "
-      "the map); friction that differs by direction looks alike, and so does a hose if all drives are off: delta-diagnose names "
+      "the map); friction that differs by direction looks alike, and so does a hose if all drives are off: "
+      "delta-diagnose names "
       "them";
   return out;
 }

@@ -53,7 +53,8 @@ std::optional<Estimate> estimate(const Robot& robot, const BaseParameters& base,
     out.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
     out.beta = out.covariance * b;
     for (int j = 0; j < n; ++j) {
-      const Eigen::VectorXd r = tau[static_cast<std::size_t>(j)] - rows.drives[static_cast<std::size_t>(j)].Y * out.beta;
+      const Eigen::VectorXd r =
+          tau[static_cast<std::size_t>(j)] - rows.drives[static_cast<std::size_t>(j)].Y * out.beta;
       weight(j) = static_cast<double>(std::max<Index>(1, r.size())) /
                   std::max(r.squaredNorm(), 1e-12 * tau[static_cast<std::size_t>(j)].squaredNorm() + 1e-300);
     }
@@ -63,8 +64,8 @@ std::optional<Estimate> estimate(const Robot& robot, const BaseParameters& base,
 }
 
 /// Rows of the base regressor at a state.
-Eigen::MatrixXd base_rows(const Robot& robot, const BaseParameters& base, const Eigen::VectorXd& q, const Eigen::VectorXd& qdd,
-                          bool& reached) {
+Eigen::MatrixXd base_rows(const Robot& robot, const BaseParameters& base, const Eigen::VectorXd& q,
+                          const Eigen::VectorXd& qdd, bool& reached) {
   Eigen::MatrixXd full(robot.drives(), robot.parameters());
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(robot.drives());
   reached = robot.regressor(q, rest, qdd, full) == Status::ok && full.allFinite();
@@ -72,8 +73,8 @@ Eigen::MatrixXd base_rows(const Robot& robot, const BaseParameters& base, const 
 }
 
 /// How large the estimate of G beta is beside that of the prior.
-Ratio compare(const Eigen::MatrixXd& G, const BaseParameters& base, const Estimate& estimate, const Eigen::VectorXd& prior,
-              const Eigen::VectorXd& prior_std, double* relative_std) {
+Ratio compare(const Eigen::MatrixXd& G, const BaseParameters& base, const Estimate& estimate,
+              const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std, double* relative_std) {
   Ratio out;
   if (G.rows() == 0) return out;
   const Eigen::VectorXd expected = G * (base.B * prior);
@@ -98,8 +99,8 @@ Ratio compare(const Eigen::MatrixXd& G, const BaseParameters& base, const Estima
 
 }  // namespace
 
-TorqueScale estimate_scale(const Robot& robot, const BaseParameters& base, const Points& points, const Eigen::VectorXd& prior,
-                           const Eigen::VectorXd& prior_std) {
+TorqueScale estimate_scale(const Robot& robot, const BaseParameters& base, const Points& points,
+                           const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std) {
   TorqueScale out;
   const int n = robot.drives();
   out.inertia.resize(static_cast<std::size_t>(n));
@@ -122,7 +123,8 @@ TorqueScale estimate_scale(const Robot& robot, const BaseParameters& base, const
   }
   Eigen::MatrixXd G(static_cast<Index>(gravity.size()) * limbs, base.count());
   for (std::size_t k = 0; k < gravity.size(); ++k) G.middleRows(static_cast<Index>(k) * limbs, limbs) = gravity[k];
-  // A torque offset looks like the mean of gravity; only limbs of a delta, whose gravity changes with the pose, are free of that.
+  // A torque offset looks like the mean of gravity; only limbs of a delta, whose gravity changes with the pose, are
+  // free of that.
   out.gravity = compare(G, base, *found, prior, prior_std, &out.prior_std);
   for (int j = 0; j < n; ++j) {
     const auto& rows = inertia[static_cast<std::size_t>(j)];

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Hypothesis: all torques have another scale, or another sign, than the masses of the prior need. Gravity tells it best: reflected
-/// rotor inertia, which the model need not hold, adds to the inertia but not to the weight.
+/// Hypothesis: all torques have another scale, or another sign, than the masses of the prior need. Gravity tells it
+/// best: reflected rotor inertia, which the model need not hold, adds to the inertia but not to the weight.
 
 #include <Eigen/Core>
 #include <vector>

@@ -13,9 +13,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double kLongestLag_s = 0.02;
-constexpr double kSigmas = 4.5;         // a delay within this many of its standard deviations is chance
-constexpr double kWorth = 25.0;         // fall of chi^2 that pays for a further parameter: five standard deviations
-constexpr double kShare = 0.01;         // of the residual's mean square: a delay that explains less is no matter to the fit
+constexpr double kSigmas = 4.5;  // a delay within this many of its standard deviations is chance
+constexpr double kWorth = 25.0;  // fall of chi^2 that pays for a further parameter: five standard deviations
+constexpr double kShare = 0.01;  // of the residual's mean square: a delay that explains less is no matter to the fit
 constexpr double kShareOfSplit = 0.03;  // the same for delays that differ between drives or logs
 constexpr double kFails = 3.0;          // standard deviations
 
@@ -59,8 +59,8 @@ Solution split_if_different(const TimingProblem& problem, const Solution& common
   return best;
 }
 
-/// A delay and a lag of all drives in series, for a record that neither of them explains alone. The sum of both is known from the
-/// first derivative of the torque, their difference from the second.
+/// A delay and a lag of all drives in series, for a record that neither of them explains alone. The sum of both is
+/// known from the first derivative of the torque, their difference from the second.
 Solution both_at_once(const TimingProblem& problem, const Solution& delay, double curvature) {
   const double T = (curvature < 0 ? -1 : 1) * std::sqrt(2 * std::abs(curvature));
   Solution best = problem.solve(freedom(problem.logs(), problem.drives(), true, true, [](int, int) { return 0; }),

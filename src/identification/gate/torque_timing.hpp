@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// Hypothesis: the torque is late or early against the positions, or a first-order low pass stands between the recorded torque and
-/// the one that acted. Estimated together with the base parameters: what the torque, set right, leaves unexplained is smallest at the
-/// true delay.
+/// Hypothesis: the torque is late or early against the positions, or a first-order low pass stands between the recorded
+/// torque and the one that acted. Estimated together with the base parameters: what the torque, set right, leaves
+/// unexplained is smallest at the true delay.
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,8 +15,9 @@ namespace deltadyn::gate {
 /// Delay and time constant of each drive's torque; one row a log.
 struct Timing {
   Eigen::MatrixXd delay_s;  ///< logs x drives; positive: the torque comes late
-  Eigen::MatrixXd lag_s;  ///< time constant of a low pass: positive, the record is behind it; negative, the motor (a command was
-                          ///< recorded)
+  /// Time constant of a low pass: positive, the record is behind it; negative, the motor (a command was
+  Eigen::MatrixXd lag_s;
+  ///< recorded)
   Eigen::MatrixXd delay_std, lag_std;
   bool significant = false;              ///< anything to remove at all
   double rms_before = 0, rms_after = 0;  ///< relative residual of the base parameters: as recorded, and moved back

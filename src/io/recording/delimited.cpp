@@ -122,7 +122,8 @@ class RowReader {
     const bool footer = odd_.size() <= kFooterLines && odd_.front().fields * 2 <= layout_.fields;
     if (!cut_off && !footer) refuse_odd();
     recording_.notes.push_back(fmt::format("{}, line {}: {} left out: '{}'", file_.path, odd_.front().line,
-                                           cut_off ? "the last line is cut off," : "lines after the rows", odd_.front().text));
+                                           cut_off ? "the last line is cut off," : "lines after the rows",
+                                           odd_.front().text));
   }
 
   [[noreturn]] void refuse_odd() const {
@@ -153,22 +154,24 @@ void make_unique(std::vector<std::string>& names, Recording& recording) {
     const std::string as_found = name;
     for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{} ({})", as_found, k);
     if (name != as_found) {
-      recording.notes.push_back(
-          fmt::format("{}: the column name {} occurs twice, the later one is called '{}' here", recording.file, as_found, name));
+      recording.notes.push_back(fmt::format("{}: the column name {} occurs twice, the later one is called '{}' here",
+                                            recording.file, as_found, name));
     }
   }
 }
 
-/// rostopic echo -p: field.position2 is of the joint whose name stands in the column field.name2; the number is a place only.
+/// rostopic echo -p: field.position2 is of the joint whose name stands in the column field.name2; the number is a place
+/// only.
 void name_joints(Recording& recording) {
   for (RecordedChannel& channel : recording.channels) {
     const std::size_t digits = channel.name.find_last_not_of("0123456789") + 1;
     if (digits == channel.name.size()) continue;
     for (const std::string_view part : {"position", "velocity", "effort"}) {
       if (digits <= part.size() || channel.name.compare(digits - part.size(), part.size(), part) != 0) continue;
-      const std::string name_column = channel.name.substr(0, digits - part.size()) + "name" + channel.name.substr(digits);
-      const auto named =
-          std::ranges::find_if(recording.channels, [&](const RecordedChannel& other) { return other.name == name_column; });
+      const std::string name_column =
+          channel.name.substr(0, digits - part.size()) + "name" + channel.name.substr(digits);
+      const auto named = std::ranges::find_if(recording.channels,
+                                              [&](const RecordedChannel& other) { return other.name == name_column; });
       if (named == recording.channels.end() || named->text.empty()) continue;
       channel.joint = named->text;
       channel.place = std::atoi(channel.name.c_str() + digits) + 1;

@@ -18,10 +18,10 @@ bool is_digit(char c) {
 
 /// Spellings of "no value" in exports of spreadsheets, MATLAB, Microsoft's C library and databases.
 bool is_missing_word(std::string_view field) {
-  static constexpr std::array kWords = {"nan",      "-nan",      "+nan",     "n/a",      "#n/a",    "na",     "null",
-                                        "none",     "nil",       "-",        "--",       "inf",     "-inf",   "+inf",
-                                        "#nv",      "1.#qnan",   "?",        "1.#ind",   "-1.#ind", "1.#inf", "-nan(ind)",
-                                        "nan(ind)", "undefined", "infinity", "-infinity"};
+  static constexpr std::array kWords = {
+      "nan",     "-nan",   "+nan",      "n/a",      "#n/a",      "na",       "null",     "none", "nil",
+      "-",       "--",     "inf",       "-inf",     "+inf",      "#nv",      "1.#qnan",  "?",    "1.#ind",
+      "-1.#ind", "1.#inf", "-nan(ind)", "nan(ind)", "undefined", "infinity", "-infinity"};
   if (field.size() > 10) return false;
   const std::string word = lower(field);
   return std::ranges::find(kWords, word) != kWords.end();
@@ -214,7 +214,8 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
   };
   for (;;) {
     std::string_view rest = line;
-    while (!rest.empty() && rest.front() != separator && (rest.front() == ' ' || rest.front() == '\t')) rest.remove_prefix(1);
+    while (!rest.empty() && rest.front() != separator && (rest.front() == ' ' || rest.front() == '\t'))
+      rest.remove_prefix(1);
     if (!rest.empty() && rest.front() == '"') {
       const auto close = rest.find('"', 1);
       if (close != std::string_view::npos) {

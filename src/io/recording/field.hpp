@@ -37,13 +37,13 @@ enum class Field { number, missing, date, text };
 /// 12/31/2025 11:59:59 PM, 23:59:59.123.
 [[nodiscard]] std::optional<std::int64_t> parse_date(std::string_view field);
 
-/// Splits a line. `separator` ' ' stands for any run of blanks and tabs. Fields in double quotes may hold the separator; the
-/// quotes are taken off. Blanks around fields are taken off.
-/// \param exact  a blank as separator stands for itself, so that two of them have an empty field between them
+/// Splits a line. `separator` ' ' stands for any run of blanks and tabs. Fields in double quotes may hold the
+/// separator; the quotes are taken off. Blanks around fields are taken off. \param exact  a blank as separator stands
+/// for itself, so that two of them have an empty field between them
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields, bool exact = false);
 
-/// Lines of a text without their ends (LF, CR LF or CR alone); calls `each(line, number)`, number from 1, until it returns
-/// false. Returns whether the last line had an end.
+/// Lines of a text without their ends (LF, CR LF or CR alone); calls `each(line, number)`, number from 1, until it
+/// returns false. Returns whether the last line had an end.
 template <class Each>
 bool for_each_line(std::string_view text, Each each) {
   long number = 0;

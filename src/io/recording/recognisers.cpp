@@ -9,7 +9,8 @@ Recording read_recording(const std::string& path, const RecordingOptions& option
   for (const auto recogniser : {forms::read_twincat, forms::read_halscope}) {
     if (!recording) recording = recogniser(file);
   }
-  if (!recording) recording = forms::read_delimited(file);  // the special forms came first: delimited text takes everything
+  // The special forms came first: delimited text takes everything
+  if (!recording) recording = forms::read_delimited(file);
   if (file.is_windows_1252) recording->form += ", in Windows-1252";
   return *std::move(recording);
 }

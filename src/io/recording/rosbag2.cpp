@@ -77,26 +77,29 @@ Topic choose_topic(const Database& database, const std::string& wanted) {
   std::vector<Topic> fitting;
   std::vector<std::string> all;
   while (database.step(statement)) {
-    Topic topic{sqlite3_column_int64(statement.get(), 0), text_of(statement, 1), text_of(statement, 2), text_of(statement, 3)};
+    Topic topic{sqlite3_column_int64(statement.get(), 0), text_of(statement, 1), text_of(statement, 2),
+                text_of(statement, 3)};
     all.push_back(fmt::format("{} ({})", topic.name, topic.type));
     const bool named = wanted.empty() || topic.name == wanted || topic.name == "/" + wanted;
     if (topic.type == kJointState && named) fitting.push_back(topic);
   }
   if (fitting.empty()) {
-    throw Error(fmt::format("the bag holds no joint states{}; its topics are {}", wanted.empty() ? "" : " on topic " + wanted,
-                            all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "))),
-                database.path(),
-                fmt::format("record a topic of type {}, or export another one as CSV (PlotJuggler)", kJointState));
+    throw Error(
+        fmt::format("the bag holds no joint states{}; its topics are {}", wanted.empty() ? "" : " on topic " + wanted,
+                    all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "))),
+        database.path(),
+        fmt::format("record a topic of type {}, or export another one as CSV (PlotJuggler)", kJointState));
   }
   if (fitting.size() > 1) {
     std::vector<std::string> names;
     for (const Topic& topic : fitting) names.push_back(topic.name);
-    throw Error(fmt::format("several topics hold joint states: {}", fmt::join(names, ", ")), database.path(),
-                fmt::format("say which: --topic {}, or topic = \"{}\" in the column map", names.front(), names.front()));
+    throw Error(
+        fmt::format("several topics hold joint states: {}", fmt::join(names, ", ")), database.path(),
+        fmt::format("say which: --topic {}, or topic = \"{}\" in the column map", names.front(), names.front()));
   }
   if (fitting.front().format != "cdr" && !fitting.front().format.empty()) {
-    throw Error(fmt::format("the messages are serialised as '{}', only 'cdr' is read", fitting.front().format), database.path(),
-                "convert the bag: ros2 bag convert");
+    throw Error(fmt::format("the messages are serialised as '{}', only 'cdr' is read", fitting.front().format),
+                database.path(), "convert the bag: ros2 bag convert");
   }
   return fitting.front();
 }
@@ -229,7 +232,8 @@ class Series {
   std::map<std::string, std::size_t> place_;
 };
 
-/// Whether the headers' stamps are one clock that only the receipts mixed up: the way from one to the other takes a like time.
+/// Whether the headers' stamps are one clock that only the receipts mixed up: the way from one to the other takes a
+/// like time.
 bool is_one_clock(const Series& series) {
   constexpr double kLongestDelaySpread = 1e9;  // ns
   std::vector<double> delays;
@@ -239,8 +243,8 @@ bool is_one_clock(const Series& series) {
   return high - low < kLongestDelaySpread;
 }
 
-/// The publisher's stamps, unless it left them at zero or let them run backwards; then the times of receipt. Messages that were
-/// received out of order come into the order of their stamps.
+/// The publisher's stamps, unless it left them at zero or let them run backwards; then the times of receipt. Messages
+/// that were received out of order come into the order of their stamps.
 const std::vector<std::int64_t>& stamps_of(Series& series, Recording& recording) {
   const auto& stamps = series.stamp_ns;
   const auto [first, last] = std::ranges::minmax_element(stamps);
@@ -248,9 +252,10 @@ const std::vector<std::int64_t>& stamps_of(Series& series, Recording& recording)
   if (given && std::ranges::is_sorted(stamps)) return stamps;
   if (given && is_one_clock(series)) {
     const std::size_t moved = series.sort_by_stamps();
-    recording.notes.push_back(fmt::format(
-        "{}: {} message{} received out of order; they are taken in the order of the stamps in their headers, the better clock",
-        recording.file, moved, moved == 1 ? " was" : "s were"));
+    recording.notes.push_back(
+        fmt::format("{}: {} message{} received out of order; they are taken in the order of the stamps in their "
+                    "headers, the better clock",
+                    recording.file, moved, moved == 1 ? " was" : "s were"));
     return stamps;
   }
   recording.notes.push_back(
@@ -269,8 +274,8 @@ void add_channels(const std::string& topic, Series& series, Recording& recording
       const std::string& name = series.joints[joint];
       RecordedChannel channel;
       channel.name = fmt::format("{}/{}/{}", topic, name, kParts[part]);  // as PlotJuggler names it
-      for (const char* alias : {"{1}/{2}", "{2}/{1}", "{1}.{2}", "{0}/{2}/{1}", "{2}[{3}]", "{0}/{2}[{3}]", "{0}.{2}[{3}]",
-                                "{2}_{1}", "{1}_{2}", "{2}[{1}]"})
+      for (const char* alias : {"{1}/{2}", "{2}/{1}", "{1}.{2}", "{0}/{2}/{1}", "{2}[{3}]", "{0}/{2}[{3}]",
+                                "{0}.{2}[{3}]", "{2}_{1}", "{1}_{2}", "{2}[{1}]"})
         channel.aliases.push_back(fmt::format(fmt::runtime(alias), topic, name, kParts[part], joint));
       channel.quantity = kQuantities[part];
       channel.place = static_cast<int>(joint) + 1;
@@ -305,20 +310,23 @@ Recording read_rosbag2(const std::string& path, const RecordingOptions& options)
   const Topic topic = choose_topic(database, options.topic);
   Recording recording;
   recording.file = path;
-  const auto statement = database.prepare("SELECT timestamp, data FROM messages WHERE topic_id = ?1 ORDER BY timestamp, id");
+  const auto statement =
+      database.prepare("SELECT timestamp, data FROM messages WHERE topic_id = ?1 ORDER BY timestamp, id");
   sqlite3_bind_int64(statement.get(), 1, topic.id);
   Series series;
   JointState state;
   for (long message = 1; database.step(statement); ++message) {
     const void* data = sqlite3_column_blob(statement.get(), 1);
     if (!decode(data, sqlite3_column_bytes(statement.get(), 1), state)) {
-      throw Error("the message is cut off or no joint state", fmt::format("{}, message {} of {}", path, message, topic.name),
+      throw Error("the message is cut off or no joint state",
+                  fmt::format("{}, message {} of {}", path, message, topic.name),
                   "record the bag again; ros2 bag info shows what it holds");
     }
     series.add(state, sqlite3_column_int64(statement.get(), 0), message);
   }
   if (series.line.empty())
-    throw Error(fmt::format("the topic {} holds no messages", topic.name), path, "check that the recording is complete");
+    throw Error(fmt::format("the topic {} holds no messages", topic.name), path,
+                "check that the recording is complete");
   series.finish();
   const auto& stamps = stamps_of(series, recording);
   Timeline timeline;
@@ -328,7 +336,8 @@ Recording read_rosbag2(const std::string& path, const RecordingOptions& options)
   timeline.t_s.resize(static_cast<Eigen::Index>(stamps.size()));
   const auto first = static_cast<std::uint64_t>(stamps.front());  // stamps are in order; a broken one may be very large
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    timeline.t_s(static_cast<Eigen::Index>(k)) = 1e-9 * static_cast<double>(static_cast<std::uint64_t>(stamps[k]) - first);
+    timeline.t_s(static_cast<Eigen::Index>(k)) =
+        1e-9 * static_cast<double>(static_cast<std::uint64_t>(stamps[k]) - first);
   }
   timeline.line = series.line;
   recording.timelines.push_back(std::move(timeline));

@@ -12,8 +12,8 @@
 namespace deltadyn::forms {
 namespace {
 
-/// A preamble may be long (TwinCAT's is 24 lines, spectrum analysers write 100), but where nothing looks like rows after these
-/// there are none.
+/// A preamble may be long (TwinCAT's is 24 lines, spectrum analysers write 100), but where nothing looks like rows
+/// after these there are none.
 constexpr std::size_t kSampleLines = 600;
 /// Rows that must follow one another before they count as the data.
 constexpr std::size_t kRunOfRows = 5;
@@ -60,7 +60,8 @@ RowShape shape_of(std::string_view line, char separator, char decimal, std::vect
     double value = 0;
     const Field kind = parse_field(field, decimal, value);
     filled += field.empty() ? 0 : 1;
-    shape.numbers += kind == Field::number || kind == Field::date || (kind == Field::missing && !field.empty()) ? 1.0 : 0.0;
+    shape.numbers +=
+        kind == Field::number || kind == Field::date || (kind == Field::missing && !field.empty()) ? 1.0 : 0.0;
   }
   shape.row = shape.numbers > 0 && 2.0 * shape.numbers >= static_cast<double>(filled);
   return shape;
@@ -75,7 +76,8 @@ std::optional<Candidate> try_marks(const std::vector<Line>& lines, char separato
   }
   const auto last_of_run = [&](std::size_t i) {
     std::size_t k = i;
-    while (k < shapes.size() && (is_comment(lines[k].text) || (shapes[k].row && shapes[k].fields == shapes[i].fields))) ++k;
+    while (k < shapes.size() && (is_comment(lines[k].text) || (shapes[k].row && shapes[k].fields == shapes[i].fields)))
+      ++k;
     return k;
   };
   for (std::size_t i = 0; i < shapes.size();) {
@@ -169,8 +171,8 @@ std::string without_brackets(std::string_view unit) {
   return unit == "-" ? "" : std::string(unit);
 }
 
-/// The line above the rows that holds the names: comments in between (halscope's display settings) are passed over, and if no other
-/// line fits, one of them may be it ("# t q1 tau1"). Returns the number of lines if there is none.
+/// The line above the rows that holds the names: comments in between (halscope's display settings) are passed over, and
+/// if no other line fits, one of them may be it ("# t q1 tau1"). Returns the number of lines if there is none.
 std::size_t header_above(const std::vector<Line>& lines, const Candidate& marks) {
   const auto fitting = [&](std::size_t at) {
     std::vector<std::string> names = split_names(without_mark(lines[at].text), marks.separator, marks.fields);
@@ -219,10 +221,11 @@ Layout sniff_layout(std::string_view text, const std::string& path) {
   if (!marks) {
     const auto named = std::ranges::find_if(lines, [](const Line& line) { return !is_comment(line.text); });
     const bool header_only = lines.size() <= 2 && named != lines.end();
-    throw Error(header_only ? "the file holds a header but no data rows" : "no rows of numbers are found in this file", path,
-                header_only
-                    ? "check that the recording is complete"
-                    : "export the recording as a table: one line a sample, columns separated by comma, semicolon, tab or blanks");
+    throw Error(header_only ? "the file holds a header but no data rows" : "no rows of numbers are found in this file",
+                path,
+                header_only ? "check that the recording is complete"
+                            : "export the recording as a table: one line a sample, columns separated by comma, "
+                              "semicolon, tab or blanks");
   }
   Layout layout;
   layout.separator = marks->separator;

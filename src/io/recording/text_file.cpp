@@ -34,7 +34,8 @@ constexpr BinaryForm kBinaryForms[] = {
     {"#ROSBAG V"sv, "a ROS 1 bag",
      "convert it: rostopic echo -b FILE.bag -p /joint_states > log.csv, or rosbags-convert to rosbag2"},
     {"\x89MCAP0\r\n"sv, "a rosbag2 in MCAP storage",
-     "convert it to SQLite storage: ros2 bag convert -i FILE.mcap -o out.yaml with storage_id: sqlite3; or export CSV from "
+     "convert it to SQLite storage: ros2 bag convert -i FILE.mcap -o out.yaml with storage_id: sqlite3; or export CSV "
+     "from "
      "PlotJuggler"},
     {"\x1f\x8b"sv, "a gzip archive", "gunzip it and give the file inside"},
     {"\x28\xB5\x2F\xFD"sv, "a zstd archive", "unzstd it and give the file inside"},
@@ -43,8 +44,10 @@ constexpr BinaryForm kBinaryForms[] = {
     {"PAR1"sv, "a Parquet file", "in Python: pandas.read_parquet(FILE).to_csv('log.csv', index=False)"},
     {"\x93NUMPY"sv, "a NumPy array",
      "in Python: numpy.savetxt('log.csv', numpy.load(FILE), delimiter=',', header='t_s,q1_rad,...', comments='')"},
-    {"TDSm"sv, "a LabVIEW TDMS file", "export it as CSV, in Python: nptdms.TdmsFile(FILE).as_dataframe().to_csv('log.csv')"},
-    {"MDF     "sv, "an ASAM MDF measurement", "export it as CSV, in Python: asammdf.MDF(FILE).export('csv', 'log.csv')"},
+    {"TDSm"sv, "a LabVIEW TDMS file",
+     "export it as CSV, in Python: nptdms.TdmsFile(FILE).as_dataframe().to_csv('log.csv')"},
+    {"MDF     "sv, "an ASAM MDF measurement",
+     "export it as CSV, in Python: asammdf.MDF(FILE).export('csv', 'log.csv')"},
     {"ULog"sv, "a PX4 ULog", "convert it: ulog2csv FILE"},
     {"<?xml"sv, "an XML document", "export the recording as CSV (TwinCAT Scope: File, Export, CSV)"},
     {"%PDF"sv, "a PDF", "give the recording itself, as CSV"},
@@ -53,11 +56,13 @@ constexpr BinaryForm kBinaryForms[] = {
 std::string read_bytes(const std::string& path) {
   std::error_code failed;
   if (std::filesystem::is_directory(path, failed)) {
-    throw Error("this is a folder, not a file", path, "give the exported file, or the folder of a rosbag2 with its .db3 file");
+    throw Error("this is a folder, not a file", path,
+                "give the exported file, or the folder of a rosbag2 with its .db3 file");
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file)
-    throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path, "check the path and the permissions");
+    throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path,
+                "check the path and the permissions");
   std::string bytes;
   const auto size = std::filesystem::file_size(path, failed);
   if (!failed) bytes.reserve(size + 1);

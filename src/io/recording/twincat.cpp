@@ -42,9 +42,11 @@ Header read_header(const TextFile& file) {
       return false;
     }
     split_fields(line, header.separator, fields, true);
-    // The first line is "Name" too, with the project's name; the names of the channels come after the times of the export.
+    // The first line is "Name" too, with the project's name; the names of the channels come after the times of the
+    // export.
     inside = inside || (number > 4 && !fields.empty() && fields.front() == "Name");
-    if (inside && !fields.empty()) header.rows.emplace(std::string(fields.front()), Fields(fields.begin(), fields.end()));
+    if (inside && !fields.empty())
+      header.rows.emplace(std::string(fields.front()), Fields(fields.begin(), fields.end()));
     return true;
   });
   if (header.first_row == 0 || header.rows.count("Name") == 0) {
@@ -53,8 +55,8 @@ Header read_header(const TextFile& file) {
   }
   const auto times = header.rows.find("SampleTime[ms]");
   if (header.separator == ' ' && times != header.rows.end() && times->second.size() != header.rows.at("Name").size()) {
-    throw Error("blanks separate the columns of this TwinCAT Scope export, but names of channels hold blanks, too", file.path,
-                "export the recording again with tabs or semicolons as separator");
+    throw Error("blanks separate the columns of this TwinCAT Scope export, but names of channels hold blanks, too",
+                file.path, "export the recording again with tabs or semicolons as separator");
   }
   return header;
 }
@@ -81,16 +83,19 @@ double setting_of(const Header& header, const std::string& row, std::size_t colu
   return fine && std::isfinite(value) ? value : usual;
 }
 
-/// The rows hold the recorded variable as it is: the Scope scales and shifts on its screen only, and the unit after "Unit
-/// ScaleFactor" is that of the screen. A channel with such settings says so, and its unit is unknown if that is scaled.
+/// The rows hold the recorded variable as it is: the Scope scales and shifts on its screen only, and the unit after
+/// "Unit ScaleFactor" is that of the screen. A channel with such settings says so, and its unit is unknown if that is
+/// scaled.
 void take_display_settings(const Header& header, std::size_t column, RecordedChannel& channel) {
   const double scale = setting_of(header, "ScaleFactor", column, 1), offset = setting_of(header, "Offset", column, 0);
   const double unit_scale = setting_of(header, "Unit ScaleFactor", column, 1),
                unit_offset = setting_of(header, "Unit Offset", column, 0);
   if (scale == 1 && offset == 0 && unit_scale == 1 && unit_offset == 0) return;
   channel.remark = fmt::format(
-      "ScaleFactor {:.6g}, Offset {:.6g}, Unit ScaleFactor {:.6g} and Unit Offset {:.6g} of the header are of the Scope's "
-      "display; the rows hold the recorded variable without them, so they were not applied (scale and offset in the column map "
+      "ScaleFactor {:.6g}, Offset {:.6g}, Unit ScaleFactor {:.6g} and Unit Offset {:.6g} of the header are of the "
+      "Scope's "
+      "display; the rows hold the recorded variable without them, so they were not applied (scale and offset in the "
+      "column map "
       "would)",
       scale, offset, unit_scale, unit_offset);
   if (unit_scale == 1 && unit_offset == 0) return;
@@ -140,11 +145,13 @@ std::vector<Group> groups_of(const Header& header) {
 }
 
 /// One row of one group; groups of long sample times end early and leave their fields empty.
-void take_row(Group& group, const std::vector<std::string_view>& fields, char decimal, long line, const std::string& path) {
+void take_row(Group& group, const std::vector<std::string_view>& fields, char decimal, long line,
+              const std::string& path) {
   if (group.time >= fields.size() || fields[group.time].empty()) return;
   const std::string_view stamp = fields[group.time];
   double value = kNan;
-  if (const auto ticks = long_integer(stamp); ticks && *ticks > kFileTimeToUnixTicks && *ticks < 2 * kFileTimeToUnixTicks) {
+  if (const auto ticks = long_integer(stamp);
+      ticks && *ticks > kFileTimeToUnixTicks && *ticks < 2 * kFileTimeToUnixTicks) {
     if (group.line.empty()) {
       group.ticks = true;
       group.origin = *ticks;
@@ -153,8 +160,8 @@ void take_row(Group& group, const std::vector<std::string_view>& fields, char de
   } else if (!parse_number(stamp, decimal, value)) {
     const auto ns = parse_date(stamp);
     if (!ns) {
-      throw Error(fmt::format("the time '{}' is not a number", stamp.substr(0, 40)), fmt::format("{}, line {}", path, line),
-                  "export with time stamps in ms or ticks");
+      throw Error(fmt::format("the time '{}' is not a number", stamp.substr(0, 40)),
+                  fmt::format("{}, line {}", path, line), "export with time stamps in ms or ticks");
     }
     if (group.line.empty()) {
       group.dates = true;
@@ -177,7 +184,8 @@ void add_group(const Header& header, Group& group, Recording& recording) {
   timeline.name = fmt::format("time of {}", group.end > group.time + 1 ? names[group.time + 1] : "nothing");
   timeline.unit = group.ticks ? "ticks of 100 ns" : (group.dates ? "dates" : "ms");
   const double unit_s = group.ticks ? 1e-7 : 1e-3;
-  timeline.t_s = unit_s * Eigen::Map<Eigen::VectorXd>(group.stamp.data(), static_cast<Eigen::Index>(group.stamp.size()));
+  timeline.t_s =
+      unit_s * Eigen::Map<Eigen::VectorXd>(group.stamp.data(), static_cast<Eigen::Index>(group.stamp.size()));
   if (group.ticks) timeline.origin_ns = (group.origin - kFileTimeToUnixTicks) * 100;
   if (group.dates) timeline.origin_ns = group.origin;
   timeline.line = std::move(group.line);
@@ -215,8 +223,8 @@ std::optional<Recording> read_twincat(const TextFile& file) {
     return true;
   });
   for (Group& group : groups) add_group(header, group, recording);
-  recording.form = fmt::format("TwinCAT Scope, {} group{} of sample times{}", groups.size(), groups.size() == 1 ? "" : "s",
-                               decimal == ',' ? ", with decimal comma" : "");
+  recording.form = fmt::format("TwinCAT Scope, {} group{} of sample times{}", groups.size(),
+                               groups.size() == 1 ? "" : "s", decimal == ',' ? ", with decimal comma" : "");
   return recording;
 }
 

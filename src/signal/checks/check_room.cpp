@@ -49,8 +49,9 @@ void CheckRoom::tell(LogFinding finding, bool with_note) const {
   log.findings.push_back(std::move(finding));
 }
 
-void CheckRoom::tell(FindingLevel level, const std::string& key, Index sample, const std::string& column, int drive, double value,
-                     const std::string& unit, const std::string& sentence, const std::string& mend) const {
+void CheckRoom::tell(FindingLevel level, const std::string& key, Index sample, const std::string& column, int drive,
+                     double value, const std::string& unit, const std::string& sentence,
+                     const std::string& mend) const {
   tell({.level = level,
         .key = key,
         .drive = drive,
@@ -85,7 +86,8 @@ Log rows_of(const Log& log, const std::vector<Index>& rows) {
   out.file = log.file;
   out.part = log.part;
   out.t_s = log.t_s(rows);
-  for (const auto& [from, to] : {std::pair{&log.q, &out.q}, {&log.qd, &out.qd}, {&log.qdd, &out.qdd}, {&log.tau, &out.tau}}) {
+  for (const auto& [from, to] :
+       {std::pair{&log.q, &out.q}, {&log.qd, &out.qd}, {&log.qdd, &out.qdd}, {&log.tau, &out.tau}}) {
     if (from->size() > 0) *to = (*from)(rows, Eigen::all);
   }
   if (log.torque_out.size() > 0) out.torque_out = log.torque_out(rows, Eigen::all);

@@ -59,13 +59,15 @@ struct CheckRoom {
   /// \param with_note  false: the words stand in another finding's note already
   void tell(LogFinding finding, bool with_note = true) const;
   /// A finding in one sentence that begins with its place.
-  void tell(FindingLevel level, const std::string& key, Index sample, const std::string& column, int drive, double value,
-            const std::string& unit, const std::string& sentence, const std::string& mend = {}) const;
+  void tell(FindingLevel level, const std::string& key, Index sample, const std::string& column, int drive,
+            double value, const std::string& unit, const std::string& sentence, const std::string& mend = {}) const;
   /// Marks a sample whose values were made up; Log::kBridged never takes back Log::kLeftOut.
   void mark_filled(Index sample, char mark) const;
   /// Marks samples [begin, end) whose torque of one drive is no evidence.
   void leave_torque_out(Index drive, Index begin, Index end) const;
-  [[nodiscard]] bool turns(Index drive) const { return robot.kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute; }
+  [[nodiscard]] bool turns(Index drive) const {
+    return robot.kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute;
+  }
   [[nodiscard]] double travel(Index drive, Index begin, Index end) const;
   [[nodiscard]] bool moves(Index drive) const;
   /// Keeps the given samples, in this order.

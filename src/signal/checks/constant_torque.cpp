@@ -1,5 +1,6 @@
 /// \file
-/// A torque that stays at exactly one value: the servo is off, a brake holds, or the recorder lost the channel. That stretch is left out.
+/// A torque that stays at exactly one value: the servo is off, a brake holds, or the recorder lost the channel. That
+/// stretch is left out.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,8 @@ namespace deltadyn::checks {
 namespace {
 
 constexpr double kShortest_s = 0.05;
-constexpr Index kShortestRows = 20;  // by chance a torque that repeats in every second row does so once in a million rows
+// By chance a torque that repeats in every second row does so once in a million rows
+constexpr Index kShortestRows = 20;
 constexpr double kLongest_s = 0.5;   // a torque that reaches a limit leaves it again sooner
 constexpr double kJump = 8.0;        // usual changes: the servo switches, where a limit is reached smoothly,
 constexpr double kJumpNearby = 3.0;  // or times the changes just outside the run
@@ -36,8 +38,10 @@ struct Run {
 bool jumps_at_an_end(const Eigen::Ref<const Eigen::VectorXd>& tau, Index begin, Index end, double usual_change) {
   constexpr Index kNear = 6;
   double nearby = usual_change * kJump / kJumpNearby;
-  for (Index i = std::max<Index>(1, begin - kNear); i < begin; ++i) nearby = std::max(nearby, std::abs(tau(i) - tau(i - 1)));
-  for (Index i = end + 1; i < std::min(tau.size(), end + kNear); ++i) nearby = std::max(nearby, std::abs(tau(i) - tau(i - 1)));
+  for (Index i = std::max<Index>(1, begin - kNear); i < begin; ++i)
+    nearby = std::max(nearby, std::abs(tau(i) - tau(i - 1)));
+  for (Index i = end + 1; i < std::min(tau.size(), end + kNear); ++i)
+    nearby = std::max(nearby, std::abs(tau(i) - tau(i - 1)));
   const double into = begin > 0 ? std::abs(tau(begin) - tau(begin - 1)) : 0.0;
   const double out = end < tau.size() ? std::abs(tau(end) - tau(end - 1)) : 0.0;
   return std::max(into, out) > kJumpNearby * nearby;
@@ -58,7 +62,8 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
     } else {
       rows += static_cast<double>(end - begin);
       repeats += static_cast<double>(end - begin - 1);
-      if (begin > 0 && begin % 7 == 0) changes.push_back(std::abs(tau(begin) - tau(begin - 1)));  // every seventh will do
+      // Every seventh will do
+      if (begin > 0 && begin % 7 == 0) changes.push_back(std::abs(tau(begin) - tau(begin - 1)));
     }
   });
   if (runs.empty()) return runs;
@@ -87,7 +92,8 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
 std::string name_of(const std::vector<Run>& together, std::size_t drives) {
   const bool zero = std::ranges::all_of(together, [](const Run& run) { return run.value == 0; });
   const bool rest = std::ranges::all_of(together, &Run::resting);
-  if (together.size() == drives && zero) return rest ? "the servo is off, or brakes hold the robot" : "the servo is off";
+  if (together.size() == drives && zero)
+    return rest ? "the servo is off, or brakes hold the robot" : "the servo is off";
   if (rest) return "a brake holds, or the torque was not recorded";
   return zero ? "the servo is off, or the torque was not recorded" : "the recorded torque stands still";
 }
@@ -101,8 +107,8 @@ void check_constant_torque(CheckRoom& room) {
     const std::string column = drive_columns(room.robot, static_cast<int>(d)).tau;
     if (log.tau.col(d).maxCoeff() == log.tau.col(d).minCoeff()) {
       if (!room.moves(d)) continue;
-      throw UnusablePart(fmt::format("the torque is always {:.9g} while the drive moves", log.tau(0, d)), room.where(0, column),
-                         "check that the torque was recorded");
+      throw UnusablePart(fmt::format("the torque is always {:.9g} while the drive moves", log.tau(0, d)),
+                         room.where(0, column), "check that the torque was recorded");
     }
     const auto runs = runs_of(room, d);
     Index rows = 0;
@@ -129,13 +135,15 @@ void check_constant_torque(CheckRoom& room) {
       room.leave_torque_out(run.drive, run.begin, run.end);
       begin = std::min(begin, run.begin);
       end = std::max(end, run.end);
-      columns.push_back(fmt::format("{} = {:.4g}", drive_columns(room.robot, static_cast<int>(run.drive)).tau, run.value));
+      columns.push_back(
+          fmt::format("{} = {:.4g}", drive_columns(room.robot, static_cast<int>(run.drive)).tau, run.value));
     }
     const bool alone = together.size() == 1;
     room.tell(FindingLevel::mended, "constant_torque", begin, "", alone ? static_cast<int>(first.drive) : -1,
               static_cast<double>(end - begin) * log.sample_time_s(), "s",
               fmt::format("from t = {:.4g} s to {:.4g} s the torque is constant ({}): {}; left out", log.t_s(begin),
-                          log.t_s(end - 1), fmt::join(columns, ", "), name_of(together, static_cast<std::size_t>(log.drives()))));
+                          log.t_s(end - 1), fmt::join(columns, ", "),
+                          name_of(together, static_cast<std::size_t>(log.drives()))));
     all = std::move(later);
   }
 }

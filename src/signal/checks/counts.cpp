@@ -17,8 +17,8 @@ void check_counts(CheckRoom& room) {
   };
   if (n == 0) throw Error("the log has no samples", log.file, "check that the recording is complete");
   if (!fits(log.q, true) || !fits(log.qd, false) || !fits(log.qdd, false) || !fits(log.tau, false)) {
-    throw Error(fmt::format("the log has not one value a drive and sample ({} samples, {} drives)", n, drives), log.file,
-                "give the robot file that fits the log");
+    throw Error(fmt::format("the log has not one value a drive and sample ({} samples, {} drives)", n, drives),
+                log.file, "give the robot file that fits the log");
   }
   if (!log.line.empty() && static_cast<Index>(log.line.size()) != n) {
     throw Error("the log has not one line number a sample", log.file, "leave Log::line empty if it is not known");
@@ -29,7 +29,8 @@ void refuse_missing_numbers(CheckRoom& room) {
   for (const Channel& channel : room.channels()) {
     for (Index i = 0; i < room.log.samples(); ++i) {
       if (!std::isfinite(channel.values()(i))) {
-        throw Error("a number is missing or not finite", room.where(i, channel.name), "remove the row or correct the value");
+        throw Error("a number is missing or not finite", room.where(i, channel.name),
+                    "remove the row or correct the value");
       }
     }
   }
@@ -39,11 +40,13 @@ void check_length(CheckRoom& room) {
   const Log& log = room.log;
   const Index n = log.samples();
   const double duration = n < 2 ? 0.0 : log.t_s(n - 1) - log.t_s(0);
-  if (n < room.options.min_samples || (std::isfinite(duration) && duration >= 0 && duration < room.options.min_duration_s)) {
-    throw UnusablePart(fmt::format("the log is too short: {} samples, {:.4g} s", n, std::isfinite(duration) ? duration : 0.0),
-                       log.file,
-                       fmt::format("record at least {} samples and {:.4g} s; to identify a robot, some seconds of varied motion",
-                                   room.options.min_samples, room.options.min_duration_s));
+  if (n < room.options.min_samples ||
+      (std::isfinite(duration) && duration >= 0 && duration < room.options.min_duration_s)) {
+    throw UnusablePart(
+        fmt::format("the log is too short: {} samples, {:.4g} s", n, std::isfinite(duration) ? duration : 0.0),
+        log.file,
+        fmt::format("record at least {} samples and {:.4g} s; to identify a robot, some seconds of varied motion",
+                    room.options.min_samples, room.options.min_duration_s));
   }
 }
 

@@ -1,6 +1,7 @@
 /// \file
-/// Missing numbers get values from their neighbours. Whether a row may still be used is decided by trial: the same filling is done
-/// where the value is known, and if its error is no more than the noise, the sample is as good as measured.
+/// Missing numbers get values from their neighbours. Whether a row may still be used is decided by trial: the same
+/// filling is done where the value is known, and if its error is no more than the noise, the sample is as good as
+/// measured.
 
 #include <algorithm>
 #include <array>
@@ -13,12 +14,12 @@ namespace deltadyn::checks {
 namespace {
 
 constexpr int kMostKnots = 6;
-/// Errors of filling up to this many times the noise: three measured neighbours on either side leave 1.5 times for one sample and 2.4
-/// times for three, the noise of the value it is compared with included. The filters average over tens of samples, so that one such
-/// sample widens a row's error by less than half.
+/// Errors of filling up to this many times the noise: three measured neighbours on either side leave 1.5 times for one
+/// sample and 2.4 times for three, the noise of the value it is compared with included. The filters average over tens
+/// of samples, so that one such sample widens a row's error by less than half.
 constexpr double kNoiseRatio = 3.0;
-/// ... or up to this share of the range, where a log is free of noise: through the differentiation of the filters that is below 1e-4 of
-/// the acceleration.
+/// ... or up to this share of the range, where a log is free of noise: through the differentiation of the filters that
+/// is below 1e-4 of the acceleration.
 constexpr double kShareOfPositions = 1e-6;
 constexpr double kShareOfTorques = 1e-3;
 constexpr Index kEachColumn = 2;  // columns that are named one by one

@@ -17,8 +17,9 @@ constexpr double kLargestSampleTime = 0.2;   // s; slower sampling shows nothing
 constexpr double kUnevenShare = 0.1;         // of the steps away from the usual one: then a longer step is no lost row
 constexpr double kLongestUnevenStep = 0.03;  // s; within it a drive's motion is still a cubic
 constexpr double kShortParts[] = {4.0, 2.0,
-                                  1.0};  // s; the shorter a part, the larger the share that the filters lose at its ends
-constexpr double kEnough = 0.8;          // of the recorded time has to stay in the parts that are used
+                                  // s; the shorter a part, the larger the share that the filters lose at its ends
+                                  1.0};
+constexpr double kEnough = 0.8;  // of the recorded time has to stay in the parts that are used
 
 /// A longer step than this is a gap.
 double longest_step(const CheckRoom& room, double usual, const std::vector<double>& steps) {
@@ -65,7 +66,8 @@ void tell_blind_rows(const CheckRoom& room, const std::vector<Tally>& tallies) {
   if (most.count == 0) return;
   room.tell(
       FindingLevel::mended, "blind_rows", most.first, names, drive, static_cast<double>(most.count), "rows",
-      fmt::format("no number for longer than can be filled, or at an end, in {} samples: these rows are left away", most.count));
+      fmt::format("no number for longer than can be filled, or at an end, in {} samples: these rows are left away",
+                  most.count));
 }
 
 }  // namespace
@@ -158,8 +160,8 @@ std::vector<Log> split(CheckRoom& room) {
   }
   if (dropped.count > 0) {
     room.tell(FindingLevel::warning, "short_parts", dropped.first, "", -1, static_cast<double>(dropped.count), "",
-              fmt::format("{} part(s) between gaps are shorter than {:.3g} s and not used, the first begins here", dropped.count,
-                          shortest),
+              fmt::format("{} part(s) between gaps are shorter than {:.3g} s and not used, the first begins here",
+                          dropped.count, shortest),
               "look for lost packets, or record again without gaps if these parts are needed");
   }
   parts.front().notes = log.notes;

@@ -1,6 +1,6 @@
 /// \file
-/// From time stamps to even steps: lost rows get their place, stamps that only jitter are set right, and values that were really taken
-/// at uneven times are moved.
+/// From time stamps to even steps: lost rows get their place, stamps that only jitter are set right, and values that
+/// were really taken at uneven times are moved.
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,8 @@ double drift_of(const TimeGrid& grid, const Eigen::VectorXd& t) {
     const Index a = k * (n - 1) / kPieces;
     const Index b = (k + 1) * (n - 1) / kPieces;
     if (b <= a) continue;
-    const auto rows = static_cast<double>(grid.index[static_cast<std::size_t>(b)] - grid.index[static_cast<std::size_t>(a)]);
+    const auto rows =
+        static_cast<double>(grid.index[static_cast<std::size_t>(b)] - grid.index[static_cast<std::size_t>(a)]);
     const double step = (t(b) - t(a)) / rows;
     lowest = std::min(lowest, step);
     highest = std::max(highest, step);
@@ -71,7 +72,8 @@ double drift_of(const TimeGrid& grid, const Eigen::VectorXd& t) {
 double uneven_share(const TimeGrid& grid, const Eigen::VectorXd& t) {
   double uneven = 0;
   for (Index i = 1; i < t.size(); ++i) {
-    const auto rows = static_cast<double>(grid.index[static_cast<std::size_t>(i)] - grid.index[static_cast<std::size_t>(i - 1)]);
+    const auto rows =
+        static_cast<double>(grid.index[static_cast<std::size_t>(i)] - grid.index[static_cast<std::size_t>(i - 1)]);
     if (std::abs((t(i) - t(i - 1)) / grid.step_s - rows) > kEvenStep) uneven += 1.0;
   }
   return uneven / static_cast<double>(t.size() - 1);
@@ -94,10 +96,11 @@ void judge_stamps(CheckRoom& room) {
   const bool locally_even = uneven_share(grid, t) < 0.05;
   if (grid.jitter > room.options.max_resampled_jitter && locally_even) {
     room.resample = drift > kSlightDrift;
-    room.tell(drift > kSlightDrift ? FindingLevel::warning : FindingLevel::mended, "clock_drift", grid.worst, "t_s", -1, drift,
-              "",
-              fmt::format("the clock of the time stamps drifts: the time between samples changes by {:.2g} % over the log; {}",
-                          100.0 * drift, room.resample ? "moved to even steps" : "the samples are taken as even"),
+    room.tell(drift > kSlightDrift ? FindingLevel::warning : FindingLevel::mended, "clock_drift", grid.worst, "t_s", -1,
+              drift, "",
+              fmt::format(
+                  "the clock of the time stamps drifts: the time between samples changes by {:.2g} % over the log; {}",
+                  100.0 * drift, room.resample ? "moved to even steps" : "the samples are taken as even"),
               drift > kSlightDrift ? "record with the time stamps of the controller's own clock" : "");
     return;
   }
@@ -138,11 +141,12 @@ void insert_lost_rows(CheckRoom& room) {
     lost.add(static_cast<Index>(i), before);
   }
   const double share = 100.0 * static_cast<double>(lost.count) / static_cast<double>(wanted);
-  const std::string text =
-      fmt::format("{} sample(s) missing before this one{}",
-                  grid.index[static_cast<std::size_t>(lost.first)] - grid.index[static_cast<std::size_t>(lost.first - 1)] - 1,
-                  lost.count > 1 ? fmt::format(", {} in all ({:.2g} % of the rows)", lost.count, share) : "");
-  room.tell(FindingLevel::mended, "lost_rows", lost.first, "", -1, static_cast<double>(lost.count), "rows", text + ", filled in");
+  const std::string text = fmt::format(
+      "{} sample(s) missing before this one{}",
+      grid.index[static_cast<std::size_t>(lost.first)] - grid.index[static_cast<std::size_t>(lost.first - 1)] - 1,
+      lost.count > 1 ? fmt::format(", {} in all ({:.2g} % of the rows)", lost.count, share) : "");
+  room.tell(FindingLevel::mended, "lost_rows", lost.first, "", -1, static_cast<double>(lost.count), "rows",
+            text + ", filled in");
   for (Eigen::MatrixXd* block : {&log.q, &log.qd, &log.qdd, &log.tau}) {
     if (block->size() == 0) continue;
     Eigen::MatrixXd wider = Eigen::MatrixXd::Constant(wanted, block->cols(), kNan);

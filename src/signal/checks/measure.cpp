@@ -11,8 +11,13 @@
 namespace deltadyn::checks {
 namespace {
 
-void add(const CheckRoom& room, const char* key, Index drive, double value, const std::string& unit, const std::string& text) {
-  room.tell({.key = key, .drive = static_cast<int>(drive), .value = value, .unit = unit, .text = room.log.file + ": " + text});
+void add(const CheckRoom& room, const char* key, Index drive, double value, const std::string& unit,
+         const std::string& text) {
+  room.tell({.key = key,
+             .drive = static_cast<int>(drive),
+             .value = value,
+             .unit = unit,
+             .text = room.log.file + ": " + text});
 }
 
 std::string step_in_words(const std::string& column, double step, const std::string& unit) {
@@ -49,7 +54,8 @@ void measure_channels(CheckRoom& room) {
     if (log.tau.size() == 0) continue;
     const ChannelQuality tau = measure_channel(log.tau.col(d));
     add(room, "torque_step", d, tau.step, effort, step_in_words(names.tau, tau.step, effort));
-    add(room, "torque_noise", d, tau.noise, effort, fmt::format("{} has noise of {:.3g} {}", names.tau, tau.noise, effort));
+    add(room, "torque_noise", d, tau.noise, effort,
+        fmt::format("{} has noise of {:.3g} {}", names.tau, tau.noise, effort));
   }
 }
 

@@ -21,13 +21,15 @@ void check_rate(const CheckRoom& room, Index d, const std::string& column) {
   if (!std::isfinite(allowed) || allowed <= 0) return;
   std::vector<double> speeds;
   for (const auto& [begin, end] : sample_stretches(log.samples(), 256)) {
-    for (Index i = begin; i + 1 < end; ++i) speeds.push_back(std::abs(log.q(i + 1, d) - log.q(i, d)) / log.sample_time_s());
+    for (Index i = begin; i + 1 < end; ++i)
+      speeds.push_back(std::abs(log.q(i + 1, d) - log.q(i, d)) / log.sample_time_s());
   }
   const double usual_largest = quantile(speeds, 0.95);
   if (usual_largest > 10.0 * allowed) {
     throw Error(
-        fmt::format("a velocity of {:.4g} is far beyond the drive's limit of {:.4g} (SI); positions or time have another unit",
-                    usual_largest, allowed),
+        fmt::format(
+            "a velocity of {:.4g} is far beyond the drive's limit of {:.4g} (SI); positions or time have another unit",
+            usual_largest, allowed),
         room.where(0, column), "give positions in rad or m, or name the column _deg; give the time in seconds");
   }
 }
@@ -54,8 +56,9 @@ void check_positions(CheckRoom& room) {
       const auto& geometry = robot.limbs[static_cast<std::size_t>(d)];
       const double reach = 10.0 * (geometry.strut + geometry.p_WD.norm() + geometry.p_DE_0.norm());
       if (largest > reach) {
-        throw Error(fmt::format("a carriage position of {:.9g} m is far beyond the robot; it looks like millimetres", value),
-                    room.where(at, column), "convert the column to m");
+        throw Error(
+            fmt::format("a carriage position of {:.9g} m is far beyond the robot; it looks like millimetres", value),
+            room.where(at, column), "convert the column to m");
       }
     }
     if (room.options.refuse_positions && room.options.motion && log.samples() >= 3) check_rate(room, d, column);

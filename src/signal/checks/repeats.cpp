@@ -1,9 +1,9 @@
 /// \file
-/// Values that were not measured anew: rows that hold those of the row before, and channels that change only every n-th row because the
-/// recorder is faster than the bus. What repeats becomes a missing number.
+/// Values that were not measured anew: rows that hold those of the row before, and channels that change only every n-th
+/// row because the recorder is faster than the bus. What repeats becomes a missing number.
 ///
-/// A coarse encoder in slow motion and a robot at rest repeat values, too. A repeat counts only where the channel changes by several of
-/// its own steps from row to row.
+/// A coarse encoder in slow motion and a robot at rest repeat values, too. A repeat counts only where the channel
+/// changes by several of its own steps from row to row.
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,11 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStaleShare = 0.15;    // of the rows; fewer repeats are single held values, mended one by one
 constexpr Index kFewestJudged = 200;    // rows to judge a channel by
 constexpr double kStepsOfChange = 8.0;  // in units of the smallest change: equality by chance is then below 1 in 25
-constexpr int kMostHeld = 64;           // rows; slower updates are another matter (a stuck encoder, a servo that is off)
+constexpr int kMostHeld = 64;  // rows; slower updates are another matter (a stuck encoder, a servo that is off)
 
-/// Mean number of rows between two changes, over the runs of equal values that lie between two changes by many steps; 1 if the channel
-/// is fresh in (nearly) every row. A robot that stops and starts again has a small change on either side of its rest.
+/// Mean number of rows between two changes, over the runs of equal values that lie between two changes by many steps; 1
+/// if the channel is fresh in (nearly) every row. A robot that stops and starts again has a small change on either side
+/// of its rest.
 double rows_between_changes(const Eigen::Ref<const Eigen::VectorXd>& x, double smallest) {
   constexpr Index kStretchRows = 512;
   const double many = kStepsOfChange * smallest;
@@ -81,7 +82,8 @@ void share_updates(std::vector<StaleChannel>& stale) {
   }
 }
 
-/// Where the value stays for longer than the rhythm and then goes on by a small step, updates came and brought the same value.
+/// Where the value stays for longer than the rhythm and then goes on by a small step, updates came and brought the same
+/// value.
 void insert_quiet_updates(StaleChannel& one, Index samples) {
   const auto rhythm = static_cast<Index>(std::lround(one.rows));
   const auto x = one.channel.values();
@@ -108,18 +110,19 @@ void keep_updates_only(StaleChannel& one) {
 /// One sentence for all, and the figure of each.
 void say_stale(const CheckRoom& room, const std::vector<StaleChannel>& stale) {
   std::vector<std::string> channels;
-  for (const StaleChannel& one : stale) channels.push_back(fmt::format("{} (every {:.3g} rows)", one.channel.name, one.rows));
+  for (const StaleChannel& one : stale)
+    channels.push_back(fmt::format("{} (every {:.3g} rows)", one.channel.name, one.rows));
   for (std::size_t k = 0; k < stale.size(); ++k) {
-    room.tell(
-        {.level = FindingLevel::mended,
-         .key = stale[k].channel.position ? "stale" : "stale_torque",
-         .drive = static_cast<int>(stale[k].channel.drive),
-         .value = stale[k].rows,
-         .unit = "rows",
-         .text = fmt::format("{}: recorded faster than measured, values are repeated and change only now and again: {}; the "
-                             "log is taken at this rate",
-                             room.log.file, fmt::join(channels, ", "))},
-        k == 0);
+    room.tell({.level = FindingLevel::mended,
+               .key = stale[k].channel.position ? "stale" : "stale_torque",
+               .drive = static_cast<int>(stale[k].channel.drive),
+               .value = stale[k].rows,
+               .unit = "rows",
+               .text = fmt::format(
+                   "{}: recorded faster than measured, values are repeated and change only now and again: {}; the "
+                   "log is taken at this rate",
+                   room.log.file, fmt::join(channels, ", "))},
+              k == 0);
   }
 }
 
@@ -244,12 +247,15 @@ class HeldRows {
   }
 
   void say(const Tally& rows, const std::vector<Tally>& single) const {
-    const auto share = [&](Index count) { return 100.0 * static_cast<double>(count) / static_cast<double>(room_.log.samples()); };
+    const auto share = [&](Index count) {
+      return 100.0 * static_cast<double>(count) / static_cast<double>(room_.log.samples());
+    };
     if (rows.count > 0) {
-      room_.tell(FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
-                 fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows "
-                             "({:.2g} %): taken as missing",
-                             rows.count, share(rows.count)));
+      room_.tell(
+          FindingLevel::mended, "held_rows", rows.first, "", -1, static_cast<double>(rows.count), "rows",
+          fmt::format("the row repeats the values of the row before while the robot moves, the first of {} such rows "
+                      "({:.2g} %): taken as missing",
+                      rows.count, share(rows.count)));
     }
     for (std::size_t d = 0; d < single.size(); ++d) {
       if (single[d].count == 0) continue;
@@ -257,8 +263,9 @@ class HeldRows {
       room_.tell(
           FindingLevel::mended, "held_position", single[d].first, drive_columns(room_.robot, drive).q, drive,
           static_cast<double>(single[d].count), "rows",
-          fmt::format("the position repeats while the drive moves, here and in {} rows in all ({:.2g} %): taken as missing",
-                      single[d].count, share(single[d].count)));
+          fmt::format(
+              "the position repeats while the drive moves, here and in {} rows in all ({:.2g} %): taken as missing",
+              single[d].count, share(single[d].count)));
     }
   }
 

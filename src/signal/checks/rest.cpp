@@ -10,16 +10,17 @@
 namespace deltadyn::checks {
 namespace {
 
-/// Shorter is a reversal: within two encoder steps a drive turns round in 2 sqrt(2 band / acceleration), which for 13 bits and 1 rad/s^2
-/// is 0.11 s.
+/// Shorter is a reversal: within two encoder steps a drive turns round in 2 sqrt(2 band / acceleration), which for 13
+/// bits and 1 rad/s^2 is 0.11 s.
 constexpr double kShortestRest_s = 0.3;
 constexpr double kShareOfRange = 1e-5;  // a log without noise: less is no motion
 
 /// How far the position wanders while the drive rests.
 double band_of(const ChannelQuality& quality) {
-  // A quantised position flickers between two counts, a controller may hunt by one more; white noise of some hundred samples stays
-  // within seven standard deviations.
-  const double scatter = quality.step > 0 && quality.noise < 0.6 * quality.step ? 2.05 * quality.step : 7.0 * quality.noise;
+  // A quantised position flickers between two counts, a controller may hunt by one more; white noise of some hundred
+  // samples stays within seven standard deviations.
+  const double scatter =
+      quality.step > 0 && quality.noise < 0.6 * quality.step ? 2.05 * quality.step : 7.0 * quality.noise;
   return std::max(scatter, kShareOfRange * quality.travel);
 }
 
@@ -40,10 +41,11 @@ void extend(const Eigen::Ref<const Eigen::VectorXd>& q, double band, Index& begi
 }
 
 void tell_moving(const CheckRoom& room, Index drive, double share) {
-  room.tell({.key = "moving",
-             .drive = static_cast<int>(drive),
-             .value = share,
-             .text = fmt::format("{}: drive {} moves in {:.3g} % of the samples", room.log.file, drive + 1, 100.0 * share)});
+  room.tell(
+      {.key = "moving",
+       .drive = static_cast<int>(drive),
+       .value = share,
+       .text = fmt::format("{}: drive {} moves in {:.3g} % of the samples", room.log.file, drive + 1, 100.0 * share)});
 }
 
 }  // namespace
@@ -81,11 +83,11 @@ void leave_rest_out(CheckRoom& room) {
     tell_moving(room, d, 1.0 - static_cast<double>(resting) / static_cast<double>(n));
   }
   const double share = static_cast<double>(all) / static_cast<double>(n * log.drives());
-  room.tell(
-      {.key = "standstill",
-       .value = share,
-       .text = fmt::format("{}: the drives are at rest in {:.3g} % of the samples, which take no part in fits (static friction)",
-                           log.file, 100.0 * share)});
+  room.tell({.key = "standstill",
+             .value = share,
+             .text = fmt::format(
+                 "{}: the drives are at rest in {:.3g} % of the samples, which take no part in fits (static friction)",
+                 log.file, 100.0 * share)});
 }
 
 }  // namespace deltadyn::checks

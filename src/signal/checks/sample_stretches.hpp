@@ -13,8 +13,8 @@ namespace deltadyn::checks {
 /// A stretch of consecutive rows [first, second).
 using Stretch = std::pair<Eigen::Index, Eigen::Index>;
 
-/// Stretches of `length` rows that tell as much about a channel as all of its rows: all rows of a short log, evenly spread ones of
-/// a long log, so that the statistics of a long log cost no more than those of a short one.
+/// Stretches of `length` rows that tell as much about a channel as all of its rows: all rows of a short log, evenly
+/// spread ones of a long log, so that the statistics of a long log cost no more than those of a short one.
 inline std::vector<Stretch> sample_stretches(Eigen::Index rows, Eigen::Index length) {
   constexpr Eigen::Index kEnoughRows = 40000;
   std::vector<Stretch> stretches;

@@ -30,7 +30,8 @@ bool is_rounded_top(const Eigen::Ref<const Eigen::VectorXd>& tau, const Cut& cut
   return static_cast<Index>(cut.rows.size()) < 3 * near;
 }
 
-/// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for spikes.
+/// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for
+/// spikes.
 Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double step, double sign) {
   Cut best;
   const auto counts = [&](Index begin, Index end) {
@@ -67,7 +68,8 @@ void check_saturation(CheckRoom& room) {
     if (tau.maxCoeff() == tau.minCoeff()) continue;
     // A servo that is off also repeats a value; it was found before.
     std::vector<char> out(static_cast<std::size_t>(n), 0);
-    for (Index i = 0; i < n && log.torque_out.size() > 0; ++i) out[static_cast<std::size_t>(i)] = log.torque_out(i, d) ? 1 : 0;
+    for (Index i = 0; i < n && log.torque_out.size() > 0; ++i)
+      out[static_cast<std::size_t>(i)] = log.torque_out(i, d) ? 1 : 0;
     const double step = measure_channel(tau).step;
     const Cut above = cut_of(tau, out, step, 1.0);
     const Cut below = cut_of(tau, out, step, -1.0);
@@ -84,13 +86,15 @@ void check_saturation(CheckRoom& room) {
                                : below.rows.empty() ? fmt::format("{:.9g}", above.level)
                                                     : fmt::format("{:.9g} or {:.9g}", below.level, above.level);
     if (share > room.options.max_saturated_share) {
-      throw Error(fmt::format("the torque is at its extreme ({}) in {:.2g} % of the samples, the first one here: it is cut off",
-                              levels, 100.0 * share),
-                  room.where(rows.front(), column), "record a gentler motion, or widen the range of the recorder");
+      throw Error(
+          fmt::format("the torque is at its extreme ({}) in {:.2g} % of the samples, the first one here: it is cut off",
+                      levels, 100.0 * share),
+          room.where(rows.front(), column), "record a gentler motion, or widen the range of the recorder");
     }
     for (const Index i : rows) room.leave_torque_out(d, i, i + 1);
-    room.tell(FindingLevel::mended, "torque_cut_off", rows.front(), column, static_cast<int>(d), static_cast<double>(clipped),
-              "rows", fmt::format("the torque is cut off at {} from here on in {} samples, left out of fits", levels, clipped));
+    room.tell(FindingLevel::mended, "torque_cut_off", rows.front(), column, static_cast<int>(d),
+              static_cast<double>(clipped), "rows",
+              fmt::format("the torque is cut off at {} from here on in {} samples, left out of fits", levels, clipped));
   }
 }
 

@@ -98,7 +98,8 @@ class SpikeSearch {
     return left < 0.1 * at(i) + nearby;
   }
 
-  /// End of a spike of several samples around i: all of them far from the line across, which itself is smooth; i if there is none.
+  /// End of a spike of several samples around i: all of them far from the line across, which itself is smooth; i if
+  /// there is none.
   Index end_of_long_spike(Index& i) const {
     const Index n = values_.size();
     for (Index length = 2; length <= kLongestSpike; ++length) {
@@ -111,7 +112,8 @@ class SpikeSearch {
         }
         if (std::abs(values_(end) - values_(begin - 1)) > 2.0 * around) continue;
         double least = 1e300;
-        for (Index k = begin; k < end; ++k) least = std::min(least, std::abs(values_(k) - bridge(values_, begin, end, k)));
+        for (Index k = begin; k < end; ++k)
+          least = std::min(least, std::abs(values_(k) - bridge(values_, begin, end, k)));
         if (least < 8.0 * around || least < room_.options.outlier_ratio * usual_) continue;
         i = begin;
         return end;
@@ -184,16 +186,17 @@ void repair_spikes(CheckRoom& room) {
   }
   const bool many = static_cast<double>(count) > kManySpikes * static_cast<double>(room.log.samples());
   for (const Found& one : all) {
-    const std::string more = all.size() > 1 ? fmt::format(", the first of {} such samples in {} columns", count, all.size())
-                             : count > 1    ? fmt::format(", the first of {} such samples", count)
-                                            : " of one sample";
+    const std::string more = all.size() > 1
+                                 ? fmt::format(", the first of {} such samples in {} columns", count, all.size())
+                             : count > 1 ? fmt::format(", the first of {} such samples", count)
+                                         : " of one sample";
     room.tell({.level = many ? FindingLevel::warning : FindingLevel::mended,
                .key = one.channel->position ? "spikes" : "torque_spikes",
                .drive = static_cast<int>(one.channel->drive),
                .value = static_cast<double>(one.spikes.count),
                .unit = "rows",
-               .text = fmt::format("{}: the value {:.9g} is a spike{}, replaced", room.where(one.spikes.first, one.channel->name),
-                                   one.value, more),
+               .text = fmt::format("{}: the value {:.9g} is a spike{}, replaced",
+                                   room.where(one.spikes.first, one.channel->name), one.value, more),
                .mend = many ? "look for a loose cable or a recorder that mixes up its channels" : ""},
               &one == &all.front());
   }

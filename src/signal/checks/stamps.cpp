@@ -1,6 +1,6 @@
 /// \file
-/// The time stamps themselves: rows that are there twice, single wrong stamps, a clock too coarse for the rate, several recordings in
-/// one file.
+/// The time stamps themselves: rows that are there twice, single wrong stamps, a clock too coarse for the rate, several
+/// recordings in one file.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,8 @@ void drop_rows_twice(CheckRoom& room) {
   Tally twice;
   for (Index i = 0; i < log.samples(); ++i) {
     if (!std::isfinite(log.t_s(i))) {
-      throw Error("the time stamp is missing or not finite", room.where(i, "t_s"), "remove the row or correct the time");
+      throw Error("the time stamp is missing or not finite", room.where(i, "t_s"),
+                  "remove the row or correct the time");
     }
     if (!rows.empty() && log.t_s(i) == log.t_s(rows.back()) && same_row(room, i, rows.back())) {
       twice.add(i);
@@ -48,7 +49,8 @@ void drop_rows_twice(CheckRoom& room) {
   const std::string sentence =
       twice.count == 1 ? std::string("the row is there twice, once was enough")
                        : fmt::format("the row is there twice, once was enough; the first of {} such rows", twice.count);
-  room.tell(FindingLevel::mended, "rows_twice", twice.first, "", -1, static_cast<double>(twice.count), "rows", sentence);
+  room.tell(FindingLevel::mended, "rows_twice", twice.first, "", -1, static_cast<double>(twice.count), "rows",
+            sentence);
   room.keep(rows);
 }
 
@@ -66,8 +68,8 @@ double mean_change(const Log& log, Counts counts) {
   return rows > 0 ? sum / rows : 0.0;
 }
 
-/// Stamps that repeat because the clock, or the digits written, are coarser than the sampling: the rows are even, the stamps are not.
-/// \return false if the log is not of this kind
+/// Stamps that repeat because the clock, or the digits written, are coarser than the sampling: the rows are even, the
+/// stamps are not. \return false if the log is not of this kind
 bool mend_coarse_clock(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
@@ -87,8 +89,9 @@ bool mend_coarse_clock(CheckRoom& room) {
   const double between = mean_change(log, [&](Index i) { return !at_once(i); });
   if (within < 0.25 * between) {
     throw Error(
-        fmt::format("the time stamp {:.9g} s is repeated, with other values, and so are {} more: two rows of the same moment",
-                    log.t_s(repeated.first), repeated.count - 1),
+        fmt::format(
+            "the time stamp {:.9g} s is repeated, with other values, and so are {} more: two rows of the same moment",
+            log.t_s(repeated.first), repeated.count - 1),
         room.where(repeated.first, "t_s"), "write one row a sample, with all channels in it");
   }
   double off = 0;
@@ -100,16 +103,16 @@ bool mend_coarse_clock(CheckRoom& room) {
   // Even rows stay within one tick of the clock; more means lost rows, whose place the stamps no longer tell.
   if (off > 1.5 * coarse + step) {
     throw Error(
-        fmt::format("the time stamps are too coarse: {} are repeated, with other values, and the rows are not even between",
-                    repeated.count),
+        fmt::format(
+            "the time stamps are too coarse: {} are repeated, with other values, and the rows are not even between",
+            repeated.count),
         room.where(worst, "t_s"), "write the time with more digits");
   }
   log.t_s = Eigen::VectorXd::LinSpaced(n, log.t_s(0), log.t_s(n - 1));
-  room.tell(
-      FindingLevel::mended, "coarse_stamps", repeated.first, "t_s", -1, coarse, "s",
-      fmt::format(
-          "the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps repeat; taken as even",
-          coarse, step, repeated.count));
+  room.tell(FindingLevel::mended, "coarse_stamps", repeated.first, "t_s", -1, coarse, "s",
+            fmt::format("the time stamps advance by {:.3g} s where the samples are {:.4g} s apart, so that {} stamps "
+                        "repeat; taken as even",
+                        coarse, step, repeated.count));
   return true;
 }
 
@@ -130,10 +133,11 @@ void mend_single_stamps(CheckRoom& room, double step) {
   }
   if (wrong.count == 0) return;
   room.tell(FindingLevel::mended, "wrong_stamps", wrong.first, "t_s", -1, static_cast<double>(wrong.count), "rows",
-            wrong.count == 1 ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
-                             : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are "
-                                           "set between their neighbours",
-                                           wrong.count - 1));
+            wrong.count == 1
+                ? std::string("this time stamp is wrong, as its neighbours are two steps apart; set between them")
+                : fmt::format("this time stamp is wrong, as its neighbours are two steps apart; it and {} more are "
+                              "set between their neighbours",
+                              wrong.count - 1));
 }
 
 }  // namespace
@@ -146,17 +150,17 @@ void order_stamps(CheckRoom& room) {
   mend_single_stamps(room, step);
   for (Index i = 1; i < log.samples(); ++i) {
     if (log.t_s(i) == log.t_s(i - 1)) {
-      throw Error(fmt::format("the time stamp {:.9g} s is repeated, with other values", log.t_s(i)), room.where(i, "t_s"),
-                  "write the time with more digits, or remove one of the rows");
+      throw Error(fmt::format("the time stamp {:.9g} s is repeated, with other values", log.t_s(i)),
+                  room.where(i, "t_s"), "write the time with more digits, or remove one of the rows");
     }
     if (log.t_s(i) < log.t_s(i - 1)) room.recordings.push_back(i);
   }
   if (room.recordings.empty()) return;
   const Index first = room.recordings.front();
-  room.tell(
-      FindingLevel::mended, "recordings", first, "t_s", -1, static_cast<double>(room.recordings.size() + 1), "",
-      fmt::format("the time stamps decrease, from {:.9g} s to {:.9g} s: the file holds {} recordings, used as parts of their own",
-                  log.t_s(first - 1), log.t_s(first), room.recordings.size() + 1));
+  room.tell(FindingLevel::mended, "recordings", first, "t_s", -1, static_cast<double>(room.recordings.size() + 1), "",
+            fmt::format("the time stamps decrease, from {:.9g} s to {:.9g} s: the file holds {} recordings, used as "
+                        "parts of their own",
+                        log.t_s(first - 1), log.t_s(first), room.recordings.size() + 1));
 }
 
 }  // namespace deltadyn::checks

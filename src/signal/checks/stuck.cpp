@@ -20,7 +20,8 @@ bool others_move(const CheckRoom& room, Index drive, Index begin, Index end) {
   const auto limbs = static_cast<Index>(room.robot.limbs.size());
   if (room.robot.parts.empty() || drive >= limbs || limbs < 2) return false;
   for (Index other = 0; other < limbs; ++other) {
-    if (other != drive && room.travel(other, begin, end) < 0.2 * room.travel(other, 0, room.log.samples())) return false;
+    if (other != drive && room.travel(other, begin, end) < 0.2 * room.travel(other, 0, room.log.samples()))
+      return false;
     if (other != drive && !room.moves(other)) return false;
   }
   return true;
@@ -47,8 +48,8 @@ Usual usual_of(const Eigen::Ref<const Eigen::VectorXd>& q) {
   return {quantile(steps, 0.995), quantile(bends, 0.995)};
 }
 
-/// Does the position of a drive that is constant in [begin, end) freeze in motion, or jump when it reads again? A drive that stops by
-/// itself slows down.
+/// Does the position of a drive that is constant in [begin, end) freeze in motion, or jump when it reads again? A drive
+/// that stops by itself slows down.
 bool breaks_off(const Eigen::Ref<const Eigen::VectorXd>& q, const Usual& usual, Index begin, Index end) {
   const double before = begin >= 4 ? std::abs(q(begin) - q(begin - 3)) / 3.0 : 0.0;
   const double after = end + 3 < q.size() ? std::abs(q(end + 3) - q(end)) / 3.0 : 0.0;
@@ -77,7 +78,8 @@ void find_frozen_positions(CheckRoom& room) {
   for (Index begin = 0, end = 0; begin < n; begin = end) {
     end = end_of_hold(log.q, begin);
     if (end - begin < shortest || end - begin == n) continue;
-    for (Index d = 0; d < drives && static_cast<Index>(usual.size()) < drives; ++d) usual.push_back(usual_of(log.q.col(d)));
+    for (Index d = 0; d < drives && static_cast<Index>(usual.size()) < drives; ++d)
+      usual.push_back(usual_of(log.q.col(d)));
     bool broken = false;
     for (Index d = 0; d < drives; ++d)
       broken = broken || breaks_off(log.q.col(d), usual[static_cast<std::size_t>(d)], begin, end);
@@ -88,10 +90,12 @@ void find_frozen_positions(CheckRoom& room) {
     tally.add(from, end - from);
   }
   if (tally.count == 0) return;
-  room.tell(FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s, "s",
-            fmt::format("the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was "
-                        "off; taken as missing",
-                        static_cast<double>(tally.count) * step_s));
+  room.tell(FindingLevel::mended, "frozen_positions", tally.first, "", -1, static_cast<double>(tally.count) * step_s,
+            "s",
+            fmt::format(
+                "the positions of all drives stand still and go on with a jump, {:.3g} s in all: servo or recorder was "
+                "off; taken as missing",
+                static_cast<double>(tally.count) * step_s));
 }
 
 void check_excitation(CheckRoom& room) {
@@ -116,16 +120,18 @@ void check_excitation(CheckRoom& room) {
 
 void check_stuck(CheckRoom& room) {
   const Log& log = room.log;
-  const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / log.sample_time_s())));
+  const auto shortest =
+      std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / log.sample_time_s())));
   for (Index d = 0; d < log.drives(); ++d) {
     const auto q = log.q.col(d);
     const Usual usual = usual_of(q);
     for_each_run(q, [&](Index begin, Index end) {
       if (end - begin >= shortest && (breaks_off(q, usual, begin, end) || others_move(room, d, begin, end))) {
-        throw Error(fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
-                                q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
-                    room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),
-                    "check the encoder and its cable, and record again; or cut this part out of the log");
+        throw Error(
+            fmt::format("the position stays at exactly {:.9g} for {:.4g} s while the robot moves: a stuck encoder",
+                        q(begin), static_cast<double>(end - begin) * log.sample_time_s()),
+            room.where(begin, drive_columns(room.robot, static_cast<int>(d)).q),
+            "check the encoder and its cable, and record again; or cut this part out of the log");
       }
     });
   }

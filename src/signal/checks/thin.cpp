@@ -11,7 +11,8 @@
 
 namespace deltadyn::checks {
 
-/// The rows in which the slowest channel was measured anew: offset of the first one. To be found before gaps are filled.
+/// The rows in which the slowest channel was measured anew: offset of the first one. To be found before gaps are
+/// filled.
 Index fresh_phase(const CheckRoom& room) {
   const int factor = room.thinning;
   const Log& log = room.log;
@@ -43,8 +44,9 @@ void thin_to_fresh_rows(CheckRoom& room) {
     if (i >= half && i + half < log.samples()) rows.push_back(i);
   }
   if (static_cast<Index>(rows.size()) < room.options.min_samples) {
-    throw UnusablePart(fmt::format("a channel changes only every {} rows, which leaves {} samples", factor, rows.size()),
-                       log.file, "record at the rate at which the drives answer, for longer");
+    throw UnusablePart(
+        fmt::format("a channel changes only every {} rows, which leaves {} samples", factor, rows.size()), log.file,
+        "record at the rate at which the drives answer, for longer");
   }
   Log thin = rows_of(log, rows);
   // Channels that are fresh in every row keep what the rows between say, in phase.
@@ -54,7 +56,8 @@ void thin_to_fresh_rows(CheckRoom& room) {
     for (Index d = 0; d < from->cols(); ++d) {
       if ((*stale)[static_cast<std::size_t>(d)] > 1) continue;
       Eigen::MatrixXd out(static_cast<Index>(rows.size()), 1);
-      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), 0, out.rows(), out);
+      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), 0,
+                     out.rows(), out);
       to->col(d) = out;
     }
   }
@@ -64,7 +67,8 @@ void thin_to_fresh_rows(CheckRoom& room) {
       if (log.is_left_out(i)) thin.filled[k] = Log::kLeftOut;
     }
     if (log.torque_out.size() > 0) {
-      thin.torque_out.row(static_cast<Index>(k)) = log.torque_out.middleRows(rows[k] - half, 2 * half + 1).colwise().any();
+      thin.torque_out.row(static_cast<Index>(k)) =
+          log.torque_out.middleRows(rows[k] - half, 2 * half + 1).colwise().any();
     }
   }
   log = std::move(thin);

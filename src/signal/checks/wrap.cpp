@@ -75,7 +75,8 @@ std::optional<Jumps> find_jumps(const Eigen::Ref<const Eigen::VectorXd>& x, cons
   if (jumps.rows.empty() || usual > 0.4 * least) return std::nullopt;
   const double size = lower_median(sizes);
   const auto modulus = known_modulus(size, quality.step, usual, turns);
-  // Several jumps there and back of one size, wider than all else: the size itself is the modulus, to the change of one sample.
+  // Several jumps there and back of one size, wider than all else: the size itself is the modulus, to the change of one
+  // sample.
   const bool switched = std::ranges::any_of(jumps.rows, [&](Index row) { return is_switched(x, row); });
   if (!modulus && (switched || sizes.size() < 2 || !up || !down)) return std::nullopt;
   jumps.modulus = modulus.value_or(size);
@@ -125,15 +126,17 @@ void unwrap(CheckRoom& room) {
     // A whole turn is one also where the drive itself turns further.
     if (!jumps && turns_round) jumps = find_jumps(x, quality, kShareOfTurn * 2.0 * std::numbers::pi, turns_round);
     if (!jumps || (!channel.position && jumps_with_reversals(room.log.q.col(channel.drive), *jumps))) continue;
-    // A spike there and back also jumps twice; but it is over after a few samples, and few samples are no evidence of a counter.
+    // A spike there and back also jumps twice; but it is over after a few samples, and few samples are no evidence of a
+    // counter.
     const std::vector<int> turns = turns_of(x, *jumps);
     const auto moved = std::ranges::count_if(turns, [](int turn) { return turn != 0; });
     if (moved < 12) continue;
     for (Index i = 0; i < x.size(); ++i) x(i) += jumps->modulus * turns[static_cast<std::size_t>(i)];
-    room.tell(FindingLevel::mended, channel.position ? "wrap" : "torque_wrap", jumps->rows.front(), channel.name,
-              static_cast<int>(channel.drive), jumps->modulus, "",
-              fmt::format("the value jumps by {:.6g} here and {} times in all, the whole range of its counter: unwrapped",
-                          jumps->modulus, jumps->rows.size()));
+    room.tell(
+        FindingLevel::mended, channel.position ? "wrap" : "torque_wrap", jumps->rows.front(), channel.name,
+        static_cast<int>(channel.drive), jumps->modulus, "",
+        fmt::format("the value jumps by {:.6g} here and {} times in all, the whole range of its counter: unwrapped",
+                    jumps->modulus, jumps->rows.size()));
   }
 }
 
