@@ -129,8 +129,8 @@ inline void print_assessment(const Assessment& assessment) {
 
 /// The command of delta-diagnose for these files. What a tool cannot know stays a word in capitals.
 struct DiagnosisCommand {
-  static constexpr const char* kTraining =
-      "TRAINING_LOGS.csv";  ///< for validate: logs of the fit are not in the parameter file
+  /// For validate: logs of the fit are not in the parameter file
+  static constexpr const char* kTraining = "TRAINING_LOGS.csv";
   static constexpr const char* kHoldout = "ANOTHER_LOG.csv";  ///< for identify: all its logs took part in the fit
   std::string robot, parameters;
   std::vector<std::string> logs;  ///< of the fit; empty: not known

@@ -94,7 +94,8 @@ inline void set_example(CLI::App& command, const std::string& example) {
 }
 
 /// Parses, runs, and maps every way to fail to its exit code: 0 done, 2 usage, 3 bad input, 4 no convergence, 5 not
-/// trusted. \param setup adds the tool's own flags to the app and calls ToolRun::on.
+/// trusted.
+/// \param setup adds the tool's own flags to the app and calls ToolRun::on.
 inline int run_tool(int argc, char** argv, const ToolText& text,
                     const std::function<void(CLI::App&, ToolRun&)>& setup) {
   CLI::App app(text.description, text.name);

@@ -23,7 +23,8 @@ constexpr double kSetBootstrap = 2.0;  // the same for the block bootstrap
 constexpr double kSetForm = 0.02;      // share of the gain that the forms of the catalogue cannot be trusted to tell
 constexpr double kSimplerShare = 0.9;  // of the gain, from which an effect does as well that has ...
 constexpr int kFewer = 2;              // ... so many parameters less
-constexpr double kAlike = 0.5;         // correlation of two torques from which it is what makes them hard to tell apart
+// Correlation of two torques from which it is what makes them hard to tell apart
+constexpr double kAlike = 0.5;
 // Of a gain, on drives that no other effect reaches, from which these alone tell names apart
 constexpr double kClearShare = 0.2;
 
@@ -55,8 +56,9 @@ std::vector<bool> reached_by_others(const SearchContext& context, const SearchRe
 }
 
 /// Lead of one name over another as a share of its gain, by the drives that no other effect reaches; infinite if all
-/// drives are alike in that, or these gain too little. \param other_worse,none_worse  squares by which the other name,
-/// and no name, is worse in each row \param least_gain              of these drives
+/// drives are alike in that, or these gain too little.
+/// \param other_worse,none_worse  squares by which the other name, and no name, is worse in each row
+/// \param least_gain              of these drives
 double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached, const VectorXd& other_worse,
                   const VectorXd& none_worse, double least_gain) {
   const double nothing = std::numeric_limits<double>::infinity();

@@ -46,7 +46,7 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Steps 3 to 8 of the procedure.
 /// \param earlier  a search in the same logs with nearly the same parameters, whose noise, encoder pilots and null are
-/// taken as they are
+///                 taken as they are
 [[nodiscard]] SearchResult search_effects(const SearchContext& context, Diagnosis& out,
                                           const SearchResult* earlier = nullptr);
 

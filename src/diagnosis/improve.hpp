@@ -29,8 +29,8 @@ struct ImproveInput {
                                              const std::vector<Effect>& effects, double cutoff_hz, bool keep_extras);
 
 /// Fits the model with `out.named`, and takes back what the hold-out log does not bear out through the path of
-/// delta-validate. \param largest_share  of the noise variance, by a named effect: from it follows what is said if no
-/// name is left
+/// delta-validate.
+/// \param largest_share  of the noise variance, by a named effect: from it follows what is said if no name is left
 void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosis& out);
 
 }  // namespace deltadyn::detail

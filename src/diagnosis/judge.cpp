@@ -110,7 +110,8 @@ struct OpenCourse {
 };
 
 /// Friction that bends keeps its course beyond the logs' speeds only if they show where the bend ends. Nothing for
-/// other effects, and for logs that are fast for the drive. \param gap_shrink  on the hold-out log; NaN without one
+/// other effects, and for logs that are fast for the drive.
+/// \param gap_shrink  on the hold-out log; NaN without one
 std::optional<OpenCourse> open_course(const SearchContext& context, const NamedEffect& one, double gap_shrink) {
   const EffectKind& kind = effect_kind(one.effect.id);
   const Course course = kind.course != nullptr ? kind.course(one.effect.shape.data()) : Course::not_by_rate;

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// Noise of every drive and log: the residual of the base model, the effects accepted so far, and as much of
-/// the generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than
-/// it is.
+/// Noise of every drive and log: the residual of the base model, the effects accepted so far, and as much of the
+/// generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than it
+/// is.
 
 #include <Eigen/Core>
 #include <vector>

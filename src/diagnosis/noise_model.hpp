@@ -22,10 +22,11 @@ struct NoiseModel {
 };
 
 /// Burg's method over the runs of usable rows, order by the Bayesian information criterion (Schwarz 1978). Always
-/// stable. \param largest_order  fewer if the rows do not allow it \param damping        factor on the radius of every
-/// pole, at most 1: below, the noise cannot remember for longer than a row over
-///                       1 - damping, and what is slower (an offset, a trend) stays a residual instead of becoming
-///                       noise
+/// stable.
+/// \param largest_order  fewer if the rows do not allow it
+/// \param damping        factor on the radius of every pole, at most 1: below, the noise cannot remember for longer
+///                       than a row over 1 - damping, and what is slower (an offset, a trend) stays a residual instead
+///                       of becoming noise
 [[nodiscard]] NoiseModel fit_noise_model(const Eigen::Ref<const Eigen::VectorXd>& residual, const RowMask& usable,
                                          Eigen::Index largest_order = 20, double damping = 1);
 

@@ -99,7 +99,8 @@ class EncoderPilots {
 
   const EffectModel& model_;
   const BaseParameters& base_;
-  std::vector<LogRows> logs_;  ///< motion only, every few samples: the low pass that follows needs no more
+  /// Motion only, every few samples: the low pass that follows needs no more
+  std::vector<LogRows> logs_;
   std::vector<Eigen::Index> step_, start_, samples_;  ///< of each log: sample = start + k step, of so many
   std::vector<double> rate_hz_;                       ///< of the logs as recorded
   Run still_;                                         ///< without noise

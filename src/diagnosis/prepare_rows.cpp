@@ -24,10 +24,11 @@ constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of th
 constexpr double kPassOverCutoff = 1.2;  // low pass of regressor and torque, not that of the motion, bounds the band
 // Above, encoder noise in the accelerations outweighs what is gained beside reversals
 constexpr double kMostCutoff_hz = 25;
-constexpr double kSharp_hz = 20;      // keeps reversals short, as in choose_cutoff()
-constexpr double kRestFloor = 0.03;   // share of a log's largest rate below which friction is that of rest
-constexpr double kRestOfAll = 0.03;   // share of the largest rate in all logs for which the same holds ...
-constexpr double kMostRest = 0.12;    // ... but no more than this share of a slow log's own, which must show something
+constexpr double kSharp_hz = 20;     // keeps reversals short, as in choose_cutoff()
+constexpr double kRestFloor = 0.03;  // share of a log's largest rate below which friction is that of rest
+constexpr double kRestOfAll = 0.03;  // share of the largest rate in all logs for which the same holds ...
+// ... but no more than this share of a slow log's own, which must show something
+constexpr double kMostRest = 0.12;
 constexpr double kUsualNoise = 0.01;  // of a drive's torque
 constexpr double kHolds = 1.5;        // rms near reversals over the floor from which bristles do not hold
 constexpr Index kFewestRows = 10;     // to judge that by

@@ -21,7 +21,8 @@ inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are ref
 [[nodiscard]] bool holds(EffectId rich, EffectId simple);
 
 /// The special case of the best fit that gains nearly as much, else the best: the forms of the catalogue are not exact,
-/// and a richer one must not win by following what is wrong with a simpler one. \param gains  one a fit
+/// and a richer one must not win by following what is wrong with a simpler one.
+/// \param gains  one a fit
 [[nodiscard]] std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits,
                                       const std::vector<double>& gains, std::size_t best);
 

@@ -14,7 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFinest = 1e-7;  // squared size of a direction that can be told from rounding, in units of the largest
+// Squared size of a direction that can be told from rounding, in units of the largest
+constexpr double kFinest = 1e-7;
 constexpr double kEarlyOrLate_s = 0.008;  // by which a recorded torque may stand before or behind the motion
 constexpr Index kPerRow = 4;              // unknowns a row of the log: the low pass leaves no more than about one
 

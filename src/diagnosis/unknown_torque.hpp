@@ -25,7 +25,7 @@ struct UnknownTorque {
 
 /// The stretches of samples that PreparedLog::reversal marks for a drive.
 /// \param present  set to false at rows that lie deep inside a long stretch (the joint stands), where nothing is known
-/// at all
+///                 at all
 [[nodiscard]] std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Eigen::Index drive, RowMask& present);
 
 }  // namespace deltadyn

@@ -67,7 +67,8 @@ class WhiteProblem {
   Eigen::MatrixXd X;         ///< white regressor
   Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
   Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
-  Eigen::VectorXd beta;      ///< base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  /// Base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
+  Eigen::VectorXd beta;
   PerLogAndDrive<Eigen::MatrixXd> extra;  ///< as given
 };
 
@@ -78,7 +79,9 @@ struct Gain {
 };
 
 /// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no
-/// part. \param gram   C_perp^T C_perp \param inner  C_perp^T r
+/// part.
+/// \param gram   C_perp^T C_perp
+/// \param inner  C_perp^T r
 [[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner,
                                     const std::vector<bool>& positive);
 

@@ -27,7 +27,7 @@ class Whitener {
   /// Rows less the unknown directions: what a sum of squares of noise comes to.
   [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
   /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not
-  /// matter
+  ///           matter
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
   /// The same without taking out what is unknown: enough for inner products with what it has been taken out of.
   [[nodiscard]] Eigen::MatrixXd innovations(const Eigen::Ref<const Eigen::MatrixXd>& x) const;

@@ -22,11 +22,13 @@ struct ProblemSettings {
   int windows = 4;    ///< parts of the period in which each limit is gathered into one constraint
   /// Of the smooth maximum over a window: it lies above the true one by log(samples)/sharpness at most
   double sharpness = 60;
-  double sign_share = 0.02;  ///< width of the smooth Coulomb sign as a share of the joint's rate scale; 0: true sign
+  /// Width of the smooth Coulomb sign as a share of the joint's rate scale; 0: true sign
+  double sign_share = 0.02;
   Eigen::MatrixXd other_information;  ///< of the other segments, times their shares of time; empty: none
   double share = 1;                   ///< share of time of this segment
-  double reversal_reach_s = 0;  ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
-  double least_away = 0;        ///< share of the period that every drive is away from reversals, at least
+  /// What counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
+  double reversal_reach_s = 0;
+  double least_away = 0;  ///< share of the period that every drive is away from reversals, at least
 };
 
 /// Variables v: the coefficients in units of the largest amplitude that the limits allow them, then the base frequency

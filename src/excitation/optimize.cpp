@@ -40,9 +40,10 @@ constexpr int kPolishEvaluations = 250;  // of a motion that is polished
 constexpr int kPolished = 4;
 constexpr double kKickedShare = 0.4;    // of the starts that begin near the best of the others
 constexpr double kNominalRate = 14000;  // samples a second and thread that a desktop machine differentiates
-constexpr double kChecksKept = 2.5;     // time for the last check of a segment, in units of that of its first motion
-constexpr double kPreparation_s = 2;    // before the starts and after them
-constexpr double kShareOfTime = 0.6;    // of the time limit that the starts may plan for
+// Time for the last check of a segment, in units of that of its first motion
+constexpr double kChecksKept = 2.5;
+constexpr double kPreparation_s = 2;        // before the starts and after them
+constexpr double kShareOfTime = 0.6;        // of the time limit that the starts may plan for
 constexpr double kTimeForTwoRounds_s = 10;  // a segment: with less time it is not taken up a second time
 
 constexpr double kAwayRoom = 0.03;  // the smooth share away from reversals differs from the true one by about as much

@@ -219,8 +219,8 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
 
 /// The best of three proofs for y: from its own gradient, and from the dual points of the centred solution next to it,
 /// by gradient and by barrier. Where bodies end on the boundary, the latter bound the optimum more tightly than the
-/// point where Ceres stops, which lies lower but is not centred. \param centred  result of the convex solver with its
-/// splits, or empty
+/// point where Ceres stops, which lies lower but is not centred.
+/// \param centred  result of the convex solver with its splits, or empty
 OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, double lambda, const Eigen::VectorXd& y,
                               const Eigen::VectorXd& centred) {
   OptimalityCertificate best = convex.certify(metric, lambda, y);

@@ -18,7 +18,8 @@ using Vector10 = InertialVector<double>;
 constexpr double kRounding = 1e-9;  // relative slack for priors written with a few digits on the boundary
 constexpr double kInside = 1e-4;    // how far a prior on the boundary is moved inside, relative
 constexpr double kLength = 0.1;     // size [m] of a body of which the prior says a mass and nothing else
-constexpr double kTiny = 1e-3;  // a prior below this part of its natural scale says "about 0", not "to this precision"
+// A prior below this part of its natural scale says "about 0", not "to this precision"
+constexpr double kTiny = 1e-3;
 
 [[noreturn]] void refuse_prior(const std::string& body, const std::string& rule, const std::string& mend) {
   throw Error(fmt::format("the prior of body '{}' is not physically consistent: {}", body, rule), "prior, " + body,

@@ -24,7 +24,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kReversalRatio = 3.0;     // above it, rows near reversals follow another law than the model's
 constexpr Index kFewestReversalRows = 10;  // to judge them by
 constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (Huber 1981)
-constexpr double kFeltNoise = 0.1;  // of the best known parameter's standard deviation: a smaller bias is no matter
+// Of the best known parameter's standard deviation: a smaller bias is no matter
+constexpr double kFeltNoise = 0.1;
 
 DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads,
                   const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {}) {

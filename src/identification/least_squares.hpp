@@ -33,10 +33,10 @@ namespace deltadyn {
 void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covariance, BaseEstimate& estimate);
 
 /// Ratio of the variance of a mean to that of white noise with the same variance: 1 + 2 sum of the autocorrelations,
-/// with a Bartlett window over `lags` lags (Newey and West 1987). \param usable  samples to take, the others count as
-/// gaps \param white   what noise gives that was white before it was filtered (FirDecimator::white_correlation); the
-/// answer if the residual
-///                does not clearly say otherwise
+/// with a Bartlett window over `lags` lags (Newey and West 1987).
+/// \param usable  samples to take, the others count as gaps
+/// \param white   what noise gives that was white before it was filtered (FirDecimator::white_correlation); the answer
+///                if the residual does not clearly say otherwise
 [[nodiscard]] double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                        const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable,
                                        Eigen::Index lags, double white = 1);

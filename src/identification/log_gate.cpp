@@ -224,8 +224,8 @@ class Gate {
       options.highest_band_hz = options.lowest_band_hz = band_hz;
       Sample narrow = take_sample(out_.logs, options);
       if (!narrow.stretches.empty()) return narrow;
-    } catch (const Error&) {  // NOLINT(bugprone-empty-catch): logs too short for a cut-off, or poses out of reach:
-                              // others say so
+    } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
+      // Logs too short for a cut-off, or poses out of reach: others say so.
     }
     return std::nullopt;
   }

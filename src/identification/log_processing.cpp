@@ -23,8 +23,10 @@ constexpr Index kFewestRows = 20;
 constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
-constexpr double kRest_s = 0.05;    // slow for longer is no reversal but rest, where static friction takes any value
-constexpr double kForgotten = 3.0;  // displacements after which a bristle has forgotten how the log began (5 % left)
+// Slow for longer is no reversal but rest, where static friction takes any value
+constexpr double kRest_s = 0.05;
+// Displacements after which a bristle has forgotten how the log began (5 % left)
+constexpr double kForgotten = 3.0;
 
 std::string place(const PreparedLog& log, Index sample) {
   if (!log.line.empty() && log.line[static_cast<std::size_t>(sample)] > 0) {

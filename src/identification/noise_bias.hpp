@@ -27,9 +27,10 @@ struct NoiseBias {
 };
 
 /// Zero if the motion is filtered as narrowly as the instruments anyway. Rows are those that the fit uses; of long
-/// logs, some hundred thousand samples. \param keep_reversals  one a drive: rows near reversals count \param
-/// instrument_hz   -3 dB point of the positions' filter behind the instruments: nearly all of the motion Throws
-/// deltadyn::Error as prepare_log does.
+/// logs, some hundred thousand samples.
+/// \param keep_reversals  one a drive: rows near reversals count
+/// \param instrument_hz   -3 dB point of the positions' filter behind the instruments: nearly all of the motion
+/// Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] NoiseBias noise_bias(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                    const ProcessingOptions& processing, const std::vector<bool>& keep_reversals,
                                    double instrument_hz);

@@ -87,7 +87,8 @@ class ActiveSet {
   }
 
   /// Frees a column and goes towards the least squares of the free ones; those that come to their bound on the way stay
-  /// there. \return false, with nothing changed, if the sum of squares did not fall
+  /// there.
+  /// \return false, with nothing changed, if the sum of squares did not fall
   bool take_back(Index column) {
     std::vector<bool> set = free_;
     set[static_cast<std::size_t>(column)] = true;

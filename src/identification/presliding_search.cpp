@@ -25,9 +25,11 @@ using Eigen::VectorXd;
 constexpr Index kPreslidingSamples = 20'000;  // of each log; reversals enough, and a log of hours costs no more
 constexpr int kPasses = 4;                    // displacements and base parameters settle in three
 constexpr double kSmallest = 2e-5;            // of the joint's range: no filter shows less
-constexpr double kOverNoise = 1;  // of the position's noise: what jitters within it rounds a reversal like a bristle
+// Of the position's noise: what jitters within it rounds a reversal like a bristle
+constexpr double kOverNoise = 1;
 constexpr double kLargest =
-    0.02;  // of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
+    // Of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
+    0.02;
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
 // Of the squared residual in units of its noise: five standard deviations for one parameter
 constexpr double kClearGain = 25;

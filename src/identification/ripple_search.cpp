@@ -24,7 +24,8 @@ using Eigen::VectorXd;
 
 constexpr double kPi = std::numbers::pi;
 constexpr Index kRippleSamples = 20'000;  // of each log, as for presliding
-constexpr double kFewestWaves = 4;     // over the drive's range; slower ones are the shape of gravity and wrong lengths
+// Over the drive's range; slower ones are the shape of gravity and wrong lengths
+constexpr double kFewestWaves = 4;
 constexpr double kSlowShare = 0.1;     // of the rows whose speed keeps the fastest waves within the pass band
 constexpr Index kMostWaves = 2000;     // over the range
 constexpr Index kMostOfDrive = 4;      // ripples

@@ -28,7 +28,8 @@ struct Attachments {
 };
 
 /// The point nearest to the lines that leave `points` at right angles to `across` and `up`, at their mean height: where
-/// the limbs of a base or of a plate meet. \param across, up  unit
+/// the limbs of a base or of a plate meet.
+/// \param across, up  unit
 [[nodiscard]] Vec middle_of(const std::vector<Vec>& points, const std::vector<Vec>& across, const Vec& up);
 
 /// \param up  unit, normal of the base

@@ -28,7 +28,8 @@ struct Range {
 /// Values at the times of the grid. A faster channel first passes a zero-phase low pass at 0.4 of the grid's rate, so
 /// that nothing folds into its band; then the cubic through the four samples around each time is taken, which shifts no
 /// frequency in time. Where the channel has a gap of more than 2.5 of its steps, and outside of it, the value is NaN:
-/// nothing is made up. \param low_pass_hz  the edge of the low pass, 0 if none was needed
+/// nothing is made up.
+/// \param low_pass_hz  the edge of the low pass, 0 if none was needed
 [[nodiscard]] Eigen::VectorXd onto_grid(const SampledChannel& series, const Eigen::Ref<const Eigen::VectorXd>& grid_s,
                                         double& low_pass_hz);
 
@@ -40,7 +41,8 @@ struct Range {
 Eigen::Index unwrap(Eigen::Ref<Eigen::VectorXd> values, double wrap);
 
 /// The period at which a position begins again, if its jumps all agree with one (2 pi, 360, a power of two, `counts`);
-/// else 0. \param counts  counts per turn, 0: not known
+/// else 0.
+/// \param counts  counts per turn, 0: not known
 [[nodiscard]] double find_wrap(const Eigen::Ref<const Eigen::VectorXd>& values, double counts);
 
 }  // namespace deltadyn

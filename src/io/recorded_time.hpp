@@ -13,7 +13,8 @@ namespace deltadyn {
 void resolve_time(Recording& recording, ColumnMap& map);
 
 /// Channel of this name, alias, or name apart from case, blanks and unit; throws Error(bad_input) with the names there
-/// are. \param where  the map and its line
+/// are.
+/// \param where  the map and its line
 [[nodiscard]] const RecordedChannel& find_channel(const Recording& recording, const std::string& source,
                                                   const std::string& where);
 

@@ -153,7 +153,7 @@ class Writer {
   }
 
   /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or
-  /// empty)
+  ///               empty)
   void inertial(XMLElement* body, const std::string& shared, const std::string& own = {}) {
     std::array<double, kInertialParameters> p{};
     bool given = false;

@@ -25,12 +25,9 @@ inline std::string unbroken(std::string text) {
 inline std::string owner_in_words(const ParameterId& id) {
   if (id.kind != ParameterKind::inertial)
     return id.number > 0 ? drive_name(id.number - 1) : "sliding joint of the telescope bar";
-  constexpr const char* kWords[] = {"upper arm",
-                                    "strut",
-                                    "platform",
-                                    "tool",
-                                    "upper part of the telescope bar",
-                                    "lower part of the telescope bar"};  // of Body
+  constexpr const char* kWords[] = {
+      // Of Body
+      "upper arm", "strut", "platform", "tool", "upper part of the telescope bar", "lower part of the telescope bar"};
   return kWords[static_cast<int>(id.body)] + (id.number > 0 ? "\u00A0" + std::to_string(id.number) : "");
 }
 

@@ -265,7 +265,8 @@ void require_limits(const RobotDescription& robot, int drive, const DriveLimits&
 
 std::string compare_limits(const RobotDescription& robot, int drive, const DriveLimits& asked,
                            const std::string& where) {
-  constexpr double kByFar = 1.5;  // times the file's rate: a file on the safe side is a matter of tens of per cent
+  // Times the file's rate: a file on the safe side is a matter of tens of per cent
+  constexpr double kByFar = 1.5;
   constexpr double kByFarOfRange = 0.25;  // of the file's range, beyond either of its ends
   const DriveLimits& file = robot.limits[static_cast<std::size_t>(drive)];
   const std::string unit = turns(robot, drive) ? "rad" : "m", name = fmt::format("drive {}", drive + 1);

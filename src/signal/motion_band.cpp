@@ -15,7 +15,8 @@ using Eigen::Index;
 
 constexpr double kBandRatio = 1.26;  // a third of an octave
 constexpr double kSegment_s = 4;     // shows motion from half a hertz on
-constexpr double kClear = 30;  // times the noise: less is no news of the motion, or the hump of an interpolated record
+// Times the noise: less is no news of the motion, or the hump of an interpolated record
+constexpr double kClear = 30;
 constexpr double kSameFloor = 1.5;  // quantisation noise of a slow motion is not white: beside the motion it is lower
 constexpr double kContent = 0.999;  // of the accelerations' power: what lies above moves no figure
 constexpr double kSharp_hz = 20;    // below it the low pass smears a reversal over more than a tenth of a second

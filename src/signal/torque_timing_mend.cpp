@@ -10,8 +10,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kHalfWidth = 24;   // samples of the windowed sinc on either side; flat to 0.9 of half the sample rate
-constexpr double kMostLift = 4.0;  // of noise by the inverse of a low pass
+// Samples of the windowed sinc on either side; flat to 0.9 of half the sample rate
+constexpr Index kHalfWidth = 24;
+constexpr double kMostLift = 4.0;      // of noise by the inverse of a low pass
 constexpr double kLowestBand_hz = 80;  // the inverse reaches at least so far, whatever it lifts: the band of a motion
 
 /// Low pass with its edge at `cut` (share of the sample rate, at most 0.5), and its slope, u samples from the centre.

@@ -178,8 +178,8 @@ TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
     const GateResult result = examine(*robot, logs);
     EXPECT_FALSE(result.fault()) << told(result);
     const LogFinding* finding = find(result, {"delay"}, FindingLevel::mended);
-    if (finding == nullptr && std::abs(delay) < 1e-3)
-      finding = find(result, {"lag"}, FindingLevel::mended);  // alike if short
+    // Alike if short
+    if (finding == nullptr && std::abs(delay) < 1e-3) finding = find(result, {"lag"}, FindingLevel::mended);
     ASSERT_NE(finding, nullptr) << delay << "\n" << told(result);
     EXPECT_NEAR(finding->value, delay, 1e-4) << told(result);
     EXPECT_LT(std::abs(finding->value - delay), 4 * finding->std) << told(result);

@@ -71,8 +71,9 @@ TEST(BaseFrame, FixedJointsBeforeTheRobotTurnGravity) {
   const std::vector<std::vector<FixedJoint>> mounts = {
       {{Vec(0, 0, 1.5), Vec(3.14159265358979, 0, 0)}},  // hangs
       {{Vec(0.3, -0.2, 1), Vec(0, 0, 0)}},              // stands elsewhere
-      {{Vec(0, 0, 2), Vec(0, 0, 0.7)}},                 // limb 1 is not on +x of the world
-      {{Vec(0, 0.1, 2), Vec(0.2, -0.4, 1.1)}},          // leans
+      // Limb 1 is not on +x of the world
+      {{Vec(0, 0, 2), Vec(0, 0, 0.7)}},
+      {{Vec(0, 0.1, 2), Vec(0.2, -0.4, 1.1)}},                                               // leans
       {{Vec(0, 0, 1), Vec(1.5707963267948966, 0, 0)}, {Vec(0.1, 0, 0), Vec(0, 0.3, -0.5)}},  // a wall, then a wedge
       {{Vec(0, 0, 1), Vec(0.4, 0, 0)}, {Vec(0, 0, 0), Vec(0, 1, 0)}, {Vec(1, 2, 3), Vec(0, 0, 2)}},
   };

@@ -220,9 +220,8 @@ TEST(Plant, MovesByTheTorqueThatItsOwnMotionTakes) {
   const auto robot = make_robot(delta_description("delta4"));
   std::vector<Effect> effects = many_effects();
   effects.erase(std::remove_if(effects.begin(), effects.end(),
-                               [](const Effect& e) {
-                                 return e.id == effect_id<effects::Hysteresis>;
-                               }),  // its state is integrated otherwise
+                               // Its state is integrated otherwise
+                               [](const Effect& e) { return e.id == effect_id<effects::Hysteresis>; }),
                 effects.end());
   effects.push_back(effect_of(effect_id<effects::DirectionalEfficiency>, 0, {0.1, 0.05}, {}));
   effects.push_back(effect_of(effect_id<effects::PassiveJointFriction>, -1, {0.05}, {}));

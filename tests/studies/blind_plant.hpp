@@ -46,11 +46,14 @@ struct Hidden {
   std::function<void(const Moment&, const Eigen::VectorXd& memory, Eigen::VectorXd& memory_d, Eigen::VectorXd& load)>
       resist;
   int memory_size = 0;
-  std::function<void(RobotDescription&)> robot;                               ///< changes the machine itself
-  std::function<void(const Robot&, int log, Eigen::VectorXd& p)> parameters;  ///< of the limbs' own layout
+  /// Changes the machine itself
+  std::function<void(RobotDescription&)> robot;
+  /// Of the limbs' own layout
+  std::function<void(const Robot&, int log, Eigen::VectorXd& p)> parameters;
   /// Changes what is recorded
   std::function<void(int log, Eigen::MatrixXd& tau, Eigen::MatrixXd& q, double dt)> record;
-  double motor_lag_s = 0;  ///< first-order lag between the recorded command and the shaft
+  /// first-order lag between the recorded command and the shaft
+  double motor_lag_s = 0;
   /// Size as the catalogue states it, if the form has one
   double amplitude = std::numeric_limits<double>::quiet_NaN();
   std::optional<Spring> spring = std::nullopt;

@@ -32,8 +32,8 @@ TEST(BlindStudy, FindsNothingMissingOnACleanLogWithCorrelatedNoise) {
 }
 
 TEST(BlindStudy, LooksBeyondTheBandOfNoisyEncodersWhereReversalsTakeTheRows) {
-  const Outcome outcome =
-      run_case("clean", 152, kNullRuns);  // 5e-5 rad; up to 5 Hz next to nothing is left beside reversals
+  // 5e-5 rad; up to 5 Hz next to nothing is left beside reversals
+  const Outcome outcome = run_case("clean", 152, kNullRuns);
   EXPECT_EQ(outcome.verdict, "nothing-missing") << to_line("clean-152", outcome);
 }
 

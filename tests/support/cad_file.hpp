@@ -34,7 +34,8 @@ struct CadOptions {
   bool end_frames = false;    ///< a link without mass at the far end of each strut
   double unit = 1;            ///< written lengths in metres times this
   int digits = 12;            ///< behind the point of lengths in metres and angles in radians
-  std::string above_base;  ///< links and joints above the base, e.g. a world; ends with the joint to link "base_part"
+  /// Links and joints above the base, e.g. a world; ends with the joint to link "base_part"
+  std::string above_base;
 };
 
 /// Writes links and joints; poses are given in W, where the parts stand.

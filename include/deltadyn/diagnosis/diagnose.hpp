@@ -62,7 +62,8 @@ struct NamedEffect : EffectCandidate {
 /// One row of the list of all effects considered.
 struct ConsideredEffect {
   std::string name, effect_class, joint, unit, ruling;
-  double kept = 0;  ///< share of its signature that a re-fit of the parameters cannot absorb (known before any torque)
+  /// Share of its signature that a re-fit of the parameters cannot absorb (known before any torque)
+  double kept = 0;
   double detectable = 0;               ///< smallest amplitude that these logs show with this noise
   double gain_alone = 0, p_alone = 1;  ///< beside the base model
   double gain_left = 0, p_left = 1;    ///< beside the named effects
@@ -86,9 +87,10 @@ struct DriveFit {
   double rms = 0, rms_after = 0, floor = 0;
   double rms_given = 0;                       ///< of the model as the user gave it, not fitted to these logs
   double rms_holdout = 0, floor_holdout = 0;  ///< of the fitted base model on the hold-out log; 0 without one
-  double structure = 0;                       ///< share of the base model's residual variance that follows the motion
-  double p_value = 1, p_left = 1;             ///< of the structure: before, and beside the named effects
-  std::vector<RowCount> rows;                 ///< one a training log, then the hold-out log
+  /// Share of the base model's residual variance that follows the motion
+  double structure = 0;
+  double p_value = 1, p_left = 1;  ///< of the structure: before, and beside the named effects
+  std::vector<RowCount> rows;      ///< one a training log, then the hold-out log
   /// Coordinates that it follows, with their share, largest first
   std::vector<std::pair<std::string, double>> follows;
 };
@@ -114,7 +116,8 @@ struct Diagnosis {
   double p_value = 1;                                ///< of the verdict
   double explained_share = 0;                        ///< of all structure, by the named effects
   double gap_shrink = 0, gap_low = 0, gap_high = 0;  ///< on the hold-out log, with its 95 % interval; NaN without one
-  double p_no_gain = 1;                    ///< chance that the hold-out log does not gain (paired block bootstrap)
+  /// Chance that the hold-out log does not gain (paired block bootstrap)
+  double p_no_gain = 1;
   std::optional<double> needed_s;          ///< not_testable for shortness: length that would do
   std::vector<Effect> effects;             ///< of the improved model: those it had before and the named ones
   std::optional<Identification> improved;  ///< parameters with the effects

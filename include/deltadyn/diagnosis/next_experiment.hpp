@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// The motion that tells a set of effects apart: T-optimal over the coefficients of a Fourier series (Atkinson
-/// and Fedorov 1975): as much as possible of the alternative's torque must be left when the best effect and all
-/// parameters are re-fitted.
+/// The motion that tells a set of effects apart: T-optimal over the coefficients of a Fourier series (Atkinson and
+/// Fedorov 1975): as much as possible of the alternative's torque must be left when the best effect and all parameters
+/// are re-fitted.
 
 #include <cstdint>
 #include <optional>

@@ -50,10 +50,10 @@ struct BodyInertia {
            coupling.transpose().lazyProduct(body.J_v) + body.J_w.transpose().lazyProduct(rotation);
   }
 
-  /// The body's share of C(q, qd); N x N. With A = Jd_v and B = Jd_w the rates of the Jacobians it is
-  /// J_v^T (m A - mc x B - w x (mc x J_w)) + J_w^T (mc x A + I B + (P w) x J_w), P = tr(I)/2 - I the second moments of
-  /// mass: the integral of (dr/dq)^T d/dt(dr/dq) over the mass. These are the Christoffel symbols of the body's kinetic
-  /// energy, so that Mdot = C + C^T, Mdot - 2C is skew-symmetric, and d(C qd)/dqd = 2C.
+  /// The body's share of C(q, qd); N x N. With A = Jd_v and B = Jd_w the rates of the Jacobians it is J_v^T (m A - mc x
+  /// B - w x (mc x J_w)) + J_w^T (mc x A + I B + (P w) x J_w), P = tr(I)/2 - I the second moments of mass: the integral
+  /// of (dr/dq)^T d/dt(dr/dq) over the mass. These are the Christoffel symbols of the body's kinetic energy, so that
+  /// Mdot = C + C^T, Mdot - 2C is skew-symmetric, and d(C qd)/dqd = 2C.
   template <int N>
   Matrix<T, N, N> coriolis_matrix(const BodyState<T, N>& body) const {
     const Matrix3<T> S = skew(mc);

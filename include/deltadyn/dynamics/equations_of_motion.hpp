@@ -42,8 +42,8 @@ EquationsOfMotion<T, Robot::kDrives> equations_of_motion(const Geometry<T, Robot
 }
 
 /// The same terms in task coordinates z: with J = dz/dq, M_z = J^-T M J^-1, C_z = J^-T (C - M J^-1 Jdot) J^-1, and J^-T
-/// before g and f. What holds for M and C holds for M_z and C_z, too. \return singular where a drive cannot follow the
-/// plate; then `task` keeps its values
+/// before g and f. What holds for M and C holds for M_z and C_z, too.
+/// \return singular where a drive cannot follow the plate; then `task` keeps its values
 template <class T, class Robot>
 Status equations_in_task(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                          const EquationsOfMotion<T, Robot::kDrives>& drives,

@@ -33,7 +33,7 @@ void mass_and_bias(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& 
 /// qdd [rad/s^2 | m/s^2] of the drive torques tau [N m | N] at a posture with drive rates qd.
 /// At rest Coulomb's law gives no torque here (sign(0) = 0); who simulates stiction adds it.
 /// \return out_of_range where M is not positive definite: then the parameters are not physically consistent. qdd keeps
-/// its value.
+///         its value.
 template <class Layout, class T, class Robot>
 Status forward_dynamics(const Geometry<T, Robot>& geometry, const Posture<T, Robot>& posture,
                         const Vector<T, Robot::kDrives>& qd, const Vector<T, Robot::kDrives>& tau,

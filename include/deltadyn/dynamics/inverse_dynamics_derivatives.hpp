@@ -37,7 +37,8 @@ Status posture_with_slopes(const Geometry<Dual<T, Robot::kDrives>, Robot>& geome
 
 /// Derivatives of inverse_dynamics() at a motion. Coulomb friction counts as constant, which it is away from a
 /// reversal. The derivatives of forward dynamics follow: dqdd/dx = -M^-1 dtau/dx at the same accelerations, dqdd/dtau =
-/// M^-1. \return singular where the posture is; then the derivatives keep their values
+/// M^-1.
+/// \return singular where the posture is; then the derivatives keep their values
 template <class Layout, class T, class Robot>
 Status inverse_dynamics_derivatives(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                                     const Vector<T, Layout::kColumns>& p,

@@ -85,7 +85,8 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
 }  // namespace detail
 
 /// Loads of all joints in a motion. For robots with a plate that does not turn; the inner joints of the others are not
-/// described. \return singular where the struts do not hold the plate level; then `out` keeps its values
+/// described.
+/// \return singular where the struts do not hold the plate level; then `out` keeps its values
 template <class Layout, class T, class Robot>
 Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                        const Vector<T, Layout::kColumns>& p, JointReactions<T, Robot>& out) {

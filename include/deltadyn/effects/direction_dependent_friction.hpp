@@ -25,7 +25,8 @@ struct DirectionDependentFriction : JointLaw {
     t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.01, 0.16, 5)};
     t.by_direction = true;
     t.special_cases = {"asymmetric_coulomb", "asymmetric_viscous"};
-    t.simpler_gain = 0.8;  // its four free numbers follow what is not straight in friction of one difference, too
+    // Its four free numbers follow what is not straight in friction of one difference, too
+    t.simpler_gain = 0.8;
     t.form = {0.03, 0.12, 5e-4};  // friction that differs by direction does so in more ways, as `asymmetric_coulomb`
     t.meaning = "the drive's Coulomb and viscous friction differ by direction, with none at the lowest rates";
     t.shows = "residual that depends on the direction, but not below a rate";

@@ -38,8 +38,10 @@ struct JointLaw {};
 
 /// A law of a joint with one number of memory, a function of the way:
 ///   T start(sign, shape)                    state of a joint that has slid long in the direction `sign` (0: at rest,
-///   unloaded) T moved(state, step, input, shape)      after a further `step` [rad | m]: two steps the same way are as
-///   good as their sum std::array<T, N> columns(state, input, shape)
+///   unloaded)
+///   T moved(state, step, input, shape)      after a further `step` [rad | m]: two steps the same way are as good as
+///   their sum
+///   std::array<T, N> columns(state, input, shape)
 struct JointMemory {};
 
 /// State of the plate.
@@ -47,7 +49,8 @@ template <class T>
 struct PlateInput {
   /// In W [m, s]
   Vector3<T> position = Vector3<T>::Zero(), velocity = Vector3<T>::Zero(), acceleration = Vector3<T>::Zero();
-  Vector3<T> gravity = Vector3<T>::Zero();  ///< in W [m/s^2]
+  /// In W [m/s^2]
+  Vector3<T> gravity = Vector3<T>::Zero();
 };
 
 /// A force that the robot has to bear at the plate:

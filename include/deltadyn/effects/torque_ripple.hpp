@@ -5,10 +5,10 @@
 
 namespace deltadyn::effects {
 
-/// Ripple of motor and gear over position: a cos(n q) + b sin(n q). Amplitudes a, b [N m | N] of either sign.
-/// n > 0 is free [1/rad | 1/m]: cogging has n = gear ratio x slots, tooth meshing n = teeth. Valid while n |v| stays in
-/// the pass band. Less than one wave over the range of the drive is no wave but part of one: of gravity, load,
-/// anything. Source: Gandhi, Thorby, torque ripple of permanent-magnet drives; Holtz, Springob 1996.
+/// Ripple of motor and gear over position: a cos(n q) + b sin(n q). Amplitudes a, b [N m | N] of either sign. n > 0 is
+/// free [1/rad | 1/m]: cogging has n = gear ratio x slots, tooth meshing n = teeth. Valid while n |v| stays in the pass
+/// band. Less than one wave over the range of the drive is no wave but part of one: of gravity, load, anything. Source:
+/// Gandhi, Thorby, torque ripple of permanent-magnet drives; Holtz, Springob 1996.
 struct TorqueRipple : JointLaw {
   static constexpr EffectTraits traits() {
     EffectTraits t;

@@ -42,8 +42,9 @@ constexpr bool visit_in(EffectList<Effects...>, [[maybe_unused]] EffectId id, [[
 }  // namespace detail
 
 /// Calls function(Effect()) for the effect with this number: a generic lambda `[&](auto effect) { using E =
-/// decltype(effect); ... }`. A program that visits a list of some of the effects holds no code of the others. \tparam
-/// List  an EffectList \return false if the effect is not in the list
+/// decltype(effect); ... }`. A program that visits a list of some of the effects holds no code of the others.
+/// \tparam List  an EffectList
+/// \return false if the effect is not in the list
 template <class List, class Function>
 constexpr bool visit_effect_in(EffectId id, Function function) {
   return detail::visit_in(List(), id, function);

@@ -11,8 +11,9 @@ namespace deltadyn {
 
 /// Model-based feed-forward of one robot with up to kCapacity effects: drive torques of the wanted motion, with no
 /// heap, no exceptions and a bounded time. Keep one object for the life of the controller: laws with memory follow its
-/// set points one after the other. \tparam T     float or double \tparam List  EffectList of the effects that may be
-/// added; a program holds no code of the others
+/// set points one after the other.
+/// \tparam T     float or double
+/// \tparam List  EffectList of the effects that may be added; a program holds no code of the others
 template <class T, class Robot, Limbs kSharing, int kCapacity, class List = AllEffects>
 class EffectFeedForward {
  public:
@@ -40,7 +41,9 @@ class EffectFeedForward {
 
   /// Width of a reversal: Coulomb's friction and all laws that turn with the sign of a rate take rate / sqrt(rate^2 +
   /// width^2) for it, so that a set point which stops takes no jump of the torque. 0, the value at first: the sign
-  /// itself. \param joint  drive from 0, kTelescopeJoint or kPassiveJoints \param width  at least 0 [rad/s | m/s]
+  /// itself.
+  /// \param joint  drive from 0, kTelescopeJoint or kPassiveJoints
+  /// \param width  at least 0 [rad/s | m/s]
   /// \return out_of_range for another joint or width; then all stays as it was
   Status set_reversal_width(int joint, const T& width) {
     if (joint < 0 || joint > kPassiveJoints || !(width >= T(0)) || !(width - width == T(0)))

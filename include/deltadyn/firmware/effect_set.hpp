@@ -30,8 +30,9 @@ struct EffectScene {
 
   const Motion<T, Robot>& motion;  ///< of the machine as it is
   const Vector3<T>& gravity;
-  const Drives& q;     ///< as the encoders have it [rad | m]
-  const Drives& load;  ///< rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
+  const Drives& q;  ///< as the encoders have it [rad | m]
+  /// Rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
+  const Drives& load;
   const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, telescope, passive joints [rad/s | m/s]
   T time;                                ///< [s]
 

@@ -9,7 +9,8 @@
 namespace deltadyn {
 
 /// Model-based feed-forward of one robot; firmware/effect_feed_forward.hpp is the one with more friction laws and other
-/// effects. Keep one object for the life of the controller. \tparam T float or double
+/// effects. Keep one object for the life of the controller.
+/// \tparam T float or double
 template <class T, class Robot, Limbs kSharing = Limbs::shared>
 class FeedForward {
  public:

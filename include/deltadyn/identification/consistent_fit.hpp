@@ -23,18 +23,18 @@ namespace deltadyn {
 
 /// Which variables are free.
 enum class ParameterSet {
-  reduced,  ///< section VI: products of inertia and moments across a symmetric link are 0, unseen inertias follow the
-            ///< prior
-  full,     ///< all ten parameters of every body
+  /// Section VI: products of inertia and moments across a symmetric link are 0, unseen inertias follow the prior
+  reduced,
+  full,  ///< all ten parameters of every body
 };
 
 /// How far a parameter vector is from the prior.
 enum class FitMetric {
-  relative,  ///< (15): sum of ((p - p_reg)/scale)^2, scale = |p_reg|; where p_reg is 0, the scale that the body's mass
-             ///< and size set
-  bregman,   ///< log-det divergence of the pseudo-inertias (Lee, Wensing, Park 2020), independent of frames and units
-  riemannian,  ///< half the squared geodesic distance of the pseudo-inertias (Lee, Park 2018); not convex, so without
-               ///< certificate
+  /// (15): sum of ((p - p_reg)/scale)^2, scale = |p_reg|; where p_reg is 0, the scale that the body's mass and size set
+  relative,
+  bregman,  ///< log-det divergence of the pseudo-inertias (Lee, Wensing, Park 2020), independent of frames and units
+  /// Half the squared geodesic distance of the pseudo-inertias (Lee, Park 2018); not convex, so without certificate
+  riemannian,
 };
 
 /// Data and prior. A has one column a parameter; its rows may be the triangular factor of any amount of folded samples.
@@ -78,11 +78,12 @@ struct OptimalityCertificate {
   bool available = false;  ///< false for the metric that is not convex
   /// Smallest eigenvalue of all scaled dual matrices; >= 0 up to rounding at an optimum [chi^2]
   double min_dual_eigenvalue = 0;
-  std::string min_dual_name;   ///< the body or parameter it belongs to
-  double complementarity = 0;  ///< sum of <G, Mbar> over the bodies and g p over the scalars; 0 at an optimum [chi^2]
-  double gap = 0;              ///< proven upper bound of J(p) - min J [chi^2]
-  double relative_gap = 0;     ///< gap / max(J, 1)
-  bool passed = false;         ///< gap <= ConsistentFitOptions::certificate_gap
+  std::string min_dual_name;  ///< the body or parameter it belongs to
+  /// Sum of <G, Mbar> over the bodies and g p over the scalars; 0 at an optimum [chi^2]
+  double complementarity = 0;
+  double gap = 0;           ///< proven upper bound of J(p) - min J [chi^2]
+  double relative_gap = 0;  ///< gap / max(J, 1)
+  bool passed = false;      ///< gap <= ConsistentFitOptions::certificate_gap
 };
 
 struct ConsistentFitSummary {
@@ -93,8 +94,9 @@ struct ConsistentFitSummary {
   Eigen::VectorXd prior;       ///< P
   Eigen::VectorXd std;         ///< P: standard deviation from data and prior together
   Eigen::VectorXd data_share;  ///< P: 1 the data decided, 0 the prior decided (1 - variance / prior variance)
-  std::vector<bool> fitted;  ///< P: the parameter enters data and regularisation; false for those that section VI drops
-  double data_cost = 0;      ///< ||A p - b||^2
+  /// P: the parameter enters data and regularisation; false for those that section VI drops
+  std::vector<bool> fitted;
+  double data_cost = 0;       ///< ||A p - b||^2
   double data_cost_free = 0;  ///< the smallest that any p has, consistent or not: that of the base parameters
   int data_rank = 0;          ///< of A: number of base parameters
   /// Smallest value on the consistent set; only when lambda was chosen, else equal to data_cost
@@ -123,10 +125,9 @@ struct ConsistentFitSummary {
   [[nodiscard]] std::string full_report() const;   ///< with a line a parameter
 };
 
-/// Solves the problem.
-/// Throws deltadyn::Error for sizes, parameters or numbers that do not fit, options out of range, and a prior that no
-/// body can have (negative mass, broken triangle inequality, first moments too large), naming the body and the rule. A
-/// prior on the boundary (thin rod, point mass) is moved inside by a hair, which the notes say.
+/// Solves the problem. Throws deltadyn::Error for sizes, parameters or numbers that do not fit, options out of range,
+/// and a prior that no body can have (negative mass, broken triangle inequality, first moments too large), naming the
+/// body and the rule. A prior on the boundary (thin rod, point mass) is moved inside by a hair, which the notes say.
 [[nodiscard]] ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem,
                                                              const ConsistentFitOptions& options = {});
 

@@ -72,7 +72,8 @@ class EffectModel {
   /// \param p                 parameters in the robot's layout, for the effects that need the model's torque
   /// \param with_differences  of changed machines, too (these need the model some twenty times a sample)
   /// \param near              of nearly the same motion (encoder noise apart): spares the derivatives along the lags of
-  /// elastic joints Throws deltadyn::Error for poses that the robot cannot have.
+  ///                          elastic joints
+  /// Throws deltadyn::Error for poses that the robot cannot have.
   [[nodiscard]] EffectSignals signals(const PreparedLog& log, const Eigen::VectorXd& p, bool with_differences = true,
                                       const EffectSignals* near = nullptr) const;
 

@@ -27,8 +27,10 @@ namespace deltadyn {
 /// Amplitudes (and their standard deviations) by weighted least squares together with all base parameters. Shapes stay;
 /// so do the amplitudes of effects whose shape is their amplitude. Amplitudes that physics keeps positive do not become
 /// negative: one that would be 0 then, the others are those of the fit without it, and its standard deviation is that
-/// of the fit without bounds. \param used  the parameters p were found with its processing and its rows: the amplitudes
-/// are, too, so that both belong together \returns the effects with their new amplitudes
+/// of the fit without bounds.
+/// \param used  the parameters p were found with its processing and its rows: the amplitudes are, too, so that both
+///              belong together
+/// \returns the effects with their new amplitudes
 [[nodiscard]] std::vector<Effect> estimate_amplitudes(const Robot& robot, const std::vector<Log>& logs,
                                                       const Eigen::VectorXd& p, const std::vector<Effect>& effects,
                                                       const Identification& used);

@@ -19,9 +19,10 @@ struct FineDelay {
 };
 
 /// Delay, displacement and damping of every bristle and all base parameters together, by Gauss and Newton. Nothing is
-/// looked for where `processing` holds no presliding: there the gate has spoken. \param processing  as of the fit, with
-/// presliding and ripples \param known       parameters of a finished model: then nothing but the delay is free; null:
-/// everything is Throws deltadyn::Error as prepare_log does.
+/// looked for where `processing` holds no presliding: there the gate has spoken.
+/// \param processing  as of the fit, with presliding and ripples
+/// \param known       parameters of a finished model: then nothing but the delay is free; null: everything is
+/// Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] FineDelay find_fine_delay(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                         const ProcessingOptions& processing, const Eigen::VectorXd* known = nullptr);
 

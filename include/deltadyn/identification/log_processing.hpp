@@ -75,9 +75,8 @@ struct PreparedLog {
   std::vector<std::string> notes;
 };
 
-/// Filters, differentiates and masks one log.
-/// Throws deltadyn::Error with file and line for poses out of reach, singular poses, logs too short for the cut-off,
-/// and missing derivatives when filter is off.
+/// Filters, differentiates and masks one log. Throws deltadyn::Error with file and line for poses out of reach,
+/// singular poses, logs too short for the cut-off, and missing derivatives when filter is off.
 [[nodiscard]] PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options);
 
 /// Do samples [first, first + count) hold one that must not enter a row of this drive (Log::filled, Log::torque_out)?
@@ -94,8 +93,9 @@ enum class RowUse : char {
 struct RowBlock {
   Eigen::Index first_row = 0;
   std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x parameters
-  Eigen::MatrixXd tau;             ///< rows x drives, filtered as Y, without the torque of ripples
-  Eigen::MatrixXd ripple;          ///< rows x drives: that torque; empty: none
+  /// Rows x drives, filtered as Y, without the torque of ripples
+  Eigen::MatrixXd tau;
+  Eigen::MatrixXd ripple;                                    ///< rows x drives: that torque; empty: none
   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }

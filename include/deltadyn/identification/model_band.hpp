@@ -34,8 +34,9 @@ struct ModelBand {
 
 /// Looks from `lowest_hz` on in parts of half an octave until one is found in which less than half of the model's
 /// torque, and certainly not the whole of it, is in the record; if that is the first part, below it, too. Of long logs
-/// the middle counts. Where logs tell too little, there is no limit. \param processing  its cut-off and periods are not
-/// used Throws deltadyn::Error as prepare_log() does for poses out of reach.
+/// the middle counts. Where logs tell too little, there is no limit.
+/// \param processing  its cut-off and periods are not used
+/// Throws deltadyn::Error as prepare_log() does for poses out of reach.
 [[nodiscard]] ModelBand find_model_band(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                         const ProcessingOptions& processing, double lowest_hz, double highest_hz,
                                         int threads = 0);

@@ -16,9 +16,11 @@ struct NonNegativeSolution {
 };
 
 /// Minimises |C x - r|^2 over x with x_i >= 0 where `positive`. Columns whose square in `gram` is not above 0 take no
-/// part. Where columns depend on each other, the solution of least norm in columns of norm 1 is taken. \param gram k x
-/// k, C^T C \param inner     k, C^T r \param positive  k \param singular  a direction of the columns of norm 1 that is
-/// weaker than this share of the strongest is rounding
+/// part. Where columns depend on each other, the solution of least norm in columns of norm 1 is taken.
+/// \param gram      k x k, C^T C
+/// \param inner     k, C^T r
+/// \param positive  k
+/// \param singular  a direction of the columns of norm 1 that is weaker than this share of the strongest is rounding
 [[nodiscard]] NonNegativeSolution non_negative_least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner,
                                                              const std::vector<bool>& positive, double singular = 1e-8);
 

@@ -23,8 +23,9 @@ struct PreslidingJoint {
 };
 
 /// One value a joint with friction: drives, then the telescope. The first pass rests on rows away from reversals, the
-/// next ones on all rows; amplitudes and base parameters are fitted along. \param processing  with the cut-off of the
-/// fit; its presliding is not used Throws deltadyn::Error as prepare_log and estimate_base_parameters do.
+/// next ones on all rows; amplitudes and base parameters are fitted along.
+/// \param processing  with the cut-off of the fit; its presliding is not used
+/// Throws deltadyn::Error as prepare_log and estimate_base_parameters do.
 [[nodiscard]] std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParameters& base,
                                                            const std::vector<Log>& logs,
                                                            const ProcessingOptions& processing, int threads = 0);

@@ -14,11 +14,12 @@ namespace deltadyn {
 /// Residual of one drive in one log that is no noise.
 struct StructureLeft {
   std::string file;
-  int drive = 0;           ///< from 0
-  std::string coordinate;  ///< of the drive: "velocity", "position", "acceleration"; "time" for slow waves that follow
-                           ///< none of them
-  double share = 0;        ///< of the residual's mean square in that log
-  double of_torque = 0;    ///< rms of that part over the rms torque of the drive in that log
+  int drive = 0;  ///< from 0
+  std::string
+      /// Of the drive: "velocity", "position", "acceleration"; "time" for slow waves that follow none of them
+      coordinate;
+  double share = 0;      ///< of the residual's mean square in that log
+  double of_torque = 0;  ///< rms of that part over the rms torque of the drive in that log
   /// Range of speed in which a friction-like residual is largest beside the torque of that range [rad/s | m/s].
   double speed_low = 0, speed_high = 0;
   double of_torque_there = 0;  ///< 0 if none stands out

@@ -28,7 +28,8 @@ struct ChannelMap {
   std::optional<double> torque_constant = {};  ///< [N m/A], of a prismatic drive without lead [N/A]
   std::optional<double> rated_torque = {};     ///< [N m], of a prismatic drive without lead [N]
   std::optional<double> counts_per_turn = {};  ///< of the encoder
-  std::optional<double> lead = {};  ///< of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
+  /// Of a spindle or belt [m per turn]: turns of a prismatic drive's motor to m
+  std::optional<double> lead = {};
   std::optional<double> wrap = {};  ///< the recorded number begins again after this much (65536, 360, ...)
   double delay_s = 0.0;             ///< the recorded value is this much older than its time stamp
   long line = 0;                    ///< in the map file, for messages
@@ -67,9 +68,8 @@ struct MapDefaults {
 ///     drive = 1
 ///     quantity = "position"
 ///     source = "Axis 1 [deg]"
-/// with the further keys of ChannelMap (rated_torque_Nm, torque_constant_Nm_A, lead_m_turn, delay_s, ...).
-/// Throws Error(bad_input) with file and line: no TOML, an unknown key, a drive that the robot does not have, one named
-/// twice.
+/// with the further keys of ChannelMap (rated_torque_Nm, torque_constant_Nm_A, lead_m_turn, delay_s, ...). Throws
+/// Error(bad_input) with file and line: no TOML, an unknown key, a drive that the robot does not have, one named twice.
 [[nodiscard]] ColumnMap read_column_map(const std::string& path, const RobotDescription& robot);
 
 /// One channel as lines of a map file.

@@ -20,9 +20,8 @@ namespace deltadyn {
 /// Name of that row.
 [[nodiscard]] std::string presliding_damping_name(const RobotDescription& robot, int joint);
 
-/// The ripples of all drives.
-/// Throws Error(bad_input) for a drive that the robot does not have, for waves that are not above 0, and for a missing
-/// row of the three.
+/// The ripples of all drives. Throws Error(bad_input) for a drive that the robot does not have, for waves that are not
+/// above 0, and for a missing row of the three.
 [[nodiscard]] std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescription& robot);
 /// Their rows.
 [[nodiscard]] std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples,

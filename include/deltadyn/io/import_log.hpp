@@ -25,7 +25,8 @@ struct TakenChannel {
   double factor = 1.0;   ///< from `map.unit` to SI at the drive, sign included
   double step_s = 0.0;   ///< usual sample time of the channel itself
   double rate_hz = 0.0;  ///< its rows over its time
-  std::string how;  ///< how it came to the grid: "as recorded", "interpolated from 4 ms", "low pass 400 Hz, then ..."
+  /// How it came to the grid: "as recorded", "interpolated from 4 ms", "low pass 400 Hz, then ..."
+  std::string how;
 };
 
 struct ImportedLog {

@@ -47,7 +47,9 @@ struct ParameterTable {
 [[nodiscard]] ParameterTable read_parameters(const std::string& path, const RobotDescription& robot);
 
 /// What to tell somebody who uses the parameters without the effects that they were found with, and the flag that mends
-/// it. \param effects_given  the effect file that is given; empty: none \return empty if nothing is missing
+/// it.
+/// \param effects_given  the effect file that is given; empty: none
+/// \return empty if nothing is missing
 [[nodiscard]] std::string missing_effects(const ParameterTable& table, const std::string& effects_given);
 
 /// Writes the table; the columns std, prior and data_share appear if any row has them. Numbers read back exactly.
@@ -63,8 +65,9 @@ struct ParameterMatch {
 
 /// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
 /// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only plausibility was checked on
-/// reading Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs'
-/// own values where the shared one is wanted.
+///               reading
+/// Throws Error(bad_input) if a unit differs, if no name at all is found, or if the table holds only the limbs' own
+/// values where the shared one is wanted.
 [[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
                                               const std::vector<std::string>& units = {});
 

@@ -12,9 +12,10 @@ namespace deltadyn {
 
 /// Rows that several channels share.
 struct Timeline {
-  std::string name;     ///< of the time column or topic, for messages; empty: none
-  std::string unit;     ///< what the stamps were given in, for messages
-  Eigen::VectorXd t_s;  ///< N stamps after `origin_ns` [s]; empty: the recording does not say when its rows were taken
+  std::string name;  ///< of the time column or topic, for messages; empty: none
+  std::string unit;  ///< what the stamps were given in, for messages
+  /// N stamps after `origin_ns` [s]; empty: the recording does not say when its rows were taken
+  Eigen::VectorXd t_s;
   std::int64_t origin_ns = 0;  ///< kept apart, as a double cannot hold nanoseconds since 1970
   std::vector<long> line;      ///< line (or message) of each row in the file, the first is 1
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(line.size()); }
@@ -29,12 +30,14 @@ struct RecordedChannel {
   std::string joint;                 ///< its name, if the form itself says so
   std::size_t timeline = 0;          ///< index in Recording::timelines
   Eigen::VectorXd values;            ///< one a row of the timeline, NaN where the field is empty or no number
-  std::int64_t origin = 0;  ///< to be added to every value: integers too long for a double are kept after their first
+  /// To be added to every value: integers too long for a double are kept after their first
+  std::int64_t origin = 0;
   double sample_time_s = 0.0;  ///< of the channel itself where the form says so, else 0
   long text_line = 0;          ///< line of the first field that is no number; 0: none
   std::string text;            ///< that field
-  std::string remark;          ///< what the file says of the channel that was not applied, and why; empty: nothing
-  bool clock = false;          ///< dates or times of day: values in s, origin in ns since 1970 (or midnight)
+  /// What the file says of the channel that was not applied, and why; empty: nothing
+  std::string remark;
+  bool clock = false;  ///< dates or times of day: values in s, origin in ns since 1970 (or midnight)
 };
 
 struct Recording {

@@ -7,9 +7,12 @@
 /// Tree of a Delta with limbs K = 1..3 and struts s = a (at +y of the limb), b (at -y):
 ///
 ///     base -driveK-> upper_armK -strutKs_y-> strutKs_knuckle -strutKs_z-> strutKs           strut frame at the elbow,
-///     x along it strut1a -platform_z-> platform_knuckle -platform_y-> platform_mount -fixed-> platform   frame at the
-///     plate's centre base -drive4-> telescope_yoke -telescope_x-> telescope_cross -telescope_y-> telescope_upper
-///     -telescope-> telescope_lower telescope_lower -tool_y-> tool_cross -tool_x-> tool_mount -fixed-> tool
+///     x along it
+///     strut1a -platform_z-> platform_knuckle -platform_y-> platform_mount -fixed-> platform   frame at the plate's
+///     centre
+///     base -drive4-> telescope_yoke -telescope_x-> telescope_cross -telescope_y-> telescope_upper -telescope->
+///     telescope_lower
+///     telescope_lower -tool_y-> tool_cross -tool_x-> tool_mount -fixed-> tool
 ///
 /// Loops: `strutKs_end` (spherical) for the five other strut ends, `tool_axis` (revolute about z) between platform and
 /// tool. The joint `telescope` is prismatic along -z: its position is the length of the bar between the two universal
@@ -32,7 +35,8 @@ namespace deltadyn {
 using NamedValues = std::map<std::string, double>;
 
 /// \returns the text of the robot file. Bodies with a mass in `parameters` get an `<inertial>` element, the others
-/// none. Throws deltadyn::Error if the description does not validate, or a body in `parameters` has a mass that is not
+/// none.
+/// Throws deltadyn::Error if the description does not validate, or a body in `parameters` has a mass that is not
 /// positive.
 [[nodiscard]] std::string robot_to_urdf(const RobotDescription& robot, const NamedValues& parameters = {});
 

@@ -9,9 +9,9 @@
 
 namespace deltadyn {
 
-/// Angle of a revolute drive that puts the elbow at strut length from the attachment.
-/// With d = p_DE_0 and p = p_DA in L: Ry(q) d . p = k, i.e. rho cos(q - phi) = k; elbow = +1 takes the arm turned less
-/// far down. \return unreachable if no angle does it
+/// Angle of a revolute drive that puts the elbow at strut length from the attachment. With d = p_DE_0 and p = p_DA in
+/// L: Ry(q) d . p = k, i.e. rho cos(q - phi) = k; elbow = +1 takes the arm turned less far down.
+/// \return unreachable if no angle does it
 template <class T>
 Status revolute_drive_angle(const LimbGeometry<T>& limb, const Vector3<T>& p_DA, T& q) {
   using std::acos;

@@ -27,7 +27,8 @@ struct LimbPosture {
   SinCos<T> azimuth;   ///< of R_WL
   SinCos<T> q;         ///< of the drive angle (revolute drives)
   PointCurve<T> p_DE;  ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
-  PointCurve<T> p_BA;  ///< attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  /// Attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  PointCurve<T> p_BA;
   Vector3<T> u = Vector3<T>::Zero();                  ///< unit vector of the strut
   SinCos<T> beta;                                     ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
   SinCos<T> gamma;                                    ///< strut angle about its own z
@@ -39,11 +40,12 @@ struct LimbPosture {
 template <class T, int N>
 struct TelescopePosture {
   SinCos<T> psi, a, b;
-  T length = T(1);                                ///< distance of the universal joints [m]
-  Vector3<T> e = Vector3<T>::Zero();              ///< unit vector along the bar from the lower to the upper joint, in W
-  Vector3<T> e_P = Vector3<T>::Zero();            ///< the same in the frame turned by psi
-  Matrix<T, 3, N> J_e = Matrix<T, 3, N>::Zero();  ///< de/dq, in W
-  RowVector<T, N> J_length = RowVector<T, N>::Zero();                            ///< d length / dq [m/rad]
+  T length = T(1);  ///< distance of the universal joints [m]
+  /// Unit vector along the bar from the lower to the upper joint, in W
+  Vector3<T> e = Vector3<T>::Zero();
+  Vector3<T> e_P = Vector3<T>::Zero();                 ///< the same in the frame turned by psi
+  Matrix<T, 3, N> J_e = Matrix<T, 3, N>::Zero();       ///< de/dq, in W
+  RowVector<T, N> J_length = RowVector<T, N>::Zero();  ///< d length / dq [m/rad]
   RowVector<T, N> J_a = RowVector<T, N>::Zero(), J_b = RowVector<T, N>::Zero();  ///< da/dq, db/dq
 };
 
@@ -100,8 +102,8 @@ PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& the
 }
 
 /// Fills `posture` from consistent q and z: joint angles and every Jacobian. The two must belong together (see
-/// forward.hpp, inverse.hpp). \return singular where the drives do not determine the plate, or a strut lies along its
-/// limb's axis
+/// forward.hpp, inverse.hpp).
+/// \return singular where the drives do not determine the plate, or a strut lies along its limb's axis
 template <class T, class Robot>
 Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
                         const Vector<T, Robot::kDrives>& z, Posture<T, Robot>& posture);

@@ -74,8 +74,9 @@ template <class T>
 }
 
 /// True if a body with positive density has these parameters: Mbar(p) is positive definite (V.A), which holds for the
-/// mass, the triangle inequality of the inertias about the centre of mass, and the centre of mass itself. \param
-/// tolerance smallest admitted pivot of Mbar scaled to a unit diagonal: free of units, 0 asks for strict definiteness.
+/// mass, the triangle inequality of the inertias about the centre of mass, and the centre of mass itself.
+/// \param tolerance smallest admitted pivot of Mbar scaled to a unit diagonal: free of units, 0 asks for strict
+///                  definiteness.
 template <class T>
 [[nodiscard]] bool is_physically_consistent(const InertialVector<T>& p, T tolerance = T(0)) {
   using std::sqrt;

@@ -12,10 +12,10 @@
 ///
 /// Every pi gives a physically consistent p, and every consistent p has exactly one pi.
 ///
-/// Multiplied out, U^T U differs from (14) as printed in two places: the paper's list has nine entries because
-/// Izz = e^{2 alpha} (s12^2 + e^{2 d1} + e^{2 d2}) is missing, and its Iyy has s12^2 + s13^2 where the product has
-/// s13^2 + s23^2. With s = 0 both agree with the paper's own (16). Here the product is used;
-/// tests/model/log_cholesky_test.cpp shows it.
+/// Multiplied out, U^T U differs from (14) as printed in two places: the paper's list has nine entries because Izz =
+/// e^{2 alpha} (s12^2 + e^{2 d1} + e^{2 d2}) is missing, and its Iyy has s12^2 + s13^2 where the product has s13^2 +
+/// s23^2. With s = 0 both agree with the paper's own (16). Here the product is used; tests/model/log_cholesky_test.cpp
+/// shows it.
 
 #include <Eigen/Core>
 #include <cmath>

@@ -60,8 +60,8 @@ template <class T>
   return translated<T>(rotated<T>(along_z, R), centre);
 }
 
-/// Hollow cylinder along z, centre at the origin: Izz = m (Ro^2 + Ri^2) / 2, Ixx = Iyy = m (L^2 + 3 (Ro^2 + Ri^2))
-/// / 12.
+/// Hollow cylinder along z, centre at the origin: Izz = m (Ro^2 + Ri^2) / 2, Ixx = Iyy = m (L^2 + 3 (Ro^2 + Ri^2)) /
+/// 12.
 template <class T>
 [[nodiscard]] InertialVector<T> hollow_cylinder(T mass, T outer_radius, T inner_radius, T length) {
   const T squares = outer_radius * outer_radius + inner_radius * inner_radius;

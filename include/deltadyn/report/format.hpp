@@ -15,9 +15,9 @@ namespace deltadyn {
 /// A number with its unit, e.g. "12.35 N m".
 [[nodiscard]] std::string format_number(double value, std::string_view unit, int significant_digits = 4);
 
-/// Value and standard uncertainty, e.g. "1.234 ± 0.012 kg", "(1.23 ± 0.12) × 10⁻⁵ kg m²".
-/// The uncertainty has two significant digits and the value ends at the same place. An uncertainty of 0 means exact, a
-/// NaN or negative one means unknown: then the value stands alone, with four significant digits if unknown.
+/// Value and standard uncertainty, e.g. "1.234 ± 0.012 kg", "(1.23 ± 0.12) × 10⁻⁵ kg m²". The uncertainty has two
+/// significant digits and the value ends at the same place. An uncertainty of 0 means exact, a NaN or negative one
+/// means unknown: then the value stands alone, with four significant digits if unknown.
 [[nodiscard]] std::string format_with_uncertainty(double value, double uncertainty, std::string_view unit = "");
 
 /// The same, but an uncertainty larger than the value does not round it away: "0.20 ± 30".

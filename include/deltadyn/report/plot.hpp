@@ -63,13 +63,13 @@ struct PlotSpec {
   int height = 320;                             ///< [px]
 };
 
-/// Draws one plot, or several on top of each other with one common x axis, e.g. one a drive.
-/// The x label, the width, log_x and the tick labels are those of the last panel, the x range encloses all panels.
-/// Panels above the last give the space of their own x axis back, so that the areas keep the heights they have alone,
-/// and a panel with the same curves as the first leaves the legend to it. \param id_prefix  put before every id in the
-/// SVG; plots that share one HTML page need different prefixes \return an <svg> element without XML declaration that
-/// scales with the width of the page \throws Error if the specification contradicts itself, gnuplot is missing, or
-/// gnuplot fails
+/// Draws one plot, or several on top of each other with one common x axis, e.g. one a drive. The x label, the width,
+/// log_x and the tick labels are those of the last panel, the x range encloses all panels. Panels above the last give
+/// the space of their own x axis back, so that the areas keep the heights they have alone, and a panel with the same
+/// curves as the first leaves the legend to it.
+/// \param id_prefix  put before every id in the SVG; plots that share one HTML page need different prefixes
+/// \return an <svg> element without XML declaration that scales with the width of the page
+/// \throws Error if the specification contradicts itself, gnuplot is missing, or gnuplot fails
 [[nodiscard]] std::string render_svg(const std::vector<PlotSpec>& panels, std::string_view id_prefix = "plot-");
 
 /// The same as PNG, two picture points for each pixel of the specification so that it prints sharply.

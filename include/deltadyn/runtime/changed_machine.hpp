@@ -17,7 +17,8 @@ namespace deltadyn {
 
 struct ChangedMachine {
   RobotDescription description;
-  Eigen::VectorXd home_offset;  ///< true drive coordinate minus the one that the encoder knows
+  /// True drive coordinate minus the one that the encoder knows
+  Eigen::VectorXd home_offset;
   std::vector<std::pair<ParameterId, double>> parameters;  ///< what is added to parameters, each limb with its own
   std::vector<std::pair<int, SpringInDrive>> springs;      ///< by drive from 0
 

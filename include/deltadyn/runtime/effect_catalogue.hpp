@@ -45,7 +45,8 @@ struct Effect {
 /// Start values of a shape parameter, in its scale.
 [[nodiscard]] std::vector<double> start_values(const ShapeTraits& shape);
 /// Throws deltadyn::Error for amplitudes of the wrong sign or beyond their largest size, and shapes that must be
-/// positive and are not. \param where  place of the parameter of this name, for the message
+/// positive and are not.
+/// \param where  place of the parameter of this name, for the message
 void check_sizes(const Effect& effect, const std::function<std::string(std::string_view)>& where, ExitCode code);
 
 /// "drive2", "telescope", "platform", "robot".

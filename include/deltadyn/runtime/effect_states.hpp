@@ -21,7 +21,8 @@ struct EffectState {
   Eigen::RowVectorXd J_bar;                                ///< d length / dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
   Eigen::VectorXd passive_rate;                            ///< of each different passive joint [rad/s]
-  Eigen::MatrixXd J_passive;  ///< d rate / d qd, times the number of joints alike: joints x drives
+  /// D rate / d qd, times the number of joints alike: joints x drives
+  Eigen::MatrixXd J_passive;
 };
 
 /// Dispatches once on the type of the robot.

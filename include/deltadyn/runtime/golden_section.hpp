@@ -12,8 +12,9 @@ namespace deltadyn {
 inline constexpr double kGoldenShare = 1 / std::numbers::phi;
 
 /// Where f is least between two ends: the middle of the interval that is left after `steps` steps. If f has several
-/// minima, one of them. f is evaluated steps + 2 times, never at the ends. \param f          double f(double) \param
-/// low, high  ends, low <= high
+/// minima, one of them. f is evaluated steps + 2 times, never at the ends.
+/// \param f          double f(double)
+/// \param low, high  ends, low <= high
 template <class Function>
 [[nodiscard]] double golden_section(const Function& f, double low, double high, int steps) {
   double a = high - kGoldenShare * (high - low), b = low + kGoldenShare * (high - low), f_a = f(a), f_b = f(b);

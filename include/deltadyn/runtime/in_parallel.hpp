@@ -24,8 +24,8 @@ void run_in_order(std::size_t count, const std::function<std::function<void()>(s
 
 /// Runs pass(k) for k = 0 .. count - 1, each once, on any thread and in any order; passes must write to places of their
 /// own. If passes throw, the exception of the lowest k is thrown again after the loop; passes of higher k may then be
-/// left out. A loop inside a pass runs on the thread of that pass. \param threads  how many; 0 or less takes the number
-/// of set_threads()
+/// left out. A loop inside a pass runs on the thread of that pass.
+/// \param threads  how many; 0 or less takes the number of set_threads()
 template <std::integral Index, std::invocable<Index> Pass>
 void in_parallel(Index count, Pass&& pass, int threads = 0) {
   if (count <= 0) return;
@@ -36,7 +36,8 @@ void in_parallel(Index count, Pass&& pass, int threads = 0) {
 /// Runs compute(k) for k = 0 .. count - 1 as in_parallel() does, and hands each result to take(k, result), one at a
 /// time and in the order of k, so that a sum is the same on any number of threads. Only as many results are held as
 /// there are threads. If compute or take throws, the exception of the lowest k is thrown again after the loop, and
-/// nothing of a higher k has been taken. \param threads  how many; 0 or less takes the number of set_threads()
+/// nothing of a higher k has been taken.
+/// \param threads  how many; 0 or less takes the number of set_threads()
 template <std::integral Index, std::invocable<Index> Compute,
           std::invocable<Index, std::invoke_result_t<Compute, Index>> Take>
 void in_parallel_in_order(Index count, Compute&& compute, Take&& take, int threads = 0) {

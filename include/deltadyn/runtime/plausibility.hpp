@@ -69,7 +69,8 @@ void require_limits(const RobotDescription& robot, int drive, const DriveLimits&
                                          const std::string& where);
 
 /// Mass, first moments and inertias of a body against the size of the robot; a mass of zero (not given) passes, a
-/// negative one does not. \param what the body in words
+/// negative one does not.
+/// \param what the body in words
 void require_body(const RobotDescription& robot, Body body, const InertialVector<double>& p, const std::string& what,
                   const std::string& where, ExitCode code = ExitCode::bad_input);
 

@@ -25,7 +25,8 @@ template <class Value>
 }
 
 /// Value that a share of all does not exceed, always one of the values: the one at place floor(share (n - 1)) when
-/// sorted; 0 for none. \param share  0 (the least value) to 1 (the largest)
+/// sorted; 0 for none.
+/// \param share  0 (the least value) to 1 (the largest)
 template <class Value>
 [[nodiscard]] Value quantile(std::vector<Value> values, double share) {
   if (values.empty()) return Value{};

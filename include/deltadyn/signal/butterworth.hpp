@@ -14,8 +14,10 @@ struct SecondOrderSection {
 };
 
 /// Digital Butterworth low pass by the bilinear transform with pre-warping; unit gain at zero frequency, -3 dB at
-/// `cutoff_hz`. An odd order has one section of first order (b2 = a2 = 0). \param cutoff_hz  between 0 and half the
-/// sample rate \param order      1 to 12 Throws Error(usage) if an argument is out of range.
+/// `cutoff_hz`. An odd order has one section of first order (b2 = a2 = 0).
+/// \param cutoff_hz  between 0 and half the sample rate
+/// \param order      1 to 12
+/// Throws Error(usage) if an argument is out of range.
 [[nodiscard]] std::vector<SecondOrderSection> butterworth_low_pass(double sample_rate_hz, double cutoff_hz, int order);
 
 /// Gain |H|^2 of forward and backward pass together at a frequency.
@@ -29,7 +31,9 @@ struct SecondOrderSection {
 ///
 /// The ends are continued by odd reflection (a straight line stays straight), each pass starts in the steady state of
 /// its first value, so constants and straight lines pass unchanged. Still, about 1/cutoff_hz at either end is less
-/// certain than the middle. \param columns         N x channels, at least two rows \param sample_rate_hz  of the rows
+/// certain than the middle.
+/// \param columns         N x channels, at least two rows
+/// \param sample_rate_hz  of the rows
 /// \param cutoff_hz       0 to half the sample rate; at or beyond half the sample rate the data are returned unchanged
 /// \param order           of one pass, 1 to 12
 /// Throws Error(usage) if an argument is out of range.

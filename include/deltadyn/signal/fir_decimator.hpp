@@ -17,8 +17,9 @@ class FirDecimator {
  public:
   /// \param sample_rate_hz  of the input
   /// \param cutoff_hz       -6 dB point; 0.33 sample_rate_hz/factor keeps aliases out, half of it is the most that is
-  /// accepted \param factor          every factor-th filtered sample is kept, at least 1 Throws Error(usage) if an
-  /// argument is out of range or the cut-off is above half the output rate.
+  ///                        accepted
+  /// \param factor          every factor-th filtered sample is kept, at least 1
+  /// Throws Error(usage) if an argument is out of range or the cut-off is above half the output rate.
   FirDecimator(double sample_rate_hz, double cutoff_hz, int factor);
 
   [[nodiscard]] int half_width() const { return static_cast<int>(taps_.size() / 2); }

@@ -27,7 +27,8 @@ struct LogCheckOptions {
   double min_duration_s = 0.5;         ///< shorter logs are refused
   double max_saturated_share = 0.05;   ///< of samples where the torque is cut off; fewer are only left out of fits
   double stuck_time_s = 0.1;           ///< a position constant for longer while it should move is a stuck encoder
-  double outlier_ratio = 30.0;  ///< a sample this many times farther from the cubic through its neighbours than usual
+  /// A sample this many times farther from the cubic through its neighbours than usual
+  double outlier_ratio = 30.0;
 
   /// Throws Error(usage) if a value is out of range.
   void validate() const;
@@ -36,21 +37,21 @@ struct LogCheckOptions {
 /// Checks a log and mends what is certain and harmless, with one finding for each kind of fault (Log::findings,
 /// Log::notes):
 /// - stamps: rows that are there twice, single wrong stamps, a clock coarser than the sampling or one that drifts,
-/// stamps that jitter
-///   about even samples, samples taken at uneven times (moved to even steps);
+///   stamps that jitter about even samples, samples taken at uneven times (moved to even steps);
 /// - counters that ran over; rows that hold the values of the row before; channels that change only every n-th row (the
-/// log comes to
-///   that rate, in phase);
+///   log comes to that rate, in phase);
 /// - lost rows, missing numbers and spikes of a few samples: filled from their neighbours, marked in Log::filled. Where
-/// the filling
-///   is as good as the channel's noise the rows stay in use (Log::kBridged), else they are left out (Log::kLeftOut);
+///   the filling is as good as the channel's noise the rows stay in use (Log::kBridged), else they are left out
+///   (Log::kLeftOut);
 /// - torque of a drive at rest, cut off, or constant because the servo is off: left out (Log::torque_out).
 ///
 /// At gaps longer than can be filled, and where the stamps of another recording begin, the log falls into parts, which
 /// have the same Log::file and are numbered by Log::part. Parts that are too short or cannot be used are left away, and
 /// that is said. What was measured on the way (rate, jitter, steps, noise, travel) is a finding of level fine, in the
-/// first part. \return  at least one part; in each t_s is even and every number is finite Throws Error(bad_input) with
-/// file, line and column for everything else: positions in degrees, stuck encoders, lost counts, ...
+/// first part.
+/// \return  at least one part; in each t_s is even and every number is finite
+/// Throws Error(bad_input) with file, line and column for everything else: positions in degrees, stuck encoders, lost
+/// counts, ...
 [[nodiscard]] std::vector<Log> check_and_split(Log log, const RobotDescription& robot,
                                                const LogCheckOptions& options = {});
 

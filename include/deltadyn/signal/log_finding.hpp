@@ -19,15 +19,16 @@ enum class FindingLevel {
 /// A finding of a log check.
 struct LogFinding {
   FindingLevel level = FindingLevel::fine;
-  std::string key =
-      {};  ///< summary key without the prefix `check_` and without drive: "delay", "stale", "torque_scale"
+  /// Summary key without the prefix `check_` and without drive: "delay", "stale", "torque_scale"
+  std::string key = {};
   std::string file = {};                                    ///< log that it was found in; empty: all logs together
   int drive = -1;                                           ///< from 0; -1: no single drive
   double value = std::numeric_limits<double>::quiet_NaN();  ///< the figure behind it, in `unit`
   double std = std::numeric_limits<double>::quiet_NaN();    ///< its standard deviation, if it is an estimate
   std::string unit = {};                                    ///< of value, "" for a plain number
   std::string text = {};                                    ///< one sentence with the figures
-  std::string mend = {};  ///< the next step that would succeed; empty if there is nothing to do
+  /// The next step that would succeed; empty if there is nothing to do
+  std::string mend = {};
 };
 
 }  // namespace deltadyn

@@ -8,8 +8,10 @@
 namespace deltadyn {
 
 /// Value at `t` of the cubic polynomial through the four samples around it (exact for cubics); with fewer samples, of
-/// the polynomial through all of them. Outside the samples the outermost polynomial is continued. \param t_s strictly
-/// increasing times of the samples [s] \param values  one value a sample \param t       where the value is wanted [s]
+/// the polynomial through all of them. Outside the samples the outermost polynomial is continued.
+/// \param t_s     strictly increasing times of the samples [s]
+/// \param values  one value a sample
+/// \param t       where the value is wanted [s]
 [[nodiscard]] double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s,
                                        const Eigen::Ref<const Eigen::VectorXd>& values, double t);
 

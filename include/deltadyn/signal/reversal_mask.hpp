@@ -9,8 +9,10 @@
 namespace deltadyn {
 
 /// 1 for each sample with |rate| < threshold, at a change of sign between two samples, and for `grow` samples on either
-/// side. \param rate       N rates of one joint [rad/s | m/s] \param threshold  [rad/s | m/s], not negative Throws
-/// Error(usage) if threshold or grow is negative.
+/// side.
+/// \param rate       N rates of one joint [rad/s | m/s]
+/// \param threshold  [rad/s | m/s], not negative
+/// Throws Error(usage) if threshold or grow is negative.
 [[nodiscard]] std::vector<char> reversal_mask(const Eigen::Ref<const Eigen::VectorXd>& rate, double threshold,
                                               Eigen::Index grow);
 

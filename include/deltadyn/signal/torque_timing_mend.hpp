@@ -15,8 +15,10 @@ namespace deltadyn {
 /// What was recorded, set right: x(t) = y(t + delay) for a delay alone, with a lag the inverse of the low pass besides.
 /// Band-limited interpolation by a windowed sinc. The inverse of a low pass lifts noise with frequency; it ends where
 /// it would lift more than four times, well above the band of a motion. The ends, where the record does not reach, hold
-/// the nearest value. \param delay_s  positive: the record is late \param lag_s    positive: the record is behind this
-/// low pass; negative: the record is to be put behind it \return         as long as y
+/// the nearest value.
+/// \param delay_s  positive: the record is late
+/// \param lag_s    positive: the record is behind this low pass; negative: the record is to be put behind it
+/// \return         as long as y
 [[nodiscard]] Eigen::VectorXd mend_timing(const Eigen::Ref<const Eigen::VectorXd>& y, double step_s, double delay_s,
                                           double lag_s);
 

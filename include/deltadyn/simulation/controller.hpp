@@ -15,8 +15,8 @@ namespace deltadyn {
 enum class ControlLaw {
   pd_feedforward,   ///< tau = tau_ff(q_r, qd_r, qdd_r) + Kp e + Kd ed, every drive on its own
   computed_torque,  ///< tau = M(q)(qdd_r + kp e + kd ed) + C(q, qd) qd + g(q) + f(qd_r) (Khalil; paper ref. 1)
-  augmented_pd  ///< tau = M(q) qdd_r + C(q, qd) qd_r + g(q) + f(qd_r) + Kp e + Kd ed (Kelly, Carelli 1993; paper ref.
-                ///< 3)
+  /// tau = M(q) qdd_r + C(q, qd) qd_r + g(q) + f(qd_r) + Kp e + Kd ed (Kelly, Carelli 1993; paper ref. 3)
+  augmented_pd
 };
 
 struct ControllerOptions {

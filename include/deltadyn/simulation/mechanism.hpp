@@ -25,14 +25,15 @@ using JointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJ
 
 /// Everything at one state (q, qd). tau = M qdd + bias + sum_j J_j^T F_j with the forces F_j that joint j resists with.
 struct MechanismTerms {
-  DriveMatrix M;                                ///< mass matrix with rotor inertias
-  DriveVector bias;                             ///< C qd + g, without friction and offsets [N m | N]
-  JointVector position;                         ///< of each joint [rad | m]; of passive joints 0: nothing depends on it
-  JointVector rate;                             ///< J qd [rad/s | m/s]
-  JointVector bias_rate;                        ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
-  JointRows J;                                  ///< joints x drives
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< plate centre in W [m]
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< its velocity [m/s]
+  DriveMatrix M;     ///< mass matrix with rotor inertias
+  DriveVector bias;  ///< C qd + g, without friction and offsets [N m | N]
+  /// Of each joint [rad | m]; of passive joints 0: nothing depends on it
+  JointVector position;
+  JointVector rate;                                                ///< J qd [rad/s | m/s]
+  JointVector bias_rate;                                           ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
+  JointRows J;                                                     ///< joints x drives
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();                     ///< plate centre in W [m]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();                     ///< its velocity [m/s]
   Eigen::Vector3d a_bias = Eigen::Vector3d::Zero();                ///< its acceleration at qdd = 0 [m/s^2]
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxDrives> J_r;  ///< dr/dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();                  ///< unit vector along the telescope
@@ -69,7 +70,8 @@ class Mechanism {
 [[nodiscard]] ParameterOptions mechanism_options(const RobotDescription& description);
 
 /// \param p  as of a Robot with mechanism_options(); friction and offsets in it are ignored, they are the plant's
-/// business Throws deltadyn::Error if the description is not a robot we know.
+///           business
+/// Throws deltadyn::Error if the description is not a robot we know.
 [[nodiscard]] std::unique_ptr<Mechanism> make_mechanism(const RobotDescription& description, const Eigen::VectorXd& p,
                                                         const MechanismOptions& options = {});
 

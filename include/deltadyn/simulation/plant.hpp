@@ -38,7 +38,8 @@ struct PlantCounts {
 class Plant {
  public:
   /// \param names, p   parameters as in a parameter file, e.g. Robot::parameter_names() and their values; shared limbs
-  /// allowed \param effects    of the catalogue; those that concern only the log are left to the sensors (sensors.hpp)
+  ///               allowed
+  /// \param effects    of the catalogue; those that concern only the log are left to the sensors (sensors.hpp)
   /// Throws deltadyn::Error for options out of range and effects that the plant cannot have.
   Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
         const std::vector<Effect>& effects = {}, const PlantOptions& options = {});

@@ -40,8 +40,10 @@ class Encoders {
 [[nodiscard]] bool is_log_effect(EffectId id);
 
 /// The torque that is recorded of the torque that acted, in the order in which a drive spoils it (kStage of the
-/// effects), noise last. \param t_s    even times \param tau    samples x drives [N m | N] \param effects  those that
-/// are not log effects are passed over
+/// effects), noise last.
+/// \param t_s    even times
+/// \param tau    samples x drives [N m | N]
+/// \param effects  those that are not log effects are passed over
 [[nodiscard]] Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& tau,
                                               const std::vector<Effect>& effects, const SensorOptions& options,
                                               std::uint64_t seed);

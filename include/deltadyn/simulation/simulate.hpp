@@ -40,7 +40,8 @@ struct SimulationResult {
   long clipped = 0;                ///< control samples at a drive's effort limit
   PlantCounts counts;
   double work = 0, losses = 0;  ///< of the drives, in friction and the like, over the whole run [J]
-  double energy_change = 0;  ///< kinetic, potential and spring energy at the end minus at the start [J]; work - losses
+  /// Kinetic, potential and spring energy at the end minus at the start [J]; work - losses
+  double energy_change = 0;
 };
 
 /// Moves the plant along the reference.

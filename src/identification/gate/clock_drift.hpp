@@ -25,7 +25,8 @@ struct ClockDrifts {
 };
 
 /// Looks for it by the delays of parts of the files. Nothing unless these lie on a line that rises or falls clearly,
-/// and take a quarter of the residual away. \param highest_band_hz  of the sample in which delays are looked for
+/// and take a quarter of the residual away.
+/// \param highest_band_hz  of the sample in which delays are looked for
 [[nodiscard]] std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParameters& base,
                                                           const std::vector<Log>& logs, double highest_band_hz);
 

@@ -17,7 +17,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double kSoundResidual =
-    0.02;  // of the torque: friction of another law, load and noise leave less; wrong signs leave more
+    // Of the torque: friction of another law, load and noise leave less; wrong signs leave more
+    0.02;
 constexpr double kSoundRatio = 1.2;  // all drives together over each drive by itself: one machine explains all torques
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
 constexpr double kWinsNoisy =
@@ -27,13 +28,15 @@ constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for t
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
 constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent
 constexpr double kAlike = 1.1;                 // residuals within this ratio do not tell explanations apart
-constexpr double kSprings = 0.9;        // of an explanation's residual: springs on the drives explain the log better
+// Of an explanation's residual: springs on the drives explain the log better
+constexpr double kSprings = 0.9;
 constexpr double kOutOfReach = 0.01;    // share of poses that a recording of this robot cannot have
 constexpr Index kCoarsePoints = 120;    // for searches over a factor or a zero
 constexpr int kBestStarts = 2;          // of a search, refined
 constexpr double kWorthRefining = 2.0;  // times the smallest residual of all searches
 constexpr double kNoOffset = 0.6;       // steps of a search for a zero
-constexpr double kScaleWorth = 0.25;    // a factor of one torque nearer to 1 is a matter for the fit and the diagnosis
+// A factor of one torque nearer to 1 is a matter for the fit and the diagnosis
+constexpr double kScaleWorth = 0.25;
 constexpr int kFewestRowsPerParameter = 2;
 
 /// What can be said of one reading of the positions.

@@ -19,7 +19,8 @@ struct Explanation {
   Eigen::VectorXd factor;
   double residual = 1;     ///< relative, over all drives
   double unreachable = 0;  ///< share of the poses
-  double alone = 0;  ///< residual of each drive with parameters of its own: what one machine for all drives could reach
+  /// Residual of each drive with parameters of its own: what one machine for all drives could reach
+  double alone = 0;
   double changes = 0;
   std::string key, words, mend;
   int drive = -1;

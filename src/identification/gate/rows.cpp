@@ -17,7 +17,8 @@ constexpr double kReach = 4.5;          // standard deviations of the Gaussian t
 constexpr double kMaskFloor = 0.003;    // of a joint's largest rate: below, the sign of the friction is uncertain
 constexpr Index kFewestUnmasked = 300;  // rows of a drive; with fewer, those near reversals count, too
 constexpr double kLookUp_s = 0.05;      // torque is looked up so far from a row
-constexpr double kSmear = 2.5;        // standard deviations of the Gaussian about a reversal, for rows at single points
+// Standard deviations of the Gaussian about a reversal, for rows at single points
+constexpr double kSmear = 2.5;
 constexpr double kRowsPerBand = 0.4;  // spacing of rows in periods of the band: nearly independent rows
 
 Index reach_of(const Sample& sample, const Stretch& stretch) {

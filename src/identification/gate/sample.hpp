@@ -20,7 +20,8 @@ struct Stretch {
   Eigen::MatrixXd tau;         ///< N x drives; a mean over the grid's step where the log is sampled finer
   std::vector<char> spoilt;    ///< 1: filled in or spoilt, no evidence
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< N x drives: Log::torque_out
-  Eigen::Index first = 0, last = 0;  ///< [first, last): not disturbed by the ends of the filter
+  /// [first, last): not disturbed by the ends of the filter
+  Eigen::Index first = 0, last = 0;
 
   [[nodiscard]] Eigen::Index points() const { return q.rows(); }
 };
@@ -44,8 +45,8 @@ struct SampleOptions {
 };
 
 /// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the
-/// log with the strongest motion. No torque takes part, so that a fault of the torque cannot move it. \param coarse set
-/// if the noise is too large even in the lowest band
+/// log with the strongest motion. No torque takes part, so that a fault of the torque cannot move it.
+/// \param coarse  set if the noise is too large even in the lowest band
 [[nodiscard]] double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions& options,
                                            bool* coarse = nullptr);
 

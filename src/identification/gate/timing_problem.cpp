@@ -17,8 +17,9 @@ using Eigen::Index;
 constexpr double kScanStep_s = 0.002;  // fine enough for Gauss-Newton to start in the right valley
 constexpr double kLongestDelay_s = 0.04;
 constexpr double kFarthest_s = 0.048;  // the rows leave this margin to the ends of their stretch
-constexpr double kCalm = 3.0;  // times the Gaussian of the sample: instruments see the motion, not the encoders' noise
-constexpr int kParts = 10;     // of the rows for the jackknife
+// Times the Gaussian of the sample: instruments see the motion, not the encoders' noise
+constexpr double kCalm = 3.0;
+constexpr int kParts = 10;             // of the rows for the jackknife
 constexpr double kMostOfDelay = 1e-6;  // s; Gauss-Newton ends below this step
 
 }  // namespace

@@ -80,8 +80,9 @@ class TimingProblem {
   void make_basis();
 
   /// First and second time derivative of the torque that the base parameters give, behind a low pass of |lag| and a
-  /// calmer Gaussian: instruments free of noise, which would pull a lag towards whatever smooths the record. \param tau
-  /// that the base parameters are fitted to, weighted \param calm  width of the Gaussian over that of the sample
+  /// calmer Gaussian: instruments free of noise, which would pull a lag towards whatever smooths the record.
+  /// \param tau   that the base parameters are fitted to, weighted
+  /// \param calm  width of the Gaussian over that of the sample
   [[nodiscard]] Eigen::MatrixXd model_slopes(const Eigen::VectorXd& tau, const Eigen::MatrixXd& lag, double calm) const;
 
   /// Weighted torque with delay and lag taken out; columns of `slopes`: by delay and by lag.

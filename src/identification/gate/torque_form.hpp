@@ -25,7 +25,8 @@ struct TorqueBlock {
 [[nodiscard]] std::vector<TorqueBlock> fold_torques(const Rows& rows, const std::vector<Eigen::MatrixXd>& tau);
 
 /// S with s^T S s = sum over the drives of (residual / torque)^2 when drive j's torque is s_j factor_j times column
-/// assignment[j]. \param factor  none of them 0; each drive's residual is counted against its torque times this
+/// assignment[j].
+/// \param factor  none of them 0; each drive's residual is counted against its torque times this
 [[nodiscard]] Eigen::MatrixXd residual_form(const std::vector<TorqueBlock>& blocks, const std::vector<int>& assignment,
                                             const Eigen::VectorXd& factor);
 

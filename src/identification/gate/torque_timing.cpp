@@ -15,7 +15,8 @@ using Eigen::Index;
 constexpr double kLongestLag_s = 0.02;
 constexpr double kSigmas = 4.5;  // a delay within this many of its standard deviations is chance
 constexpr double kWorth = 25.0;  // fall of chi^2 that pays for a further parameter: five standard deviations
-constexpr double kShare = 0.01;  // of the residual's mean square: a delay that explains less is no matter to the fit
+// Of the residual's mean square: a delay that explains less is no matter to the fit
+constexpr double kShare = 0.01;
 constexpr double kShareOfSplit = 0.03;  // the same for delays that differ between drives or logs
 constexpr double kFails = 3.0;          // standard deviations
 

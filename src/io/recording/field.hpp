@@ -38,8 +38,8 @@ enum class Field { number, missing, date, text };
 [[nodiscard]] std::optional<std::int64_t> parse_date(std::string_view field);
 
 /// Splits a line. `separator` ' ' stands for any run of blanks and tabs. Fields in double quotes may hold the
-/// separator; the quotes are taken off. Blanks around fields are taken off. \param exact  a blank as separator stands
-/// for itself, so that two of them have an empty field between them
+/// separator; the quotes are taken off. Blanks around fields are taken off.
+/// \param exact  a blank as separator stands for itself, so that two of them have an empty field between them
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields, bool exact = false);
 
 /// Lines of a text without their ends (LF, CR LF or CR alone); calls `each(line, number)`, number from 1, until it

@@ -23,7 +23,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStaleShare = 0.15;    // of the rows; fewer repeats are single held values, mended one by one
 constexpr Index kFewestJudged = 200;    // rows to judge a channel by
 constexpr double kStepsOfChange = 8.0;  // in units of the smallest change: equality by chance is then below 1 in 25
-constexpr int kMostHeld = 64;  // rows; slower updates are another matter (a stuck encoder, a servo that is off)
+// rows; slower updates are another matter (a stuck encoder, a servo that is off)
+constexpr int kMostHeld = 64;
 
 /// Mean number of rows between two changes, over the runs of equal values that lie between two changes by many steps; 1
 /// if the channel is fresh in (nearly) every row. A robot that stops and starts again has a small change on either side

@@ -69,7 +69,8 @@ double mean_change(const Log& log, Counts counts) {
 }
 
 /// Stamps that repeat because the clock, or the digits written, are coarser than the sampling: the rows are even, the
-/// stamps are not. \return false if the log is not of this kind
+/// stamps are not.
+/// \return false if the log is not of this kind
 bool mend_coarse_clock(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
