@@ -150,7 +150,7 @@ TEST(TableOne, TelescopeUpperPart) {
   const double m = 0.6 * complete;
   expect_prints(0.900, m, 1e-3, "m");
   // Steel, 700 mm, radius 8 mm, hangs from the joint. The simplified formula is the slender rod's ...
-  const Ten slender = shapes::slender_rod<double>(m, Vec::Zero(), Vec(0, 0, -0.7));
+  const Ten slender = shapes::solid_cylinder<double>(m, 0.0, Vec::Zero(), Vec(0, 0, -0.7));
   expect_prints(-0.315, slender(inertial::kMcz), 1e-3, "m c");
   expect_prints(0.147, slender(inertial::kIxx), 1e-3, "Ixx");
   expect_prints(0.147, slender(inertial::kIyy), 1e-3, "Iyy");
@@ -171,7 +171,7 @@ TEST(TableOne, TelescopeLowerPart) {
 }
 
 TEST(TableOne, StrutSimple) {
-  const Ten rod = shapes::slender_rod<double>(0.2, Vec::Zero(), Vec(1.106, 0, 0));
+  const Ten rod = shapes::solid_cylinder<double>(0.2, 0.0, Vec::Zero(), Vec(1.106, 0, 0));
   expect_prints(0.111, rod(inertial::kMcx), 1e-3, "m c");
   expect_prints(0.082, rod(inertial::kIyy), 1e-3, "Iyy");
   expect_prints(0.082, rod(inertial::kIzz), 1e-3, "Izz");
@@ -196,7 +196,7 @@ TEST(TableOne, UpperArmSimple) {
     expect_prints(0.084, tube(inertial::kIyy), 1e-3, "Iyy");
   }
   // Without its thickness it would print 0.083: the table's value did use the cylinder's formula.
-  const Ten rod = shapes::slender_rod<double>(1.0, Vec::Zero(), Vec(0.5, 0, 0));
+  const Ten rod = shapes::solid_cylinder<double>(1.0, 0.0, Vec::Zero(), Vec(0.5, 0, 0));
   EXPECT_GT(std::abs(0.084 - rod(inertial::kIyy)), 0.5e-3);
 }
 
