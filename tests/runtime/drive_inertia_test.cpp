@@ -23,18 +23,17 @@ TEST(DriveInertia, IsTheDiagonalOfTheMassMatrixInTheMiddleOfTheLimits) {
   EXPECT_LT((drive_inertia(*robot, p) - M.diagonal()).norm(), 1e-14);
 }
 
-TEST(DriveInertia, ThatIsNoneIsAnErrorWithItsCause) {
+TEST(DriveInertia, OfARobotThatDoesNotCloseIsAnErrorWithItsCause) {
   const auto robot = make_robot(testing_support::delta_description("delta3"));
-  try {
-    (void)drive_inertia(*robot, Eigen::VectorXd::Zero(robot->parameters()));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("drive 1 an inertia of 0"));
-  }
   RobotDescription apart = testing_support::delta_description("delta3");
   for (LimbGeometry<double>& limb : apart.limbs) limb.p_WD *= 20;  // no strut closes
   const auto impossible = make_robot(apart);
-  EXPECT_THROW((void)drive_inertia(*impossible, testing_support::delta_truth(*robot)), Error);
+  try {
+    (void)drive_inertia(*impossible, testing_support::delta_truth(*robot));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("is a pose of this robot"));
+  }
 }
 
 }  // namespace
