@@ -62,6 +62,7 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
 /// An effect while its rows come in, with the line of each parameter.
 struct ReadEffect {
   Effect effect;
+  long first_line = 0;
   std::map<std::string, long, std::less<>> lines;
 
   [[nodiscard]] double& value(const Slot& slot) {
@@ -69,8 +70,9 @@ struct ReadEffect {
   }
 };
 
-ReadEffect nothing_of(const EffectKind& kind, int joint) {
+ReadEffect nothing_of(const EffectKind& kind, int joint, long line) {
   ReadEffect out;
+  out.first_line = line;
   out.effect.id = kind.id;
   out.effect.joint = joint;
   out.effect.amplitude = out.effect.amplitude_std =
@@ -143,13 +145,12 @@ void complete(const std::string& path, const RobotDescription& robot, ReadEffect
   for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
     if (!std::isnan(read.value(slot))) continue;
     const std::string joint = effect_joint_name(effect.id, effect.joint);
-    throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, joint),
-                place(path, read.lines.begin()->second),
+    throw Error(fmt::format("{} of {} at {} is missing", name, kind.name, joint), place(path, read.first_line),
                 fmt::format("add a row {},{},{},VALUE,{},", kind.name, joint, name, slot.unit));
   }
   const auto where = [&](std::string_view name) {
     const auto line = read.lines.find(name);
-    return place(path, line == read.lines.end() ? read.lines.begin()->second : line->second, "value");
+    return place(path, line == read.lines.end() ? read.first_line : line->second, "value");
   };
   check_sizes(effect, where, ExitCode::bad_input);
 }
@@ -165,7 +166,7 @@ std::vector<Effect> read_effects(const std::string& path, const RobotDescription
     auto one = std::find_if(found.begin(), found.end(), [&](const ReadEffect& read) {
       return read.effect.id == kind.id && read.effect.joint == joint;
     });
-    if (one == found.end()) one = found.insert(found.end(), nothing_of(kind, joint));
+    if (one == found.end()) one = found.insert(found.end(), nothing_of(kind, joint, table.rows.line()));
     read_parameter(table, kind, robot, *one);
   }
   std::vector<Effect> effects;
