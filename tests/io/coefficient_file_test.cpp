@@ -28,7 +28,7 @@ TEST(CoefficientFile, HoldsExactlyWhatWasGiven) {
               HasSubstr("segment,harmonic,frequency_hz,x_sin_m,x_cos_m,y_sin_m,y_cos_m,z_sin_m,z_cos_m,"
                         "psi_sin_rad,psi_cos_rad\n1,0,"));
   const CsvTable table = read_csv(folder.path("c.csv"));
-  ASSERT_EQ(table.rows(), 5U);  // harmonics 0 and 1, then 0 to 3
+  ASSERT_EQ(table.rows(), 6U);  // harmonics 0 and 1, then 0 to 3
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const FourierSeries& series = segments[row < 2 ? 0 : 1];
     const auto h = static_cast<Eigen::Index>(row < 2 ? row : row - 2);
