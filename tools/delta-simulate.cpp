@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -115,8 +116,9 @@ class Simulate {
     const auto robot = make_robot(description, parameter_options_of(table, description));
     const Eigen::VectorXd p = matched(table, *robot);
     std::vector<Effect> effects = tools::effects_of_rows(table, description);
-    for (Effect& effect : tools::given_effects(effects_file_, table, description)) effects.push_back(std::move(effect));
-    for (const std::string& text : effects_) effects.push_back(tools::parse_effect(text, description));
+    std::vector<Effect> given = tools::given_effects(effects_file_, table, description);
+    for (const std::string& text : effects_) tools::add_effect(text, description, given);
+    std::move(given.begin(), given.end(), std::back_inserter(effects));
     complete_options(description, run);
     const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);
     Plant plant(description, robot->parameter_names(), p, effects, options_.plant);

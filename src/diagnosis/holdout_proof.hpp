@@ -14,8 +14,8 @@ namespace deltadyn::detail {
 struct HoldoutProof {
   Eigen::MatrixXd before, after;
   std::vector<RowMask> usable;
-  std::vector<Eigen::MatrixXd>
-      effects;  ///< by drive: columns of the effects that the model held and of those found, as in SearchResult::after
+  /// By drive: columns of the effects that the model held and of those found, as in SearchResult::after
+  std::vector<Eigen::MatrixXd> effects;
   Eigen::VectorXd rms_before, rms_after, floor;
   Eigen::VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
 };

@@ -24,8 +24,8 @@ namespace {
 constexpr double kResonance = 0.8;  // of the cut-off: a spring's law holds below the resonance only
 constexpr double kInterval = 1.96;  // standard deviations on either side hold 95 %
 constexpr double kExplained = 0.8;  // of the structure that names must explain
-constexpr double kHardlyExplained =
-    0.4;  // ... from which less says that the name is wrong, even if the hold-out log does not show it
+// ... from which less says that the name is wrong, even if the hold-out log does not show it
+constexpr double kHardlyExplained = 0.4;
 // ... and that several must: together they can follow much that is none of them
 constexpr double kExplainedByMany = 0.985;
 constexpr double kOvertStructure = 1.0;  // of the noise variance: too much to be slow noise that the basis follows

@@ -17,9 +17,8 @@ using Eigen::VectorXd;
 
 constexpr int kPhases = 8;          // tell a standard deviation to a quarter
 constexpr Index kSamples = 20'000;  // of each log: longer ones average no less
-constexpr double kFineSteps =
-    20;  // passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4); with fewer it may follow
-         // the motion
+// Passed in a usual sample: their error is white (Widrow, Kollar 2008, chapter 4); with fewer it may follow the motion
+constexpr double kFineSteps = 20;
 constexpr std::uint64_t kSeed = 1;
 
 constexpr double kFewSteps = 3;  // the same: their error lies about the turning points of the motion

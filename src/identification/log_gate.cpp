@@ -38,8 +38,8 @@ constexpr double kNoiseOnly = 1.5;  // times what the noise of the torque makes 
 constexpr double kHalf = 0.5;
 constexpr double kWorthSaying = 0.9;  // of the residual, for a delay that stays
 constexpr double kSharp_s = 6e-4;     // a delay known no better is more likely another effect that bends the torque
-constexpr double kWorthRemoving =
-    0.98;  // of the residual: delays of single drives and lags must show in it, as noise can feign them
+// Of the residual: delays of single drives and lags must show in it, as noise can feign them
+constexpr double kWorthRemoving = 0.98;
 constexpr double kLongest_s = 0.025;  // no recorder or drive is later; what looks so is slow friction or a spring
 constexpr double kSteady = 3.0;       // standard deviations by which a timing may differ in a lower band
 constexpr double kLowestTiming_hz = 4;

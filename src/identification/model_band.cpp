@@ -22,8 +22,8 @@ using Eigen::VectorXd;
 
 constexpr Index kBandSamples = 20'000;              // of each log
 constexpr double kPartRatio = std::numbers::sqrt2;  // half an octave
-constexpr double kHalfBand =
-    0.5;  // of the model's torque: with less of it in the record, leaving the part out explains more than the model
+// Of the model's torque: with less of it in the record, leaving the part out explains more than the model
+constexpr double kHalfBand = 0.5;
 constexpr double kNextToNothing = 0.25;
 constexpr double kBandSigmas = 3;   // within which the record does not hold the whole of the model's torque
 constexpr double kLeastSignal = 2;  // the model's torque over what noise makes of it

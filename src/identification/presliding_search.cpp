@@ -33,8 +33,8 @@ constexpr double kLargest =
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
 // Of the squared residual in units of its noise: five standard deviations for one parameter
 constexpr double kClearGain = 25;
-constexpr double kForm =
-    0.02;  // of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
+// Of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
+constexpr double kForm = 0.02;
 constexpr double kPreslidingMemory_s = 0.2;  // of the residual, as in identify()
 constexpr double kWider = 3;                 // displacements on either side that are tried with damping
 constexpr double kLongestDamping_s = 0.02;   // what lasts longer is no bristle

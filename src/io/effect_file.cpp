@@ -26,9 +26,9 @@ constexpr const char* kVersion = "deltadyn effects";  // begins the comment on t
 void check_version(const CsvReader& table) {
   const auto version = table.comment(kVersion);
   if (!version || *version == std::to_string(kEffectFileVersion)) return;
-  throw Error(
-      fmt::format("the effect file is of version {}, this program reads version {}", *version, kEffectFileVersion),
-      place(table.path(), 1), "run delta-diagnose again with --effects-out to write it anew");
+  throw Error(fmt::format("the effect file is of {}, this program reads version {}",
+                          version->empty() ? "no version" : "version " + *version, kEffectFileVersion),
+              place(table.path(), 1), "run delta-diagnose again with --effects-out to write it anew");
 }
 
 /// Place of a parameter among shapes and amplitudes.

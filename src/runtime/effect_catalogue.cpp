@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "deltadyn/runtime/error.hpp"
 
@@ -12,6 +13,8 @@ namespace {
 
 template <class... Effects>
 std::vector<EffectKind> kinds_of(EffectList<Effects...>) {
+  static_assert(((Effects::traits().memory == kIs<Effects, JointMemory>)&&...),
+                "the trait `memory` is that of a JointMemory, and of no other kind");
   std::vector<EffectKind> kinds;
   (kinds.push_back({Effects::traits(), effect_id<Effects>}), ...);
   return kinds;
@@ -97,8 +100,16 @@ void check_sizes(const Effect& effect, const std::function<std::string(std::stri
                   fmt::format("give a number up to {}", one.largest), code);
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
-    if (kind.shapes[k].positive && !(shape[k] > 0))
-      throw Error(fmt::format("{} of {} must be positive", kind.shapes[k].name, kind.name), where(kind.shapes[k].name),
+    const ShapeTraits& one = kind.shapes[k];
+    const std::vector<double> choice = one.scale == ShapeScale::choice ? start_values(one) : std::vector<double>();
+    if (!choice.empty() && std::find(choice.begin(), choice.end(), shape[k]) == choice.end())
+      throw Error(fmt::format("{} of {} is {}, which is none of its values", one.name, kind.name, shape[k]),
+                  where(one.name), fmt::format("give one of {}", fmt::join(choice, ", ")), code);
+    if (one.scale == ShapeScale::logs && !(shape[k] >= 1 && shape[k] == std::floor(shape[k])))
+      throw Error(fmt::format("{} of {} is {}, which is no number of a log", one.name, kind.name, shape[k]),
+                  where(one.name), "give the number of the log in which it acts, from 1", code);
+    if (one.positive && choice.empty() && !(shape[k] > 0))
+      throw Error(fmt::format("{} of {} must be positive", one.name, kind.name), where(one.name),
                   "give a number above 0", code);
   }
 }

@@ -463,6 +463,17 @@ std::vector<Row> effects() {
        3,
        {"bad\\.csv, line 2, column joint", "cannot act at 'drive5'",
         "mend: give one of these: drive1, drive2, drive3, drive4"}},
+      {"EffectOfNoSuchKind",
+       [](const W& w) {
+         return with_effects(w, "kinematic_offset,drive1,error,0.001,SI,\nkinematic_offset,drive1,kind,7,,\n");
+       },
+       3,
+       {"bad\\.csv, line 3, column value", "kind of kinematic_offset is 7, which is none of its values",
+        "mend: give one of 0, 1, 2"}},
+      {"EffectInPartOfALog",
+       [](const W& w) { return with_effects(w, "payload,platform,mass,1,kg,\npayload,platform,log,1.4,,\n"); },
+       3,
+       {"bad\\.csv, line 3, column value", "log of payload is 1.4", "mend: give the number of the log"}},
       {"EffectKeyMissing",
        [=](const W& w) { return with_effects(w, bend); },
        3,

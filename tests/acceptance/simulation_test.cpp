@@ -195,6 +195,15 @@ TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
   EXPECT_EQ(count, effect_catalogue().size());
 }
 
+TEST_F(VirtualRobot, TakesOneEffectOfAKindAtAJoint) {
+  plan("t.csv", 1, 0.4, 1);
+  const std::string bend = "stribeck@drive2:friction=2,rate=0.25,exponent=2";
+  const ToolResult twice = run(simulate("t.csv", "log.csv", {"--effect", bend, "--effect", bend}));
+  EXPECT_EQ(twice.code, 2) << twice.out << twice.err;
+  EXPECT_NE(twice.err.find("there is a second stribeck at drive2"), std::string::npos) << twice.err;
+  EXPECT_FALSE(fs::exists(path("log.csv")));
+}
+
 TEST_F(VirtualRobot, AnUnstableLoopIsToldAndLeavesNoLog) {
   plan("t.csv", 1, 0.4, 1);
   const ToolResult wild = run(simulate("t.csv", "log.csv", {"--bandwidth-hz", "200"}));

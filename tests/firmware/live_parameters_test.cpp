@@ -52,6 +52,12 @@ TYPED_TEST(LiveParametersOf, AFixedPayloadIsThatOfItsPointMasses) {
   }
   ASSERT_EQ(this->live.set_payload(0, middle), Status::ok);
   EXPECT_EQ(this->live(), this->p);
+  // Moments that no body has: without mass, below 0, and one above the sum of the others.
+  EXPECT_EQ(this->live.set_payload(0, middle, inertia), Status::out_of_range);
+  EXPECT_EQ(this->live.set_payload(1, middle, Matrix3<double>(-inertia)), Status::out_of_range);
+  inertia(1, 1) = 0.1;
+  EXPECT_EQ(this->live.set_payload(1, middle, inertia), Status::out_of_range);
+  EXPECT_EQ(this->live(), this->p);
 }
 
 TYPED_TEST(LiveParametersOf, APayloadAtTheOriginActsAsAMassOnThePlate) {

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/runtime/effect_catalogue.hpp"
@@ -137,6 +138,19 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
   check_sizes(
       effect, [&where](std::string_view) { return where; }, ExitCode::usage);
   return effect;
+}
+
+/// Adds the effect of one flag to those of the file and of the flags before it, none of which may be of its kind at its
+/// joint. Throws as parse_effect().
+inline void add_effect(const std::string& text, const RobotDescription& robot, std::vector<Effect>& effects) {
+  Effect effect = parse_effect(text, robot);
+  for (const Effect& other : effects) {
+    if (other.id != effect.id || other.joint != effect.joint) continue;
+    throw Error(fmt::format("there is a second {} at {}", effect_kind(effect.id).name,
+                            effect_joint_name(effect.id, effect.joint)),
+                "--effect " + text, "give one effect of a kind at a joint, with both sizes in it", ExitCode::usage);
+  }
+  effects.push_back(std::move(effect));
 }
 
 /// For any robot: a unit that depends on the drive stands for both kinds, "N*m | N".

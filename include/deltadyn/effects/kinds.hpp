@@ -31,31 +31,28 @@ struct JointInput {
 };
 
 /// A law of a joint (`drive`, `arm`, `limb`, `telescope`, `passive_joints`):
-///   template <class T> static std::array<T, N> columns(const JointInput<T>&, const Shape<T>&)   N amplitudes; [N m |
-///   N] per unit.
+///   template <class T> static std::array<T, N> columns(const JointInput<T>&, const Shape<T>&)
+/// for N amplitudes, [N m | N] per unit.
 /// A law of the load is homogeneous in it: columns(c load) = c columns(load) for c > 0.
 struct JointLaw {};
 
 /// A law of a joint with one number of memory, a function of the way:
-///   T start(sign, shape)                    state of a joint that has slid long in the direction `sign` (0: at rest,
-///   unloaded)
-///   T moved(state, step, input, shape)      after a further `step` [rad | m]: two steps the same way are as good as
-///   their sum
+///   T start(sign, shape)                 state of a joint that has slid long in the direction `sign` (0: at rest)
+///   T moved(state, step, input, shape)   after a further `step` [rad | m]; two steps one way are as good as their sum
 ///   std::array<T, N> columns(state, input, shape)
 struct JointMemory {};
 
 /// State of the plate.
 template <class T>
 struct PlateInput {
-  /// In W [m, s]
+  /// In W [m], [m/s], [m/s^2]
   Vector3<T> position = Vector3<T>::Zero(), velocity = Vector3<T>::Zero(), acceleration = Vector3<T>::Zero();
-  /// In W [m/s^2]
-  Vector3<T> gravity = Vector3<T>::Zero();
+  Vector3<T> gravity = Vector3<T>::Zero();  ///< in W [m/s^2]
 };
 
 /// A force that the robot has to bear at the plate:
-///   template <class T> static std::array<Vector3<T>, N> columns(const PlateInput<T>&, const Shape<T>&)   in W [N] per
-///   unit.
+///   template <class T> static std::array<Vector3<T>, N> columns(const PlateInput<T>&, const Shape<T>&)
+/// in W, [N] per unit.
 struct PlateForce {};
 
 /// A change of the recorded torque (`drive`, `drive_or_robot`):
@@ -81,8 +78,8 @@ struct ElasticInput {
 struct ElasticJoint {};
 
 /// A change of the machine that a fit sees by differences:
-///   template <class Machine> static void change(Machine&, int joint, const std::array<double, 6>& amplitude, const
-///   Shape<double>&)
+///   template <class Machine>
+///   static void change(Machine&, int joint, const std::array<double, 6>& amplitude, const Shape<double>&)
 /// with a Machine as below; kStep is the amplitude that makes a difference, small beside any real one and large beside
 /// rounding. Effects of the other kinds may have change(), too: then the virtual robot is built with it, and uses no
 /// law.

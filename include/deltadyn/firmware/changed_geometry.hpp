@@ -15,9 +15,9 @@ namespace deltadyn {
 template <class T, class Robot>
 struct ChangedGeometry {
   Geometry<T, Robot> geometry;
-  Vector<T, Robot::kDrives> home_offset =
-      Vector<T, Robot::kDrives>::Zero();  ///< true drive coordinate minus the encoder's [rad | m]
-  bool complete = true;                   ///< false: a change was asked for that this machine cannot show
+  /// True drive coordinate minus the encoder's [rad | m]
+  Vector<T, Robot::kDrives> home_offset = Vector<T, Robot::kDrives>::Zero();
+  bool complete = true;  ///< false: a change was asked for that this machine cannot show
 
   explicit ChangedGeometry(const Geometry<T, Robot>& given) : geometry(given) {}
 

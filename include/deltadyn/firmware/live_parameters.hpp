@@ -40,10 +40,11 @@ class LiveParameters {
   /// \param mass      at least 0 [kg]
   /// \param position  of the payload's centre of mass [m]
   /// \param inertia   about its centre of mass, along the frame's axes [kg m^2]
-  /// \return out_of_range for a number that is not finite or a mass below 0; then all stays as it was
+  /// \return out_of_range for a number that is not finite, a mass below 0, or an inertia that no body of this mass has;
+  ///         then all stays as it was
   Status set_payload(const T& mass, const Vector3<T>& position, const Matrix3<T>& inertia = Matrix3<T>::Zero()) {
     const InertialVector<T> more = body_at(mass, position, inertia);
-    if (!(mass >= T(0)) || !more.allFinite()) return Status::out_of_range;
+    if (!(mass >= T(0)) || !more.allFinite() || !may_be_inertia(mass, inertia)) return Status::out_of_range;
     p_.template segment<kInertialParameters>(kCarrier) = empty_ + more;
     return Status::ok;
   }
@@ -65,6 +66,13 @@ class LiveParameters {
   static constexpr Body kCarrierBody =
       Robot::kTelescope ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
   static constexpr int kCarrier = kInertialParameters * Layout::body(kCarrierBody, 0);
+
+  /// Has a body of this mass such moments? Each is at most the sum of the two others, and without mass there are none.
+  static bool may_be_inertia(const T& mass, const Matrix3<T>& inertia) {
+    const Vector3<T> moment = inertia.diagonal();
+    const T sum = moment.sum();
+    return moment.minCoeff() >= T(0) && T(2) * moment.maxCoeff() <= sum * T(1.001) && (mass > T(0) || sum == T(0));
+  }
 
   Parameters p_;
   InertialVector<T> empty_;  ///< of the body that carries, without a payload

@@ -61,8 +61,8 @@ struct PreparedLog {
   Eigen::Index first = 0, rows = 0, stride = 1;
   std::optional<double> period_s;  ///< of a periodic log, whose samples then are means over the periods
   std::vector<long> line;          ///< of each sample in the file; empty if unknown
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>
-      reversal;  ///< N x drives: the sign of a friction in this drive's torque is uncertain
+  /// N x drives: the sign of a friction in this drive's torque is uncertain
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reversal;
   /// N x drives: a joint whose friction this drive feels stands still
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> rest;
   /// N x joints with friction: what the bristles hold of Coulomb's friction, with the sign of the rate taken out; 1 for

@@ -4,13 +4,15 @@
 /// Robot files from the URDF that a CAD program writes: any names, any zero pose, any frames, no closed loops.
 ///
 /// Limbs, struts and plate are found by structure, in the pose in which the file's joints are zero, where the parts
-/// stand as the CAD has assembled them: - the base carries three drives (and, for a delta4, a fourth whose chain holds
-/// one prismatic joint: the telescope bar); - an arm carries one strut or two; joints whose origins coincide are one
-/// ball or universal joint; - one strut may carry the plate, or the plate hangs on nothing (a floating joint, a tree of
-/// its own, fixed to the base); - ends of struts that the tree does not show are found by, in this order: a frame on
-/// the strut's link or a loop of URDF+; the
-///    rule that plate and struts of the three limbs are alike; the line from the elbow through the strut's centre of
-///    mass.
+/// stand as the CAD has assembled them:
+///  - the base carries three drives (and, for a delta4, a fourth whose chain holds one prismatic joint: the telescope
+///    bar);
+///  - an arm carries one strut or two; joints whose origins coincide are one ball or universal joint;
+///  - one strut may carry the plate, or the plate hangs on nothing (a floating joint, a tree of its own, fixed to the
+///    base);
+///  - ends of struts that the tree does not show are found by, in this order: a frame on the strut's link or a loop of
+///    URDF+; the rule that plate and struts of the three limbs are alike; the line from the elbow through the strut's
+///    centre of mass.
 /// What cannot be found is asked for by the name of the flag; each rule that fails is told with link or joint.
 
 #include <Eigen/Core>

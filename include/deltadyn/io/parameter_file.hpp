@@ -30,8 +30,8 @@ struct ParameterTable {
   std::string file;    ///< where it came from, for messages
   std::string remark;  ///< one line, written as a comment above the header; not read back
   /// Effect file that the parameters were found with, from the working folder; empty: none. The comment
+  /// `# effects: NAME` holds it relative to the parameter file, so that both may move together.
   std::string effects;
-  ///< `# effects: NAME` holds it relative to the parameter file, so that both may move together
   std::vector<ParameterEntry> entries;
 
   /// Null if there is no such name.

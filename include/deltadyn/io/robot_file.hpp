@@ -6,14 +6,12 @@
 ///
 /// Tree of a Delta with limbs K = 1..3 and struts s = a (at +y of the limb), b (at -y):
 ///
-///     base -driveK-> upper_armK -strutKs_y-> strutKs_knuckle -strutKs_z-> strutKs           strut frame at the elbow,
-///     x along it
-///     strut1a -platform_z-> platform_knuckle -platform_y-> platform_mount -fixed-> platform   frame at the plate's
-///     centre
-///     base -drive4-> telescope_yoke -telescope_x-> telescope_cross -telescope_y-> telescope_upper -telescope->
-///     telescope_lower
-///     telescope_lower -tool_y-> tool_cross -tool_x-> tool_mount -fixed-> tool
+///     base -driveK-> upper_armK -strutKs_y-> strutKs_knuckle -strutKs_z-> strutKs
+///     strut1a -platform_z-> platform_knuckle -platform_y-> platform_mount -fixed-> platform
+///     base -drive4-> telescope_yoke -telescope_x-> telescope_cross -telescope_y-> telescope_upper
+///     telescope_upper -telescope-> telescope_lower -tool_y-> tool_cross -tool_x-> tool_mount -fixed-> tool
 ///
+/// The frame of a strut is at its elbow with x along it, that of the platform at the plate's centre.
 /// Loops: `strutKs_end` (spherical) for the five other strut ends, `tool_axis` (revolute about z) between platform and
 /// tool. The joint `telescope` is prismatic along -z: its position is the length of the bar between the two universal
 /// joints. An axis is `base -drive1-> upper_arm1 -fixed-> upper_arm1_tip`. No passive joint follows a drive alone, so

@@ -58,8 +58,8 @@ struct Posture {
   Vector<T, N> z = Vector<T, N>::Zero();
   LimbPosture<T, N> limbs[Robot::kLimbs];
   Matrix<T, kRows, N> J_plate = Matrix<T, kRows, N>::Zero();  ///< dy/dq
-  Matrix<T, kRows, kRows> J_plate_loops =
-      Matrix<T, kRows, kRows>::Zero();  ///< inverse of the loop matrix with rows u_i^T dA_i/dy
+  /// Inverse of the loop matrix with rows u_i^T dA_i/dy
+  Matrix<T, kRows, kRows> J_plate_loops = Matrix<T, kRows, kRows>::Zero();
   TelescopePosture<T, N> telescope;
 };
 

@@ -21,7 +21,7 @@ struct EffectState {
   Eigen::RowVectorXd J_bar;                                ///< d length / dq
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
   Eigen::VectorXd passive_rate;                            ///< of each different passive joint [rad/s]
-  /// D rate / d qd, times the number of joints alike: joints x drives
+  /// d rate / d qd, times the number of joints alike: joints x drives
   Eigen::MatrixXd J_passive;
 };
 

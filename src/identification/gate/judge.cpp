@@ -21,8 +21,8 @@ constexpr double kSoundResidual =
     0.02;
 constexpr double kSoundRatio = 1.2;  // all drives together over each drive by itself: one machine explains all torques
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
-constexpr double kWinsNoisy =
-    0.8;  // ... or, where noise covers the rest, leaves nothing between all drives together and each alone
+// ... or, where noise covers the rest, leaves nothing between all drives together and each alone
+constexpr double kWinsNoisy = 0.8;
 constexpr double kWinsOdd = 0.4;               // the same for a zero at any angle, which explains more by chance
 constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for the winner
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults

@@ -22,10 +22,10 @@ constexpr double kCertain = 5.0;       // standard deviations of the data for a 
 constexpr double kKnown = 0.3;         // relative deviation of the data above which a ratio says nothing
 constexpr double kBeyondRotors = 100;  // times the prior's inertia
 constexpr double kWeighed = 0.15;      // relative deviation of a prior whose parts were weighed
-constexpr double kSpread =
-    0.5;  // gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
-constexpr double kFaultEffort =
-    5.0;  // times the effort of the robot file: drives reach three times their rated torque for moments
+// Gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
+constexpr double kSpread = 0.5;
+// Times the effort of the robot file: drives reach three times their rated torque for moments
+constexpr double kFaultEffort = 5.0;
 constexpr double kWarnEffort = 1.5;
 constexpr double kFarTooFast = 10.0;  // times the velocity limit
 constexpr double kFarBeyond = 3.0;    // times the position limits

@@ -168,8 +168,8 @@ Reading compose(const Reading& outer, const Reading& inner) {
 
 std::vector<double> plausible_values(const PositionFamily& family, const RobotDescription& robot, double value) {
   constexpr double kNear = 0.03;
-  constexpr double kNearUnit =
-      0.08;  // short motions tell a factor no better, and a unit is likelier than a ratio that is as near
+  // Short motions tell a factor no better, and a unit is likelier than a ratio that is as near
+  constexpr double kNearUnit = 0.08;
   std::vector<double> out;
   if (!family.geometric && robot.kind_of_drive(family.drives.front()) != DriveKind::revolute) return out;
   if (!family.geometric) {

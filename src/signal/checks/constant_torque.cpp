@@ -22,8 +22,8 @@ constexpr Index kShortestRows = 20;
 constexpr double kLongest_s = 0.5;   // a torque that reaches a limit leaves it again sooner
 constexpr double kJump = 8.0;        // usual changes: the servo switches, where a limit is reached smoothly,
 constexpr double kJumpNearby = 3.0;  // or times the changes just outside the run
-constexpr double kCoarseShare =
-    0.5;  // of the rows that repeat: then steps are coarser than the noise, and runs are long by nature
+// Of the rows that repeat: then steps are coarser than the noise, and runs are long by nature
+constexpr double kCoarseShare = 0.5;
 constexpr double kCoarseRuns = 30.0;   // times the usual run
 constexpr double kNoiseFree = 1e-3;    // of the travel: kinks of a torque without noise look like as much
 constexpr double kMostConstant = 0.9;  // of the samples; then nothing is left
