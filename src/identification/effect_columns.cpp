@@ -282,7 +282,8 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
     }
     return;
   }
-  out.inertia = drive_inertia(robot_, p);
+  // A free fit to a slow log may have an inertia below zero, which no spring carries.
+  out.inertia = drive_inertia(robot_, p).cwiseMax(1e-12);
   out.coupling.setZero(N, n * n);
   const MatrixXd load_d = differentiate(out.load, dt, 1, 3), jerk = differentiate(out.qdd, dt, 1, 3);
   // Steps that turn no joint by more than a tenth of a milliradian.
