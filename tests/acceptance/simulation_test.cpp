@@ -157,7 +157,7 @@ TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
   std::istringstream list(succeed({"delta-simulate", "--list-effects"}).out);
   std::string line, effect, keys;
   const auto usual = [](const std::string& key) {
-    if (key == "kind" || key == "recorded" || key == "encoder") return "1";
+    if (key == "kind" || key == "recorded" || key == "encoder" || key == "log") return "1";
     if (key == "share") return "0.5";  // of the load, of a peak or of a torque constant
     if (key == "motor_share") return "0.4";
     return key == "inertia_over_stiffness" ? "1e-5" : "0.01";
