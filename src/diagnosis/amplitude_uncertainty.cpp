@@ -1,6 +1,7 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "deltadyn/runtime/dense.hpp"
 
 #include "diagnosis_steps.hpp"
 
@@ -75,7 +76,7 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   }
   const VectorXd scale = J.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   J = J * scale.asDiagonal();
-  const MatrixXd inverse = MatrixXd(J.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd inverse = dense::pseudo_inverse(J.transpose() * J);
   VectorXd variance = inverse.diagonal();
   // White noise of unit size is the model's own opinion; blocks of rows tell what the residual says (White 1980, by
   // clusters).

@@ -1,11 +1,12 @@
 #include "confusable_set.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <numeric>
+
+#include "deltadyn/runtime/dense.hpp"
 
 #include "ranking.hpp"
 
@@ -111,8 +112,7 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
     const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;
     // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom
     // leaves.
-    const VectorXd coefficients =
-        (C_best.transpose() * C_best).completeOrthogonalDecomposition().solve(C_best.transpose() * s_other);
+    const VectorXd coefficients = dense::least_norm(C_best.transpose() * C_best, C_best.transpose() * s_other);
     const double distance = (s_other - C_best * coefficients).norm();
     const double lead = best_worth - context.search.worth(h, other.gain, state);
     const double z = (lead + distance * distance) / std::max(2 * distance, 1e-9);

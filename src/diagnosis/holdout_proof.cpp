@@ -1,10 +1,10 @@
 #include "holdout_proof.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
@@ -60,10 +60,7 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
   out.floor.resize(n);
   out.unsure.resize(n);
   const WhiteProblem& training = *found.before.problem;
-  const MatrixXd covariance = MatrixXd(training.X.transpose() * training.X)
-                                  .completeOrthogonalDecomposition()
-                                  .pseudoInverse()
-                                  .topLeftCorner(b, b);
+  const MatrixXd covariance = dense::pseudo_inverse(training.X.transpose() * training.X).topLeftCorner(b, b);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
   std::vector<LogRows> alone = {held};
   alone.front().tau = corrected;

@@ -1,10 +1,9 @@
 #include "log_rows.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -73,7 +72,7 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
 
 VectorXd closest_parameters(const BaseParameters& base, const VectorXd& beta, const VectorXd& around) {
   const MatrixXd& B = base.B;
-  return around + B.transpose() * (B * B.transpose()).ldlt().solve(beta - B * around);
+  return around + B.transpose() * dense::solve_symmetric(B * B.transpose(), VectorXd(beta - B * around));
 }
 
 VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>& logs, const VectorXd& around) {
@@ -95,7 +94,7 @@ VectorXd refit_parameters(const BaseParameters& base, const std::vector<LogRows>
     }
     const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    beta = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(VectorXd(scale.asDiagonal() * right));
+    beta = scale.asDiagonal() * dense::least_norm(scaled, scale.asDiagonal() * right);
     for (std::size_t j = 0; j < n; ++j) {
       double square = 0, count = 0;
       for (const LogRows& log : logs) {

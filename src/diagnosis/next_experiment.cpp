@@ -1,12 +1,12 @@
 #include "deltadyn/diagnosis/next_experiment.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <random>
 #include <vector>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
@@ -101,8 +101,7 @@ class Separation {
       const double weight = 1.0 / std::max(diagnosis_.drives[drive].floor, 1e-12);
       X.middleRows(j * kStates, kStates) << weight * Y[drive], weight * C[drive];
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(X);
-    const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(X.rows(), qr.rank());
+    const MatrixXd Q = dense::PivotedQr(X).basis();
     double least = 1e300;
     for (const EffectCandidate& other : best_.confusable) {
       const std::vector<MatrixXd> D = rows_of(rows, signals, other.effect);

@@ -1,10 +1,10 @@
 #include "noise_estimate.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
@@ -138,7 +138,7 @@ class DriveResidual {
       G = scale.asDiagonal() * G * scale.asDiagonal();
       G.diagonal().array() += kRidge;
       const VectorXd u = inner_(chosen);
-      const VectorXd coefficients = scale.asDiagonal() * G.ldlt().solve(VectorXd(scale.asDiagonal() * u));
+      const VectorXd coefficients = scale.asDiagonal() * dense::solve_symmetric(G, VectorXd(scale.asDiagonal() * u));
       for (std::size_t l = 0; l < logs_.size(); ++l)
         out.residual[l] -= basis_.columns[l][drive_](Eigen::all, chosen) * coefficients;
     }

@@ -1,7 +1,5 @@
 #include "null_study.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/butterworth.hpp"
@@ -134,16 +133,15 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
     const VectorXd raw = white_.back().raw_gram(0, white_.back().cols).diagonal().cwiseMax(1e-300);
     const VectorXd scale = raw.cwiseSqrt().cwiseInverse();
     G = scale.asDiagonal() * G * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
-    const VectorXd& values = eigen.eigenvalues();
+    const dense::Spectrum spectrum = dense::spectrum(G);
+    const VectorXd& values = spectrum.values;
     std::vector<Index> kept;
     for (Index k = 0; k < values.size(); ++k) {
       if (values(k) > 1e-4 * values.maxCoeff()) kept.push_back(k);
     }
     MatrixXd root(values.size(), static_cast<Index>(kept.size()));
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      root.col(static_cast<Index>(k)) =
-          scale.asDiagonal() * eigen.eigenvectors().col(kept[k]) / std::sqrt(values(kept[k]));
+      root.col(static_cast<Index>(k)) = scale.asDiagonal() * spectrum.vectors.col(kept[k]) / std::sqrt(values(kept[k]));
     }
     root_.push_back(root);
     ranks_.push_back(root.cols());
@@ -319,7 +317,7 @@ std::vector<VectorXd> EncoderPilots::products(const WhiteProblem& problem, const
   X = X * scale.asDiagonal();
   MatrixXd information = X.transpose() * X;
   information.diagonal().array() += 1e-12;
-  r = y - X * information.ldlt().solve(X.transpose() * y);
+  r = y - X * dense::solve_symmetric(information, VectorXd(X.transpose() * y));
   std::vector<VectorXd> out;
   for (const auto& rows : run.rows) {
     VectorXd inner;

@@ -1,4 +1,5 @@
-#include <Eigen/QR>
+
+#include "deltadyn/runtime/dense.hpp"
 
 #include "diagnosis_steps.hpp"
 
@@ -18,9 +19,7 @@ Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem
   const VectorXd norm = problem.X.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = problem.X * norm.asDiagonal();
   Remainder out;
-  const MatrixXd information = scaled.transpose() * scaled;
-  out.beta =
-      norm.asDiagonal() * information.completeOrthogonalDecomposition().solve(VectorXd(scaled.transpose() * white));
+  out.beta = norm.asDiagonal() * dense::least_norm(scaled.transpose() * scaled, scaled.transpose() * white);
   const Index b = context.base.count();
   for (std::size_t l = 0; l < context.logs.size(); ++l) {
     out.torque.emplace_back();

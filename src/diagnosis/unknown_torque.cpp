@@ -1,9 +1,9 @@
 #include "unknown_torque.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn {
@@ -38,12 +38,12 @@ UnknownTorque through_low_pass(const PreparedLog& log, Index first, Index end, d
       response(row - from, k) = size * (log.low_pass ? static_cast<double>(step) * log.low_pass->taps()(tap) : 1.0);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(response * response.transpose());
-  const VectorXd& squares = eigen.eigenvalues();  // rising
+  const dense::Spectrum spectrum = dense::spectrum(response * response.transpose());
+  const VectorXd& squares = spectrum.values;  // rising
   Index kept = 0;
   while (kept < squares.size() && squares(squares.size() - 1 - kept) > kFinest * squares(squares.size() - 1)) ++kept;
   out.first = from;
-  out.directions = eigen.eigenvectors().rightCols(kept) * squares.tail(kept).cwiseSqrt().asDiagonal();
+  out.directions = spectrum.vectors.rightCols(kept) * squares.tail(kept).cwiseSqrt().asDiagonal();
   return out;
 }
 

@@ -1,10 +1,10 @@
 #include "white_problem.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "deltadyn/identification/non_negative_least_squares.hpp"
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn {
 
@@ -104,9 +104,8 @@ WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDriv
     y.segment(segment.offset, segment.rows()) = segment.whitener.apply(log.tau.col(static_cast<Index>(segment.drive)));
   }
   const VectorXd norm = X.colwise().norm().transpose().cwiseMax(1e-300);
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(X * norm.cwiseInverse().asDiagonal());
-  qr.setThreshold(kRank);
-  Q = qr.householderQ() * MatrixXd::Identity(rows, qr.rank());
+  const dense::PivotedQr qr(X * norm.cwiseInverse().asDiagonal(), kRank);
+  Q = qr.basis();
   beta = norm.cwiseInverse().asDiagonal() * qr.solve(y);
   r = y - Q * (Q.transpose() * y);
 }

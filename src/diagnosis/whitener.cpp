@@ -1,8 +1,9 @@
 #include "whitener.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn {
 
@@ -27,11 +28,11 @@ MatrixXd innovations_after(const NoiseModel& noise, const MatrixXd& x) {
 
 /// The orthonormal directions along which white noise would not hide them.
 MatrixXd that_matter(const MatrixXd& white) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(white.transpose() * white);
-  const VectorXd& squares = eigen.eigenvalues();
+  const dense::Spectrum spectrum = dense::spectrum(white.transpose() * white);
+  const VectorXd& squares = spectrum.values;
   Index kept = 0;
   while (kept < squares.size() && squares(squares.size() - 1 - kept) > kNegligible * kNegligible) ++kept;
-  return white * eigen.eigenvectors().rightCols(kept) * squares.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+  return white * spectrum.vectors.rightCols(kept) * squares.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 }  // namespace

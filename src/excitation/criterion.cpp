@@ -1,11 +1,10 @@
 #include "deltadyn/excitation/criterion.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -18,13 +17,15 @@ constexpr std::pair<const char*, Criterion> kWords[] = {{"logdet", Criterion::lo
                                                         {"min-eigenvalue", Criterion::min_eigenvalue}};
 
 CriterionValue of_determinant(Criterion criterion, const Eigen::MatrixXd& M) {
-  const Eigen::LLT<Eigen::MatrixXd> llt(M);
-  if (llt.info() != Eigen::Success) return {};
+  const auto [L, positive_definite] = dense::cholesky(M);
+  if (!positive_definite) return {};
   const auto p = static_cast<double>(M.rows());
   CriterionValue result;
   result.regular = true;
-  result.value = 2 * llt.matrixLLT().diagonal().array().log().sum();
-  result.by_M = llt.solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+  result.value = 2 * L.diagonal().array().log().sum();
+  const Eigen::MatrixXd root =
+      dense::solve_upper(L.transpose(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(M.rows(), M.cols())));
+  result.by_M = root * root.transpose();
   if (criterion == Criterion::det) {
     result.value = std::exp(result.value / p);
     result.by_M *= result.value / p;
@@ -54,12 +55,12 @@ const char* word_of(Criterion criterion) {
 CriterionValue evaluate(Criterion criterion, const Eigen::MatrixXd& M) {
   if (!M.allFinite()) return {};
   if (criterion != Criterion::cond && criterion != Criterion::min_eigenvalue) return of_determinant(criterion, M);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M);
-  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const dense::Spectrum spectrum = dense::spectrum(M);
+  const Eigen::VectorXd& values = spectrum.values;
   const Eigen::Index last = values.size() - 1;
-  if (eigen.info() != Eigen::Success || !(values(0) > 1e-14 * values(last))) return {};
+  if (!(values(0) > 1e-14 * values(last))) return {};
   const auto by = [&](Eigen::Index k) -> Eigen::MatrixXd {
-    return eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / values(k);
+    return spectrum.vectors.col(k) * spectrum.vectors.col(k).transpose() / values(k);
   };
   CriterionValue result;
   result.regular = true;
@@ -73,9 +74,9 @@ CriterionValue evaluate(Criterion criterion, const Eigen::MatrixXd& M) {
 }
 
 double log_determinant(const Eigen::MatrixXd& M) {
-  const Eigen::LLT<Eigen::MatrixXd> llt(M);
-  if (llt.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-  return 2 * llt.matrixLLT().diagonal().array().log().sum();
+  const auto [L, positive_definite] = dense::cholesky(M);
+  if (!positive_definite) return -std::numeric_limits<double>::infinity();
+  return 2 * L.diagonal().array().log().sum();
 }
 
 }  // namespace deltadyn

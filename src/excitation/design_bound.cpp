@@ -1,12 +1,12 @@
 #include "deltadyn/excitation/design_bound.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "deltadyn/excitation/criterion.hpp"
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 
@@ -22,16 +22,16 @@ constexpr Index kMoreStates = 200;   // added at a time
 
 /// Sensitivities d_k = tr(M_k M^-1) = |L^-1 A_k'|^2 of the blocks of rows A_k.
 VectorXd sensitivities(const std::vector<MatrixXd>& blocks, const std::vector<Index>& which, const MatrixXd& M) {
-  const Eigen::LLT<MatrixXd> llt(M);
-  if (llt.info() != Eigen::Success)
+  const auto [L, positive_definite] = dense::cholesky(M);
+  if (!positive_definite)
     throw Error("the admissible states do not show all base parameters", "limits", "widen the limits or the workspace",
                 ExitCode::no_convergence);
+  const MatrixXd R = L.transpose();
   const auto count = static_cast<Index>(which.size());
   VectorXd d(count);
   const auto pass = [&](Index k) {
-    const MatrixXd half =
-        llt.matrixL().solve(blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])].transpose());
-    d(k) = half.squaredNorm();
+    const MatrixXd& block = blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])];
+    d(k) = dense::solve_upper_transposed(R, MatrixXd(block.transpose())).squaredNorm();
   };
   // Small sets are faster on one thread than the threads are to meet.
   in_parallel(count, pass, count > 2000 ? 0 : 1);

@@ -1,6 +1,5 @@
 #include "deltadyn/excitation/optimize.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/random.hpp"
@@ -542,8 +542,7 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
   result.log_det = log_determinant(result.information);
   result.log_det_physical = result.log_det + space.log_det_of_scales();
   result.d_efficiency = d_efficiency(result.log_det, bound, p);
-  const VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(result.information, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd eigenvalues = dense::eigenvalues(result.information);
   result.condition_number = std::sqrt(eigenvalues(p - 1) / eigenvalues(0));
   const CriterionValue value = evaluate(options.criterion, result.information);
   result.value = value.regular ? value.value : -std::numeric_limits<double>::infinity();

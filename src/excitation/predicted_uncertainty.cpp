@@ -1,9 +1,9 @@
 #include "deltadyn/excitation/predicted_uncertainty.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <limits>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -33,12 +33,12 @@ VectorXd predicted_std(const Robot& robot, const std::vector<int>& base_columns,
   for (Index k = 0; k < p; ++k)
     if (!(scale(k) > 0)) scale(k) = 1;
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
+  const auto [values, vectors] = dense::spectrum(scaled);
   constexpr double kUnseen = 1e-13;
   VectorXd variance = VectorXd::Zero(p);
   for (Index k = 0; k < p; ++k) {
-    const VectorXd square = eigen.eigenvectors().col(k).cwiseAbs2();
-    const double value = eigen.eigenvalues()(k);
+    const VectorXd square = vectors.col(k).cwiseAbs2();
+    const double value = values(k);
     for (Index j = 0; j < p; ++j) {
       if (value > kUnseen) {
         variance(j) += square(j) / value;

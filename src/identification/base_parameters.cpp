@@ -1,11 +1,10 @@
 #include "deltadyn/identification/base_parameters.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
@@ -61,8 +60,9 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
     if (norm(k) < 1e-14) norm(k) = 1.0;
     W.col(k) /= norm(k);
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(W);
-  const Eigen::VectorXd diagonal = qr.matrixQR().diagonal().cwiseAbs();
+  const dense::PivotedQr qr(W);
+  const Eigen::MatrixXd triangle = qr.R();
+  const Eigen::VectorXd diagonal = triangle.diagonal().cwiseAbs();
   Eigen::Index rank = 0;
   while (rank < P && diagonal(rank) > options.tolerance * diagonal(0)) ++rank;
 
@@ -76,27 +76,29 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
         ExitCode::not_trusted);
   }
   // W_dep = W_ind K, so that Y p = Y_ind (p_ind + K p_dep); undo the column scaling.
-  const Eigen::MatrixXd R = qr.matrixQR().topLeftCorner(rank, P).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd K = R.leftCols(rank).triangularView<Eigen::Upper>().solve(R.rightCols(P - rank));
-  const auto& order = qr.colsPermutation().indices();
+  const Eigen::MatrixXd R = triangle.topRows(rank);
+  const Eigen::MatrixXd K = dense::solve_upper(R.leftCols(rank), Eigen::MatrixXd(R.rightCols(P - rank)));
+  const std::vector<Eigen::Index> order = qr.order();
   std::vector<Eigen::Index> rows(static_cast<std::size_t>(rank));
   for (Eigen::Index i = 0; i < rank; ++i) rows[static_cast<std::size_t>(i)] = i;
-  std::sort(rows.begin(), rows.end(), [&](Eigen::Index a, Eigen::Index b) { return order(a) < order(b); });
+  std::sort(rows.begin(), rows.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return order[static_cast<std::size_t>(a)] < order[static_cast<std::size_t>(b)];
+  });
   base.B = Eigen::MatrixXd::Zero(rank, P);
   for (Eigen::Index i = 0; i < rank; ++i) {
     const Eigen::Index row = rows[static_cast<std::size_t>(i)];
-    const int independent = order(row);
+    const auto independent = static_cast<int>(order[static_cast<std::size_t>(row)]);
     base.independent.push_back(independent);
     base.B(i, independent) = 1.0;
     for (Eigen::Index j = 0; j < P - rank; ++j) {
-      const int dependent = order(rank + j);
+      const Eigen::Index dependent = order[static_cast<std::size_t>(rank + j)];
       const double k = K(row, j);
       if (std::abs(k) > kNegligible) base.B(i, dependent) = k * norm(dependent) / norm(independent);
     }
     base.expressions.push_back(expression(base.B.row(i), independent, robot.parameter_names()));
     base.units.push_back(robot.parameter_units()[static_cast<std::size_t>(independent)]);
   }
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(W(Eigen::all, base.independent)).singularValues();
+  const Eigen::VectorXd s = dense::singular_values(W(Eigen::all, base.independent));
   base.condition_number = s(0) / s(rank - 1);
   return base;
 }

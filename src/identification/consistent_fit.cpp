@@ -1,6 +1,5 @@
 #include "deltadyn/identification/consistent_fit.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <ceres/ceres.h>
 #include <chrono>
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "fit_blocks.hpp"
@@ -238,9 +238,9 @@ OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, dou
 
 /// chi^2 of plain least squares and the number of parameters that the data see, columns in units of their scales.
 void add_least_squares(const ConsistentFitProblem& problem, const Layout& layout, ConsistentFitSummary& summary) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.A * layout.scale.asDiagonal());
+  const dense::PivotedQr qr(problem.A * layout.scale.asDiagonal());
   summary.data_rank = static_cast<int>(qr.rank());
-  const Eigen::VectorXd rotated = qr.householderQ().transpose() * problem.b;
+  const Eigen::VectorXd rotated = qr.rotated(problem.b);
   summary.data_cost_free = rotated.tail(rotated.size() - summary.data_rank).squaredNorm();
 }
 
@@ -297,9 +297,8 @@ void add_uncertainty(const ConsistentFitProblem& problem, const ConsistentFitOpt
   // in units of the prior's width: covariance = (A^T A + I)^{-1}, share = 1 - its diagonal
   Eigen::MatrixXd stacked(A.rows() + n, n);
   stacked << A * prior_std.asDiagonal(), Eigen::MatrixXd::Identity(n, n);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
   const Eigen::MatrixXd inverse =
-      qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+      dense::solve_upper(dense::r_factor(stacked), Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
   for (int i = 0; i < n; ++i) {
     const auto parameter = layout.y_to_p[static_cast<std::size_t>(i)];
     const double variance = inverse.row(i).squaredNorm();
@@ -351,11 +350,12 @@ ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& probl
   Eigen::VectorXd b = problem.b;
   double constant = 0;  // the part of b that no parameter reaches; kept apart, it would only cost digits
   if (A.rows() > n) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
-    const Eigen::VectorXd rotated = qr.householderQ().transpose() * b;
-    b = rotated.head(n);
-    constant = rotated.tail(rotated.size() - n).squaredNorm();
-    A = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().toDenseMatrix();
+    A.conservativeResize(Eigen::NoChange, n + 1);
+    A.col(n) = b;
+    const Eigen::MatrixXd R = dense::r_factor(A);
+    A = R.topLeftCorner(n, n);
+    b = R.col(n).head(n);
+    constant = R(n, n) * R(n, n);
   }
   const ConvexProblem convex(layout, A, b);
   const Eigen::VectorXd start = fit::convex_start(layout);

@@ -1,9 +1,9 @@
 #include "data_fold.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
@@ -40,11 +40,11 @@ void triangularize(DriveFold& fold, const Eigen::Ref<const Eigen::MatrixXd>& Y,
   stacked.topRightCorner(P, 1) = fold.d;
   stacked.bottomLeftCorner(Y.rows(), P) = Y;
   stacked.bottomRightCorner(Y.rows(), 1) = tau;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  fold.R = qr.matrixQR().topLeftCorner(P, P).triangularView<Eigen::Upper>();
-  fold.d = qr.matrixQR().topRightCorner(P, 1);
+  const Eigen::MatrixXd R = dense::r_factor(stacked);
+  fold.R = R.topLeftCorner(P, P);
+  fold.d = R.topRightCorner(P, 1);
   if (stacked.rows() > P) {
-    const double rest = qr.matrixQR()(P, P);
+    const double rest = R(P, P);
     fold.remainder += rest * rest;
   }
 }

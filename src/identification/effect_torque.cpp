@@ -1,12 +1,12 @@
 #include "deltadyn/identification/effect_torque.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "deltadyn/identification/model_band.hpp"
 #include "deltadyn/identification/non_negative_least_squares.hpp"
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
@@ -88,7 +88,7 @@ VectorXd variances_over(const MatrixXd& information, const std::vector<bool>& co
       information.rows(), [&](Index c) { return columns[static_cast<std::size_t>(c)] ? 1.0 : 0.0; });
   const VectorXd scale = taken.cwiseProduct(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse());
   const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(scaled).pseudoInverse();
+  const MatrixXd inverse = dense::pseudo_inverse(scaled);
   return (scale.asDiagonal() * inverse * scale.asDiagonal()).diagonal().cwiseMax(0.0);
 }
 

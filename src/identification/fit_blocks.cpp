@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn::fit {
@@ -216,8 +217,8 @@ void make_matrices(Block& block) {
   if (block.metric.size == 0) return;
   const int n = block.metric.size;
   const Eigen::MatrixXd reference = block.metric(block.anchor(block.entries)).topLeftCorner(n, n);
-  const Eigen::LLT<Eigen::MatrixXd> factor(reference);
-  block.metric_root.topLeftCorner(n, n) = factor.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
+  block.metric_root.topLeftCorner(n, n) = dense::solve_upper(dense::cholesky(reference).L.transpose(), identity);
 }
 
 /// Sizes of the ten parameters that follow from mass and second moments, for entries whose prior is 0.

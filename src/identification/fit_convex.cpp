@@ -1,13 +1,11 @@
 #include "fit_convex.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "deltadyn/runtime/dense.hpp"
 
 #include "fit_metric.hpp"
 
@@ -46,10 +44,10 @@ ConvexProblem::ConvexProblem(const Layout& layout, const Eigen::MatrixXd& A, con
   const auto rows = std::min<Eigen::Index>(A_.rows(), n);
   square.topRows(rows) = A_.topRows(rows) * scale_.head(n).asDiagonal();
   rhs.head(rows) = b_.head(rows);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  singular_ = svd.singularValues();
-  V_ = svd.matrixV();
-  target_ = svd.matrixU().transpose() * rhs;
+  const dense::SingularValues svd = dense::svd(square);
+  singular_ = svd.values;
+  V_ = svd.V;
+  target_ = svd.U.transpose() * rhs;
 }
 
 double ConvexProblem::regularization_cost(FitMetric metric, const Eigen::VectorXd& y) const {
@@ -108,8 +106,7 @@ bool ConvexProblem::separable_terms(FitMetric metric, double lambda, double barr
       g(i) *= scale_(index(i));
       for (Eigen::Index j = 0; j < n; ++j) H(i, j) *= scale_(index(i)) * scale_(index(j));
     }
-    const Eigen::LLT<Eigen::MatrixXd> factor(H);
-    const Eigen::MatrixXd L = factor.matrixL();
+    const Eigen::MatrixXd L = dense::cholesky(H).L;
     for (Eigen::Index i = 0; i < n; ++i) {
       terms.gradient(index(i)) = g(i);
       for (Eigen::Index j = 0; j <= i; ++j) terms.factor(index(i), index(j)) = L(i, j);
@@ -134,10 +131,9 @@ ConvexProblem::Newton ConvexProblem::newton_step(const Terms& terms, const Eigen
   stacked.topRows(n) = terms.factor.transpose();
   stacked.topLeftCorner(n, fitted) = terms.factor.topRows(fitted).transpose() * V_;
   stacked.bottomLeftCorner(fitted, fitted).diagonal() = std::sqrt(2.0) * singular_;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  const auto R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd R = dense::r_factor(stacked);
   Newton newton;
-  newton.step = -R.solve(R.transpose().solve(gradient).eval());
+  newton.step = -dense::solve_upper(R, dense::solve_upper_transposed(R, gradient));
   newton.decrement = -gradient.dot(newton.step);
   newton.step.head(fitted) = (V_ * newton.step.head(fitted)).eval();
   return newton;
@@ -196,7 +192,7 @@ struct Dual {
 };
 
 double min_eigenvalue(const Eigen::MatrixXd& M) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  return dense::eigenvalues(M)(0);
 }
 
 Dual dual_of(const Block& block, const Eigen::VectorXd& g) {
@@ -278,8 +274,7 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
       return certificate;
     of_metric.segment(block.y, count) = lambda * gradient;
     stacked.block(n + block.y, block.y, count, count) =
-        Eigen::LLT<Eigen::MatrixXd>(0.5 * lambda * hessian).matrixU().toDenseMatrix() *
-        scale.segment(block.y, count).asDiagonal();
+        dense::cholesky(0.5 * lambda * hessian).L.transpose() * scale.segment(block.y, count).asDiagonal();
   }
   stacked.bottomRows(n) = (stacked.bottomRows(n) * V_).eval();
   stacked.topRows(n) = singular_.asDiagonal();
@@ -311,10 +306,9 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
   const Eigen::VectorXd slope =
       (dual ? Eigen::VectorXd(whole - V_.transpose() * scale.cwiseProduct(z)) : Eigen::VectorXd::Zero(n)) -
       V_.transpose() * scale.cwiseProduct(shifted);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  const auto R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd R = dense::r_factor(stacked);
   auto growth_bound = [&](const Eigen::VectorXd& left) {
-    const double quarter = 0.25 * R.transpose().solve(left).squaredNorm();
+    const double quarter = 0.25 * dense::solve_upper_transposed(R, left).squaredNorm();
     if (!std::isfinite(quarter)) return std::numeric_limits<double>::infinity();
     if (metric == FitMetric::relative) return quarter;
     const double decrement = std::sqrt(2 * quarter / lambda);  // of J / lambda, which is self-concordant

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "deltadyn/runtime/dense.hpp"
+
 namespace deltadyn::fit {
 namespace {
 
@@ -68,9 +70,9 @@ bool metric_residual(const Block& block, const Layout& layout, FitMetric metric,
   const int n = block.metric.size;
   const Eigen::Matrix4d& C = block.metric_root;
   const Eigen::Matrix4d L4 = C.transpose() * block.metric(y) * C;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(L4.topLeftCorner(n, n));
-  const Eigen::VectorXd& l = eigen.eigenvalues();
-  const Eigen::MatrixXd& V = eigen.eigenvectors();
+  const dense::Spectrum spectrum = dense::spectrum(L4.topLeftCorner(n, n));
+  const Eigen::VectorXd& l = spectrum.values;
+  const Eigen::MatrixXd& V = spectrum.vectors;
   if (!(l(0) > 0)) return false;
   std::vector<Rho> values;
   for (int i = 0; i < n; ++i) values.push_back(rho(l(i), metric));

@@ -1,12 +1,10 @@
 #include "least_squares.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -25,9 +23,9 @@ void stack(const std::vector<DriveFold>& folds, const Eigen::VectorXd& weight, E
     const auto row = static_cast<Index>(j);
     stacked.middleRows(row * P, P) << weight(row) * folds[j].R, weight(row) * folds[j].d;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-  A = qr.matrixQR().topLeftCorner(P, P).triangularView<Eigen::Upper>();
-  b = qr.matrixQR().topRightCorner(P, 1);
+  const Eigen::MatrixXd R = dense::r_factor(stacked);
+  A = R.topLeftCorner(P, P);
+  b = R.topRightCorner(P, 1);
 }
 
 void take_off(const BaseParameters& base, const NoiseBias& bias, const Eigen::VectorXd& weight, Eigen::MatrixXd& A,
@@ -83,21 +81,21 @@ BaseEstimate estimate_base_parameters(const BaseParameters& base, const std::vec
     Eigen::VectorXd norm = A_B.colwise().norm().cwiseMax(1e-300);
     const double largest = norm.maxCoeff();
     A_B *= norm.cwiseInverse().asDiagonal();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A_B, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::VectorXd& s = svd.singularValues();
+    const dense::SingularValues svd = dense::svd(A_B);
+    const Eigen::VectorXd& s = svd.values;
     out.condition_number = s(0) / std::max(s(s.size() - 1), 1e-300);
     std::string unseen;
     for (Index k = 0; k < norm.size(); ++k) {
       if (norm(k) < kSilent * largest)
         unseen += (unseen.empty() ? "" : ", ") + base.expressions[static_cast<std::size_t>(k)];
     }
-    if (unseen.empty() && out.condition_number > 1 / kSilent) unseen = weakest(base, svd.matrixV().rightCols<1>());
+    if (unseen.empty() && out.condition_number > 1 / kSilent) unseen = weakest(base, svd.V.rightCols<1>());
     if (!unseen.empty()) {
       throw Error("the motion does not excite every base parameter; it says nothing about " + unseen, "",
                   "record a motion that moves all drives, fast and slow, over the workspace", ExitCode::not_trusted);
     }
-    out.value = norm.cwiseInverse().asDiagonal() * svd.solve(out.b);
-    const Eigen::MatrixXd root = norm.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd root = norm.cwiseInverse().asDiagonal() * svd.V * s.cwiseInverse().asDiagonal();
+    out.value = root * (svd.U.transpose() * out.b);
     out.covariance = root * root.transpose();
     out.log_det = 2 * (s.array().log().sum() + norm.array().log().sum());
 
@@ -122,9 +120,9 @@ void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covarian
   // With A_B^T A_B the information, its inverse plus C has the information A_B^T (1 + A_B C A_B^T)^-1 A_B.
   const Eigen::MatrixXd A_B = estimate.A(Eigen::all, base.independent);
   const Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(A_B.rows(), A_B.rows()) + A_B * covariance * A_B.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);
-  const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(1.0).cwiseSqrt();
-  const Eigen::MatrixXd rest = root.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() * A_B;
+  const dense::Spectrum spectrum = dense::spectrum(sum);
+  const Eigen::VectorXd root = spectrum.values.cwiseMax(1.0).cwiseSqrt();
+  const Eigen::MatrixXd rest = root.cwiseInverse().asDiagonal() * spectrum.vectors.transpose() * A_B;
   estimate.covariance += covariance;
   estimate.log_det -= 2 * root.array().log().sum();
   estimate.A = rest * base.B;

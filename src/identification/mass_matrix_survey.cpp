@@ -1,11 +1,10 @@
 #include "deltadyn/identification/mass_matrix_survey.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
@@ -39,10 +38,9 @@ MassMatrixSurvey survey_mass_matrix(const Robot& robot, const Eigen::VectorXd& p
       throw Error("the mass matrix cannot be computed at a regular pose", robot.description().name,
                   "check the lengths in the robot file and the parameters");
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M, Eigen::EigenvaluesOnly);
-    const Eigen::VectorXd& values = solver.eigenvalues();
+    const Eigen::VectorXd values = dense::eigenvalues(M);
     // Cholesky decides: an eigenvalue that rounding lifts above zero does not make M usable.
-    const bool positive = Eigen::LLT<Eigen::MatrixXd>(M).info() == Eigen::Success && values(0) > 0;
+    const bool positive = dense::cholesky(M).positive_definite && values(0) > 0;
     if (!positive) ++survey.not_positive;
     survey.worst_condition = std::max(survey.worst_condition,
                                       positive ? values(n - 1) / values(0) : std::numeric_limits<double>::infinity());

@@ -1,8 +1,8 @@
 #include "noise_bias.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/signal/log_part.hpp"
 
@@ -85,10 +85,10 @@ std::vector<Products> products_of(const Robot& robot, const BaseParameters& base
 /// Inverse of Z^T Z in the directions that the instruments span.
 MatrixXd inverse_of(const MatrixXd& ZtZ) {
   const VectorXd scale = ZtZ.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * ZtZ * scale.asDiagonal());
-  const double least = kNoise * eigen.eigenvalues().maxCoeff();
-  const VectorXd inverse = (eigen.eigenvalues().array() > least).select(eigen.eigenvalues().array().inverse(), 0.0);
-  const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  const dense::Spectrum of_Z = dense::spectrum(scale.asDiagonal() * ZtZ * scale.asDiagonal());
+  const double least = kNoise * of_Z.values.maxCoeff();
+  const VectorXd inverse = (of_Z.values.array() > least).select(of_Z.values.array().inverse(), 0.0);
+  const MatrixXd V = scale.asDiagonal() * of_Z.vectors;
   return V * inverse.asDiagonal() * V.transpose();
 }
 
@@ -135,17 +135,17 @@ void take_off_noise(const BaseParameters& base, const MatrixXd& information, con
   const VectorXd scale = R_base.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd G = scale.asDiagonal() * (R_base.transpose() * R_base) * scale.asDiagonal();
   const MatrixXd D = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> of_G(G);
-  const VectorXd root_size = of_G.eigenvalues().cwiseMax(kNoise * of_G.eigenvalues().maxCoeff()).cwiseSqrt();
+  const dense::Spectrum of_G = dense::spectrum(G);
+  const VectorXd root_size = of_G.values.cwiseMax(kNoise * of_G.values.maxCoeff()).cwiseSqrt();
   // In the directions of G, with each of size one, the excess is its share of the information.
-  const MatrixXd root = of_G.eigenvectors() * root_size.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> of_share(root.transpose() * D * root);
-  const MatrixXd U = root * of_share.eigenvectors();  // U^T G U = 1
+  const MatrixXd root = of_G.vectors * root_size.cwiseInverse().asDiagonal();
+  const dense::Spectrum of_share = dense::spectrum(root.transpose() * D * root);
+  const MatrixXd U = root * of_share.vectors;  // U^T G U = 1
   const VectorXd plain = U.transpose() * (scale.asDiagonal() * (R_base.transpose() * d));
   const VectorXd excess = U.transpose() * (scale.asDiagonal() * torque);
   VectorXd left(count), right(count);
   for (Index k = 0; k < count; ++k) {
-    const double share = of_share.eigenvalues()(k);
+    const double share = of_share.values(k);
     const bool known = share < kMostNoise;
     left(k) = known ? 1 - share : 1.0;
     right(k) = known ? plain(k) - excess(k) : plain(k);

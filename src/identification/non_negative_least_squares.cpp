@@ -1,7 +1,8 @@
 #include "deltadyn/identification/non_negative_least_squares.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn {
 
@@ -79,10 +80,7 @@ class ActiveSet {
     }
     VectorXd x = VectorXd::Zero(u_.size());
     if (columns.empty()) return x;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-    decomposition.setThreshold(singular_);
-    decomposition.compute(MatrixXd(G_(columns, columns)));
-    x(columns) = VectorXd(decomposition.solve(VectorXd(u_(columns))));
+    x(columns) = dense::least_norm(G_(columns, columns), u_(columns), singular_);
     return x;
   }
 

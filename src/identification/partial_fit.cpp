@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "deltadyn/runtime/dense.hpp"
+
 namespace deltadyn {
 
 using Eigen::Index;
@@ -39,12 +41,13 @@ PartialFit::PartialFit(std::vector<BaseRows> rows, Index leave_out) : rows_(std:
   }
   scale_ = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   if (leave_out_ >= 0) scale_(leave_out_) = 0;
-  solver_.compute(scale_.asDiagonal() * information * scale_.asDiagonal());
+  inverse_ = scale_.asDiagonal() * dense::pseudo_inverse(scale_.asDiagonal() * information * scale_.asDiagonal()) *
+             scale_.asDiagonal();
   square_ -= right_.dot(solved(right_));
 }
 
 VectorXd PartialFit::solved(const VectorXd& right) const {
-  return scale_.asDiagonal() * solver_.solve(VectorXd(scale_.asDiagonal() * right));
+  return inverse_ * right;
 }
 
 PartialFit::Result PartialFit::with(const std::vector<Columns>& columns) const {
@@ -69,10 +72,10 @@ PartialFit::Result PartialFit::with(const std::vector<Columns>& columns) const {
     CC.col(c) -= XC.transpose() * part;
     Cy(c) -= right_.dot(part);
   }
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> small(CC);
+  const MatrixXd covariance = dense::pseudo_inverse(CC);
   Result out;
-  out.amplitude = small.solve(Cy);
-  out.std = small.pseudoInverse().diagonal().cwiseMax(0.0).cwiseSqrt();
+  out.amplitude = covariance * Cy;
+  out.std = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   out.cost = square_ - out.amplitude.dot(Cy);
   return out;
 }

@@ -6,7 +6,6 @@
 /// fits best without the column.
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <cmath>
 #include <vector>
 
@@ -55,7 +54,7 @@ class PartialFit {
   Eigen::Index leave_out_;
   Eigen::VectorXd right_, scale_;
   double square_ = 0;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+  Eigen::MatrixXd inverse_;  ///< of the information
 };
 
 }  // namespace deltadyn

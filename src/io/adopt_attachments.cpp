@@ -1,10 +1,11 @@
 #include "adopt_attachments.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
+
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn::cad {
 namespace {
@@ -274,8 +275,7 @@ class Solver {
       A.block<3, 3>(row, 2) = -Eigen::Matrix3d::Identity();
       b.segment<3>(row) = -limbs_[i].elbow;
     }
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-    qr.setThreshold(kDegenerate);
+    const dense::PivotedQr qr(A, kDegenerate);
     if (qr.rank() < 5)
       ask("the length of the struts cannot be found: no strut carries the plate, and in this pose every length would "
           "do",

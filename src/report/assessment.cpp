@@ -1,6 +1,5 @@
 #include "deltadyn/report/assessment.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/report/format.hpp"
+#include "deltadyn/runtime/dense.hpp"
 
 #include "assessment_limits.hpp"
 #include "assessment_parts.hpp"
@@ -20,8 +20,7 @@ std::vector<Visibility> parameter_visibility(const BaseParameters& base) {
   constexpr double kZero = 1e-6;  // B is exact to rounding times its condition
   const Eigen::Index parameters = base.B.cols();
   std::vector<Visibility> out(static_cast<std::size_t>(parameters), Visibility::hidden);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(base.B.transpose());
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(parameters, base.B.rows());
+  const Eigen::MatrixXd Q = dense::q_factor(base.B.transpose());
   const double largest = base.B.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < parameters; ++i) {
     if (base.B.col(i).cwiseAbs().maxCoeff() < kZero * largest) continue;

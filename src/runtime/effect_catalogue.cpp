@@ -20,6 +20,17 @@ std::vector<EffectKind> kinds_of(EffectList<Effects...>) {
   return kinds;
 }
 
+void require_in(const Range& range, const EffectKind& kind, std::string_view name, double value,
+                const std::string& where, ExitCode code) {
+  if (range.holds(value)) return;
+  const std::string what = fmt::format("{} of {}", name, kind.name);
+  if (range.lowest == 0 && !(value > 0))
+    throw Error(fmt::format("{} {}", what, range.open ? "must be positive" : "cannot be negative"), where,
+                range.open ? "give a number above 0" : "give a positive number", code);
+  throw Error(fmt::format("{} is {}, beyond its {} value", what, value, value < range.lowest ? "smallest" : "largest"),
+              where, fmt::format("give a number from {} to {}", range.lowest, range.highest), code);
+}
+
 [[noreturn]] void refuse_joint(const EffectKind& kind, std::string_view name, const std::string& where,
                                const std::string& mend) {
   throw Error(fmt::format("the effect {} cannot act at '{}'", kind.name, name), where, mend);
@@ -91,13 +102,7 @@ void check_sizes(const Effect& effect, const std::function<std::string(std::stri
   const Shape<double> shape = shape_of(effect);
   for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
     const AmplitudeTraits& one = kind.amplitudes[k];
-    const double value = amplitude[k];
-    if (one.positive() && value < 0)
-      throw Error(fmt::format("{} of {} cannot be negative", one.name, kind.name), where(one.name),
-                  "give a positive number", code);
-    if (std::abs(value) > one.largest)
-      throw Error(fmt::format("{} of {} is {}, beyond its largest size", one.name, kind.name, value), where(one.name),
-                  fmt::format("give a number up to {}", one.largest), code);
+    require_in(one.range(), kind, one.name, amplitude[k], where(one.name), code);
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
     const ShapeTraits& one = kind.shapes[k];
@@ -108,9 +113,7 @@ void check_sizes(const Effect& effect, const std::function<std::string(std::stri
     if (one.scale == ShapeScale::logs && !(shape[k] >= 1 && shape[k] == std::floor(shape[k])))
       throw Error(fmt::format("{} of {} is {}, which is no number of a log", one.name, kind.name, shape[k]),
                   where(one.name), "give the number of the log in which it acts, from 1", code);
-    if (one.positive && choice.empty() && !(shape[k] > 0))
-      throw Error(fmt::format("{} of {} must be positive", one.name, kind.name), where(one.name),
-                  "give a number above 0", code);
+    if (choice.empty()) require_in(one.range, kind, one.name, shape[k], where(one.name), code);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "deltadyn/runtime/workspace.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
 
@@ -58,8 +58,8 @@ bool WorkspaceSampler::regular(const Eigen::VectorXd& q) const {
   Eigen::MatrixXd J(n, n);
   if (robot_.jacobian(q, J) != Status::ok) return false;
   const auto plate = static_cast<Eigen::Index>(robot_.description().limbs.size());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.topLeftCorner(plate, plate));
-  return svd.singularValues()(plate - 1) * kLargestCondition > svd.singularValues()(0);
+  const Eigen::VectorXd sizes = dense::singular_values(J.topLeftCorner(plate, plate));
+  return sizes(plate - 1) * kLargestCondition > sizes(0);
 }
 
 void WorkspaceSampler::draw_task(TaskState& task) {

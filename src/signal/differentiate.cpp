@@ -1,10 +1,10 @@
 #include "deltadyn/signal/differentiate.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
@@ -32,7 +32,7 @@ Eigen::VectorXd derivative_weights(int points, int degree, int derivative, doubl
   // The coefficient of the wanted power is e' (A'A)^-1 A' x; its weights are the least-norm solution of A' w = e.
   Eigen::VectorXd unit = Eigen::VectorXd::Zero(degree + 1);
   unit(derivative) = factor;
-  return powers.transpose().completeOrthogonalDecomposition().solve(unit);
+  return dense::least_norm(powers.transpose(), unit);
 }
 
 Eigen::MatrixXd savitzky_golay(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_time_s, int derivative,

@@ -146,6 +146,25 @@ TYPED_TEST(EffectFeedForwardOf, SaysWhyAnEffectCannotAct) {
   EXPECT_EQ(few.add(this->bristles()), EffectRefusal::not_in_list);
 }
 
+TYPED_TEST(EffectFeedForwardOf, RefusesAmplitudesAndShapesBeyondTheirRange) {
+  auto& bench = this->bench_;
+  auto control = bench.template control<double, 1>();
+  for (const Effect& effect : bench.acting_effects()) {
+    const EffectKind& kind = effect_kind(effect.id);
+    for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
+      EffectRow row = bench.row_of(effect);
+      row.amplitude[k] = kind.amplitudes[k].positive() ? -row.amplitude[k] : 1.01 * kind.amplitudes[k].largest;
+      EXPECT_EQ(control.add(row), EffectRefusal::bad_number) << this->name(effect);
+    }
+    for (std::size_t k = 0; k < kind.shapes.size(); ++k) {
+      if (!std::isfinite(kind.shapes[k].range.highest)) continue;
+      EffectRow row = bench.row_of(effect);
+      row.shape[k] = 1.01 * kind.shapes[k].range.highest;
+      EXPECT_EQ(control.add(row), EffectRefusal::bad_number) << this->name(effect);
+    }
+  }
+}
+
 TYPED_TEST(EffectFeedForwardOf, GivesTheEncodersPositionForATask) {
   auto& bench = this->bench_;
   if (!kHasPlate<TypeParam>) return;

@@ -4,12 +4,12 @@
 /// the installed tools.
 
 #include <CLI/CLI.hpp>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/summary.hpp"
+#include "deltadyn/runtime/dense.hpp"
 
 #include "examples/study.hpp"
 #include "tool_support.hpp"
@@ -189,7 +189,7 @@ ExitCode run_study(const std::string& folder, Summary& summary) {
   A.col(0) = identified.qd.col(last);
   A.col(1) = identified.qd.col(last).array().sign();
   const VectorXd rest = (identified.tau - identified.model).col(last);
-  const Eigen::Vector2d change = A.colPivHouseholderQr().solve(rest);
+  const VectorXd change = dense::least_norm(A, rest);
   const double viscous_factor = 1 + change(0) / viscous, coulomb_factor = 1 + change(1) / coulomb;
   fmt::print("by hand: viscous x 5, Coulomb x 0.75; least squares on the slow log itself: x {:.2f}, x {:.2f}\n",
              viscous_factor, coulomb_factor);

@@ -3,7 +3,6 @@
 /// exactly. Run by surrogate.sh, which makes trajectory, logs and identifications with the installed tools.
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "deltadyn/identification/consistent_fit.hpp"
 #include "deltadyn/io/log_file.hpp"
 #include "deltadyn/io/summary.hpp"
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
 #include "examples/study.hpp"
@@ -55,7 +55,7 @@ Terms terms_along(const Robot& robot, VectorXd p, const Log& motion) {
     terms.coriolis.row(k) = moving - gravity;
     terms.gravity.row(k) = gravity;
     terms.acceleration.row(k) = M * qdd;
-    terms.positive_definite = terms.positive_definite && M.llt().info() == Eigen::Success;
+    terms.positive_definite = terms.positive_definite && dense::cholesky(M).positive_definite;
     terms.M.push_back(M);
   }
   return terms;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -23,11 +22,19 @@ struct EffectKey {
   std::string name, unit;  ///< unit with the catalogue's placeholders
   bool amplitude = true;   ///< else a shape
   Eigen::Index index = 0;  ///< among the amplitudes or the shapes
-  double lower = -std::numeric_limits<double>::infinity();
-  bool above = false;               ///< above `lower`, not at it
+  Range range;
   std::vector<double> usual;        ///< values that are common; empty if that depends on the robot
   double otherwise = std::nan("");  ///< value if left out; NaN: must be given
 };
+
+/// "above 0", "1 to 6"; empty: every number.
+inline std::string range_text(const Range& range) {
+  if (range.lowest == 0 && range.open)
+    return range.highest < 1e3 ? fmt::format("above 0, up to {}", range.highest) : "above 0";
+  if (range.lowest == 0 && range.highest >= 1e3) return "not negative";
+  if (range.lowest < 0 && !(range.highest < 1e3)) return "";
+  return fmt::format("{} to {}", range.lowest, range.highest);
+}
 
 /// A shape that is the amplitude, too (`tied`), is one key.
 inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
@@ -37,7 +44,7 @@ inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
     key.name = kind.amplitudes[k].name;
     key.unit = kind.amplitudes[k].unit;
     key.index = static_cast<Eigen::Index>(k);
-    if (kind.amplitudes[k].positive()) key.lower = 0;
+    key.range = kind.amplitudes[k].range();
     if (kind.amplitudes.size() > 1) key.otherwise = 0;
     keys.push_back(key);
   }
@@ -48,10 +55,7 @@ inline std::vector<EffectKey> effect_keys(const EffectKind& kind) {
     key.unit = shape.unit;
     key.amplitude = false;
     key.index = static_cast<Eigen::Index>(k);
-    if (shape.positive) {
-      key.lower = 0;
-      key.above = true;
-    }
+    if (shape.scale != ShapeScale::choice && shape.scale != ShapeScale::logs) key.range = shape.range;
     const bool as_it_stands = shape.scale == ShapeScale::absolute || shape.scale == ShapeScale::choice;
     if (as_it_stands && shape.count <= 4) key.usual = start_values(shape);
     key.otherwise = shape.otherwise;
@@ -120,10 +124,6 @@ inline Effect parse_effect(const std::string& text, const RobotDescription& robo
         std::find_if(keys.begin(), keys.end(), [&](const EffectKey& each) { return each.name == name_of_key; });
     if (key == keys.end())
       throw Error("the effect " + name + " has no '" + name_of_key + "'", where, "it has " + known, ExitCode::usage);
-    if (key->above && !(value > key->lower))
-      throw Error(name_of_key + " must be positive", where, "give a number above 0", ExitCode::usage);
-    if (!(value >= key->lower))
-      throw Error(name_of_key + " cannot be negative", where, "give a positive number", ExitCode::usage);
     (key->amplitude ? effect.amplitude : effect.shape)(key->index) = value;
   }
   // One of several amplitudes may be left out, but not all of them.
@@ -181,20 +181,19 @@ inline void list_effects() {
   };
   fmt::print("--effect NAME@JOINT:key=value,...   K counts from 1; [unit of revolute drives | of prismatic drives]\n");
   for (const EffectKind& kind : effect_catalogue()) {
-    fmt::print("\n{}{}  {}\n  {}\n", kind.name, kind.alias.empty() ? "" : fmt::format(" (also {})", kind.alias),
-               place(kind.place), kind.meaning);
+    fmt::print("\n{}{}  {}\n  {}\n  shows as: {}\n", kind.name,
+               kind.alias.empty() ? "" : fmt::format(" (also {})", kind.alias), place(kind.place), kind.meaning,
+               kind.shows);
     for (const EffectKey& key : effect_keys(kind)) {
       const std::string unit = unit_of_any_drive(key.unit);
       std::string text = fmt::format("    {:<24} {:<16}", key.name, unit.empty() ? "" : "[" + unit + "]");
       std::vector<std::string> notes;
-      if (key.above)
-        notes.emplace_back("above 0");
-      else if (key.lower == 0)
-        notes.emplace_back("not negative");
+      notes.push_back(range_text(key.range));
       std::string usual;
       for (const double value : key.usual) usual += fmt::format("{}{:.4g}", usual.empty() ? "" : ", ", value);
       if (!usual.empty()) notes.push_back("e.g. " + usual);
       if (!std::isnan(key.otherwise)) notes.push_back(fmt::format("{:.4g} if left out", key.otherwise));
+      std::erase(notes, "");
       for (std::size_t k = 0; k < notes.size(); ++k) text += (k > 0 ? "; " : " ") + notes[k];
       while (!text.empty() && text.back() == ' ') text.pop_back();
       fmt::print("{}\n", text);

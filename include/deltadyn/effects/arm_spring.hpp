@@ -15,7 +15,7 @@ struct ArmSpring : JointLaw {
     t.effect_class = EffectClass::pose_force;
     t.place = EffectPlace::limb_or_all;
     t.amplitudes = {{"stiffness", "{F}/{x}", Sign::positive}};
-    t.shapes = {ShapeTraits("zero", "{x}", ShapeScale::place).among({-1.5, -0.75, 0, 0.75, 1.5})};
+    t.shapes = {ShapeTraits("zero", "{x}", ShapeScale::place).among({-1.5, -0.75, 0, 0.75, 1.5}).within(-100, 100)};
     t.form = {0.03, 3e-3, 3e-3};  // springs are not quite straight, as `hose_force`
     t.meaning = "a spring between base and arm pulls the drive";
     t.shows = "grows in proportion to the drive's position";

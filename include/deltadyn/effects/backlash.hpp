@@ -22,7 +22,7 @@ struct Backlash : JointMemory {
     t.name = "backlash";
     t.effect_class = EffectClass::reversal_memory;
     t.amplitudes = {{"share", "", Sign::positive, 1.0}};
-    t.shapes = {ShapeTraits("gap", "{x}", ShapeScale::displacement).from(5e-4, 0.05, 6)};
+    t.shapes = {ShapeTraits("gap", "{x}", ShapeScale::displacement).from(5e-4, 0.05, 6).up_to(1)};
     t.memory = true;
     t.form = {0.03, 0.25, 0.06};
     t.meaning = "the drive's gear has play";

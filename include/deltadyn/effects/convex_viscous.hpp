@@ -14,7 +14,10 @@ struct ConvexViscous : JointLaw {
     EffectTraits t;
     t.name = "convex_viscous";
     t.amplitudes = {{"friction", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("exponent", "").among({1.5, 2, 3}).searched({ShapeSearch::by_difference, -0.5, 0.7, 1.2})};
+    t.shapes = {ShapeTraits("exponent", "")
+                    .among({1.5, 2, 3})
+                    .within(1, 6)
+                    .searched({ShapeSearch::by_difference, -0.5, 0.7, 1.2})};
     t.meaning = "the drive's friction grows faster than its speed";
     t.shows = "excess of friction at high speed";
     t.remedy = "keep it as a feed-forward term; look at the oil level or a fan on the motor shaft";

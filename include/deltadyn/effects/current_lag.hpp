@@ -20,7 +20,7 @@ struct CurrentLag : RecordedChange {
     t.name = "current_lag";
     t.effect_class = EffectClass::phase;
     t.place = EffectPlace::drive_or_robot;
-    t.amplitudes = {{"time_constant", "s", Sign::positive}};
+    t.amplitudes = {{"time_constant", "s", Sign::positive, 1.0}};
     t.shapes = {ShapeTraits("time_constant", "s").from(2e-4, 0.015, 10),
                 ShapeTraits("recorded", "", ShapeScale::choice).among({0, 1})};
     t.tied = true;

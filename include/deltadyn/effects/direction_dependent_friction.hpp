@@ -22,7 +22,7 @@ struct DirectionDependentFriction : JointLaw {
     t.name = "direction_dependent_friction";
     t.amplitudes = {
         {"coulomb_difference", "{F}"}, {"viscous_difference", "{F}*s/{x}"}, {"dead_zone", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.01, 0.16, 5)};
+    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.01, 0.16, 5).up_to(1e3)};
     t.by_direction = true;
     t.special_cases = {"asymmetric_coulomb", "asymmetric_viscous"};
     // Its four free numbers follow what is not straight in friction of one difference, too

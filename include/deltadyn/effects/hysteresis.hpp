@@ -18,8 +18,8 @@ struct Hysteresis : JointMemory {
     t.name = "hysteresis";
     t.effect_class = EffectClass::reversal_memory;
     t.amplitudes = {{"torque", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("displacement", "{x}", ShapeScale::range).from(0.1, 0.6, 4),
-                ShapeTraits("exponent", "").among({1, 2}).searched({ShapeSearch::fixed})};
+    t.shapes = {ShapeTraits("displacement", "{x}", ShapeScale::range).from(0.1, 0.6, 4).up_to(10),
+                ShapeTraits("exponent", "").among({1, 2}).within(1, 10).searched({ShapeSearch::fixed})};
     t.memory = true;
     t.form = {0.03, 0.25, 0.06};
     t.meaning = "the drive's torque runs through a loop over its position (flexspline, belt, cable)";

@@ -17,9 +17,9 @@ struct JointElasticity : ElasticJoint {
     EffectTraits t;
     t.name = "joint_elasticity";
     t.effect_class = EffectClass::inertia_like;
-    t.amplitudes = {{"inertia_over_stiffness", "s^2", Sign::positive}};
+    t.amplitudes = {{"inertia_over_stiffness", "s^2", Sign::positive, 0.1}};
     t.shapes = {ShapeTraits("encoder", "", ShapeScale::choice).among({0, 1}).else_is(0),
-                ShapeTraits("motor_share", "").among({0.4}).else_is(0.4)};
+                ShapeTraits("motor_share", "").among({0.4}).within(0.01, 0.99).else_is(0.4)};
     t.form = {0.15, 0.06, 0.06};  // the first term of a series that converges slowly
     t.meaning = "the drive's gear or arm yields like a spring";
     t.shows = "error that grows with the frequency squared";

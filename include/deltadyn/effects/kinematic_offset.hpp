@@ -16,7 +16,7 @@ struct KinematicOffset : MachineChange {
     t.name = "kinematic_offset";
     t.effect_class = EffectClass::pose_force;
     t.place = EffectPlace::limb;
-    t.amplitudes = {{"error", "SI"}};
+    t.amplitudes = {{"error", "SI", Sign::either, 1.0}};
     t.shapes = {ShapeTraits("kind", "", ShapeScale::choice).among({0, 1, 2})};
     t.form = {0.03, 3e-3, 3e-3};  // the first term of a series
     t.meaning = "a length or a home position is not what the robot file says (kind 0 home, 1 arm, 2 strut)";

@@ -13,7 +13,7 @@ struct Payload : PlateForce {
     t.name = "payload";
     t.effect_class = EffectClass::load;
     t.place = EffectPlace::platform;
-    t.amplitudes = {{"mass", "kg", Sign::positive}};
+    t.amplitudes = {{"mass", "kg", Sign::positive, 1e4}};
     t.shapes = {ShapeTraits("log", "", ShapeScale::logs)};
     t.form = {0.01, 5e-4, 5e-4};  // linear in what is known
     t.meaning = "a mass on the plate in some of the logs only";

@@ -15,7 +15,8 @@ struct PositionDependentFriction : JointLaw {
     t.name = "position_dependent_friction";
     t.effect_class = EffectClass::position_periodic;
     t.amplitudes = {{"cosine", "{F}"}, {"sine", "{F}"}};
-    t.shapes = {ShapeTraits("n", "1/{x}", ShapeScale::waves).among({1, 10}).searched({ShapeSearch::by_difference})};
+    t.shapes = {
+        ShapeTraits("n", "1/{x}", ShapeScale::waves).among({1, 10}).up_to(1e4).searched({ShapeSearch::by_difference})};
     t.meaning = "the drive's Coulomb friction varies over its position";
     t.shows = "periodic in the position, flips with the direction";
     t.remedy = "look for an eccentric wheel or uneven preload";

@@ -14,8 +14,8 @@ struct Presliding : JointMemory {
     t.name = "presliding";
     t.effect_class = EffectClass::reversal_memory;
     t.amplitudes = {{"friction", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("displacement", "{x}", ShapeScale::displacement).from(3e-4, 0.08, 7),
-                ShapeTraits("damping", "s").among({0}).searched({ShapeSearch::fixed}).else_is(0)};
+    t.shapes = {ShapeTraits("displacement", "{x}", ShapeScale::displacement).from(3e-4, 0.08, 7).up_to(1),
+                ShapeTraits("damping", "s").among({0}).within(0, 10).searched({ShapeSearch::fixed}).else_is(0)};
     t.memory = true;
     t.form = {0.03, 0.25, 0.06};
     t.role = Role::bristle;

@@ -19,8 +19,8 @@ struct ShearThinning : JointLaw {
     EffectTraits t;
     t.name = "shear_thinning";
     t.amplitudes = {{"friction", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.01, 1.0, 7),
-                ShapeTraits("exponent", "").among({0, 0.3, 0.5, 0.7}).searched({ShapeSearch::fixed})};
+    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.01, 1.0, 7).up_to(1e3),
+                ShapeTraits("exponent", "").among({0, 0.3, 0.5, 0.7}).within(0, 0.99).searched({ShapeSearch::fixed})};
     t.meaning =
         "the drive's friction bends over: it lacks friction at low speed beside a straight line (grease that thins)";
     t.shows = "deficit of friction at low speed";

@@ -16,8 +16,8 @@ struct Stribeck : JointLaw {
     EffectTraits t;
     t.name = "stribeck";
     t.amplitudes = {{"friction", "{F}", Sign::positive}};
-    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.004, 0.4, 9),
-                ShapeTraits("exponent", "").among({1, 2}).searched({ShapeSearch::fixed})};
+    t.shapes = {ShapeTraits("rate", "{x}/s", ShapeScale::largest_rate).from(0.004, 0.4, 9).up_to(1e3),
+                ShapeTraits("exponent", "").among({1, 2}).within(0.1, 10).searched({ShapeSearch::fixed})};
     t.meaning = "the drive has more friction at low speed than Coulomb's law says (Stribeck effect)";
     t.shows = "excess of friction at low speed";
     t.remedy = "keep it as a feed-forward term; check the lubricant if it is large";

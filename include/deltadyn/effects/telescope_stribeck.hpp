@@ -12,8 +12,8 @@ struct TelescopeStribeck : JointLaw {
     t.name = "telescope_stribeck";
     t.place = EffectPlace::telescope;
     t.amplitudes = {{"friction", "N", Sign::positive}};
-    t.shapes = {ShapeTraits("rate", "m/s", ShapeScale::largest_rate).from(0.004, 0.4, 7),
-                ShapeTraits("exponent", "").among({1, 2}).searched({ShapeSearch::fixed})};
+    t.shapes = {ShapeTraits("rate", "m/s", ShapeScale::largest_rate).from(0.004, 0.4, 7).up_to(1e3),
+                ShapeTraits("exponent", "").among({1, 2}).within(0.1, 10).searched({ShapeSearch::fixed})};
     t.meaning = "the telescope bar has more friction at low speed";
     t.shows = "follows the sign of the bar's rate";
     t.remedy = "lubricate the bar";

@@ -15,7 +15,7 @@ struct ThermalDrift : JointLaw {
     t.name = "thermal_drift";
     t.effect_class = EffectClass::drift;
     t.amplitudes = {{"viscous", "{F}*s/{x}", Sign::positive}};
-    t.shapes = {ShapeTraits("time_constant", "s").from(1.5, 60, 6)};
+    t.shapes = {ShapeTraits("time_constant", "s").from(1.5, 60, 6).up_to(1e6)};
     t.meaning = "the drive's viscous friction falls while it warms up";
     t.shows = "slow trend in proportion to the speed";
     t.remedy = "warm the drives up before recording";

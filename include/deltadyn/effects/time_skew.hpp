@@ -16,7 +16,7 @@ struct TimeSkew : RecordedChange {
     t.name = "time_skew";
     t.effect_class = EffectClass::phase;
     t.place = EffectPlace::drive_or_robot;
-    t.amplitudes = {{"delay", "s"}};
+    t.amplitudes = {{"delay", "s", Sign::either, 1.0}};
     t.shapes = {ShapeTraits("delay", "s").from_both_signs(2e-4, 0.012, 9)};
     t.tied = true;
     t.form = {0.03, 0.06, 0.06};

@@ -15,8 +15,10 @@ struct TorqueRipple : JointLaw {
     t.name = "torque_ripple";
     t.effect_class = EffectClass::position_periodic;
     t.amplitudes = {{"cosine", "{F}"}, {"sine", "{F}"}};
-    t.shapes = {
-        ShapeTraits("n", "1/{x}", ShapeScale::waves).among({1, 60}).searched({ShapeSearch::by_difference, 0, 0, 1})};
+    t.shapes = {ShapeTraits("n", "1/{x}", ShapeScale::waves)
+                    .among({1, 60})
+                    .up_to(1e5)
+                    .searched({ShapeSearch::by_difference, 0, 0, 1})};
     t.role = Role::wave;
     t.meaning = "the drive's torque ripples over its position (cogging, tooth meshing)";
     t.shows = "periodic in the position";

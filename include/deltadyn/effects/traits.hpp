@@ -74,6 +74,18 @@ struct ShapeSearch {
   double least = -std::numeric_limits<double>::infinity();
 };
 
+/// The numbers that a parameter can have.
+struct Range {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool open = false;  ///< `lowest` itself is not among them
+
+  /// NaN is in no range.
+  [[nodiscard]] constexpr bool holds(double value) const {
+    return value >= lowest && value <= highest && !(open && value == lowest);
+  }
+};
+
 /// A parameter in which the effect is not linear.
 struct ShapeTraits {
   std::string_view name;
@@ -83,7 +95,7 @@ struct ShapeTraits {
   Grid grid = Grid::listed;
   double start[8] = {};  ///< start values; low and high end of a logarithmic grid
   int count = 0;         ///< of the start values of one sign
-  bool positive = false;
+  Range range;           ///< above 0 where all start values are
   ShapeSearch search;
   /// What holds where files and flags do not say; NaN: they must
   double otherwise = std::numeric_limits<double>::quiet_NaN();
@@ -99,22 +111,29 @@ struct ShapeTraits {
     start[0] = low;
     start[1] = high;
     count = points;
-    positive = true;
-    return *this;
+    return above_zero(true);
   }
   constexpr ShapeTraits& from_both_signs(double low, double high, int points) {
     from(low, high, points);
     grid = Grid::logarithmic_both_signs;
-    positive = false;
-    return *this;
+    return above_zero(false);
   }
   constexpr ShapeTraits& among(std::initializer_list<double> values) {
     count = 0;
-    positive = true;
+    bool positive = true;
     for (const double value : values) {
       start[count++] = value;
       positive = positive && value > 0;
     }
+    return above_zero(positive);
+  }
+  /// Both ends are allowed. Beyond them the law makes no sense, or a unit is wrong.
+  constexpr ShapeTraits& within(double low, double high) {
+    range = {low, high, false};
+    return *this;
+  }
+  constexpr ShapeTraits& up_to(double high) {
+    range.highest = high;
     return *this;
   }
   constexpr ShapeTraits& searched(ShapeSearch how) {
@@ -123,6 +142,12 @@ struct ShapeTraits {
   }
   constexpr ShapeTraits& else_is(double value) {
     otherwise = value;
+    return *this;
+  }
+
+ private:
+  constexpr ShapeTraits& above_zero(bool is) {
+    range = is ? Range{0, range.highest, true} : Range{};
     return *this;
   }
 };
@@ -134,10 +159,12 @@ struct AmplitudeTraits {
   std::string_view name;
   std::string_view unit;     ///< as in ShapeTraits
   Sign sign = Sign::either;  ///< positive: physics fixes it
-  /// Largest size that makes sense; of a force: no larger than the joint's torque in the logs, too
-  double largest = 1e300;
+  /// Largest size that makes sense, in a diagnosis that of a force no larger than the joint's torque in the logs, too.
+  /// The default is beyond every machine in SI units, and catches a number in others.
+  double largest = 1e6;
 
   [[nodiscard]] constexpr bool positive() const { return sign == Sign::positive; }
+  [[nodiscard]] constexpr Range range() const { return {positive() ? 0 : -largest, largest, false}; }
 };
 
 /// A few constants in a row, without heap.

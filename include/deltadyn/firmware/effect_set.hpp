@@ -136,13 +136,20 @@ class EffectSet {
     T gain = T(1);
   };
 
-  /// Which shape parameters must be positive, known to the compiler.
+  /// What the shape parameters can be, and the amplitudes, known to the compiler.
   template <class E>
-  static constexpr std::array<bool, kMostShapes> positive_shapes() {
+  static constexpr std::array<Range, kMostShapes> shape_ranges() {
     const EffectTraits traits = E::traits();
-    std::array<bool, kMostShapes> positive{};
-    for (std::size_t k = 0; k < traits.shapes.size(); ++k) positive[k] = traits.shapes[k].positive;
-    return positive;
+    std::array<Range, kMostShapes> ranges{};
+    for (std::size_t k = 0; k < traits.shapes.size(); ++k) ranges[k] = traits.shapes[k].range;
+    return ranges;
+  }
+  template <class E>
+  static constexpr std::array<Range, kMostAmplitudes> amplitude_ranges() {
+    const EffectTraits traits = E::traits();
+    std::array<Range, kMostAmplitudes> ranges{};
+    for (std::size_t k = 0; k < traits.amplitudes.size(); ++k) ranges[k] = traits.amplitudes[k].range();
+    return ranges;
   }
 
   template <class E>
@@ -156,14 +163,15 @@ class EffectSet {
     term.id = row.id;
     term.role = E::traits().role;
     term.joint = row.joint;
-    constexpr std::array<bool, kMostShapes> positive = positive_shapes<E>();
+    constexpr auto shapes = shape_ranges<E>();
+    constexpr auto amplitudes = amplitude_ranges<E>();
     for (std::size_t k = 0; k < kMostShapes; ++k) {
       term.shape[k] = static_cast<T>(row.shape[k]);
-      if (!is_finite(term.shape[k]) || (positive[k] && !(term.shape[k] > T(0)))) return EffectRefusal::bad_number;
+      if (!is_finite(term.shape[k]) || !shapes[k].holds(row.shape[k])) return EffectRefusal::bad_number;
     }
     for (std::size_t k = 0; k < kMostAmplitudes; ++k) {
       term.amplitude[k] = static_cast<T>(row.amplitude[k]);
-      if (!is_finite(term.amplitude[k])) return EffectRefusal::bad_number;
+      if (!is_finite(term.amplitude[k]) || !amplitudes[k].holds(row.amplitude[k])) return EffectRefusal::bad_number;
     }
     if constexpr (kIs<E, MachineChange> && has_any_place<Robot>(E::traits().place)) {
       ChangedGeometry<T, Robot> changed = machine;

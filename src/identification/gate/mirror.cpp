@@ -1,10 +1,10 @@
 #include "mirror.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 namespace deltadyn::gate {
@@ -54,7 +54,7 @@ Eigen::VectorXd solve(const Rows& rows, const std::vector<Eigen::VectorXd>& tau,
   const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
   scaled.diagonal().array() += kMirrorRidge;
-  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
+  return scale.asDiagonal() * dense::solve_symmetric(scaled, Eigen::VectorXd(scale.asDiagonal() * b));
 }
 
 DriveFit figures_of(const Eigen::VectorXd& e) {

@@ -1,9 +1,9 @@
 #include "timing_problem.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
 #include "../least_squares.hpp"
@@ -96,7 +96,7 @@ Solution TimingProblem::solve(const Freedom& free, const Eigen::VectorXd& start)
   for (int pass = 0; pass < 30; ++pass) {
     linearise(free, out.theta, r, J, Z);
     if (free.parameters == 0) break;
-    const Eigen::VectorXd step = (Z.transpose() * J).colPivHouseholderQr().solve(-Z.transpose() * r);
+    const Eigen::VectorXd step = dense::solve_square(Z.transpose() * J, Eigen::VectorXd(-Z.transpose() * r));
     // Half a scan step at most: the torque is only locally linear in its delay.
     const double size = step.cwiseAbs().maxCoeff();
     out.theta += step * std::min(1.0, 2 * kScanStep_s / std::max(size, 1e-300));
@@ -134,7 +134,7 @@ std::pair<double, double> TimingProblem::curvature(const Eigen::MatrixXd& delay,
   project_out(all);
   const Eigen::VectorXd r = all.col(0);
   const Eigen::MatrixXd J = all.middleCols(1, 2), Z = all.rightCols(2);
-  const Eigen::VectorXd step = (Z.transpose() * J).partialPivLu().solve(Z.transpose() * r);
+  const Eigen::VectorXd step = dense::solve_square(Z.transpose() * J, Eigen::VectorXd(Z.transpose() * r));
   return {step(1), deviations(r - J * step, J, Z)(1)};
 }
 
@@ -173,10 +173,8 @@ void TimingProblem::make_basis() {
   }
   const Eigen::VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
   A *= norm.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-  qr.setThreshold(1e-9);
-  basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(total_, qr.rank());
-  qr_ = std::move(qr);
+  qr_ = dense::PivotedQr(A, 1e-9);
+  basis_ = qr_.basis();
   column_norm_ = norm;
 }
 
@@ -324,7 +322,7 @@ void TimingProblem::reweigh(double delay) {
 Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen::MatrixXd& J,
                                           const Eigen::MatrixXd& Z) const {
   const double variance = r.squaredNorm() / static_cast<double>(std::max<Index>(1, total_ - basis_.cols()));
-  const Eigen::MatrixXd inverse = (Z.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = dense::pseudo_inverse(Z.transpose() * J);
   const Eigen::MatrixXd covariance =
       inverse * (Z.transpose() * Z) * inverse.transpose() * (std::max(variance, 1e-30) * memory_);
   const Index Q = basis_.cols(), G = J.cols();
@@ -348,7 +346,7 @@ Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen:
   for (int p = 0; p < kParts; ++p) {
     const Eigen::MatrixXd rest = total - part[static_cast<std::size_t>(p)];
     const Eigen::MatrixXd H = rest.leftCols(Q + G);
-    const Eigen::VectorXd solution = H.partialPivLu().solve(rest.col(Q + G));
+    const Eigen::VectorXd solution = dense::solve_square(H, Eigen::VectorXd(rest.col(Q + G)));
     shifts.col(p) = -solution.tail(G);
   }
   const Eigen::VectorXd mean = shifts.rowwise().mean();

@@ -3,10 +3,11 @@
 /// \file
 /// The torque of a sample as a function of its delay and lag against the positions, base parameters eliminated.
 
-#include <Eigen/QR>
 #include <functional>
 #include <utility>
 #include <vector>
+
+#include "deltadyn/runtime/dense.hpp"
 
 #include "rows.hpp"
 
@@ -121,7 +122,7 @@ class TimingProblem {
   Eigen::VectorXd weight_;
   double memory_ = 1;
   Eigen::MatrixXd basis_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  dense::PivotedQr qr_;
   Eigen::VectorXd column_norm_;
   std::vector<std::vector<Eigen::VectorXd>> recorded_;  ///< torque of each drive in each stretch
 };

@@ -1,8 +1,9 @@
 #include "torque_form.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn::gate {
 
@@ -14,14 +15,14 @@ using Eigen::Index;
 constexpr double kRidge = 1e-11;
 
 /// Columns scaled to norm 1, so that the ridge means the same for all.
-Eigen::LDLT<Eigen::MatrixXd> factorise(const Eigen::MatrixXd& A, Eigen::VectorXd& scale) {
+Eigen::MatrixXd scaled_information(const Eigen::MatrixXd& A, Eigen::VectorXd& scale) {
   scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   for (Index k = 0; k < scale.size(); ++k) {
     if (A(k, k) <= 0) scale(k) = 0;
   }
   Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
   scaled.diagonal().array() += kRidge;
-  return scaled.ldlt();
+  return scaled;
 }
 
 }  // namespace
@@ -58,9 +59,9 @@ Eigen::MatrixXd residual_form(const std::vector<TorqueBlock>& blocks, const std:
     form(j, j) = 1.0;
   }
   Eigen::VectorXd scale;
-  const auto solver = factorise(A, scale);
+  const Eigen::MatrixXd scaled = scaled_information(A, scale);
   rhs = scale.asDiagonal() * rhs;
-  const Eigen::MatrixXd solution = solver.solve(rhs);
+  const Eigen::MatrixXd solution = dense::solve_symmetric(scaled, rhs);
   form.noalias() -= rhs.transpose() * solution;
   return form;
 }
@@ -74,9 +75,9 @@ Eigen::VectorXd own_residuals(const std::vector<TorqueBlock>& blocks) {
   for (Index j = 0; j < out.size(); ++j) {
     const TorqueBlock& block = blocks[static_cast<std::size_t>(j)];
     Eigen::VectorXd scale;
-    const auto solver = factorise(block.YtY, scale);
+    const Eigen::MatrixXd scaled = scaled_information(block.YtY, scale);
     const Eigen::VectorXd rhs = scale.asDiagonal() * block.Ytau.col(j);
-    const double left = block.tau2(j) - rhs.dot(Eigen::VectorXd(solver.solve(rhs)));
+    const double left = block.tau2(j) - rhs.dot(dense::solve_symmetric(scaled, rhs));
     // Parameters of its own follow the noise of few rows.
     const double rows = static_cast<double>(block.rows), free = static_cast<double>(block.YtY.cols());
     const double freedom = rows > 1.5 * free ? rows / (rows - free) : 3.0;

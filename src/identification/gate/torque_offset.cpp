@@ -1,10 +1,10 @@
 #include "torque_offset.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 #include "readings.hpp"
@@ -54,9 +54,9 @@ struct Rest {
     }
     const VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
     A *= norm.cwiseInverse().asDiagonal();
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-    offset -= A * MatrixXd(qr.solve(offset));
-    torque -= A * VectorXd(qr.solve(torque));
+    const dense::PivotedQr qr(A);
+    for (auto column : offset.colwise()) column -= A * qr.solve(column);
+    torque -= A * qr.solve(torque);
     return total > 2 * (parameters + drives);
   }
 };
@@ -69,7 +69,7 @@ struct Offsets {
 
 Offsets fit(const Rest& rest, const std::vector<int>& drives) {
   const MatrixXd A = rest.offset(Eigen::all, drives);
-  const MatrixXd inverse = MatrixXd(A.transpose() * A).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd inverse = dense::pseudo_inverse(A.transpose() * A);
   Offsets out;
   out.drives = drives;
   out.value = inverse * (A.transpose() * rest.torque);

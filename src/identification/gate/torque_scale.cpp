@@ -1,9 +1,10 @@
 #include "torque_scale.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn::gate {
 
@@ -49,7 +50,7 @@ std::optional<Estimate> estimate(const Robot& robot, const BaseParameters& base,
     const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
     scaled.diagonal().array() += 1e-11;
-    const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(B, B));
+    const Eigen::MatrixXd inverse = dense::solve_symmetric(scaled, Eigen::MatrixXd(Eigen::MatrixXd::Identity(B, B)));
     out.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
     out.beta = out.covariance * b;
     for (int j = 0; j < n; ++j) {
