@@ -30,7 +30,7 @@ class Convert : public ::testing::TestWithParam<Robot> {
                  format,        "-o",      path("model." + format), "--summary", path("summary.csv")} +
            flags;
   }
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   int extra = 0;  ///< files beside robot and parameters that a test has put there
 };
 

@@ -193,7 +193,7 @@ TEST_P(LabelledLog, IsDiagnosedRight) {
   const std::string data = shared_data("mujoco_delta4/labelled/lag/fast.csv");
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with mujoco_delta4/labelled";
   const std::string logs = data + "/mujoco_delta4/labelled/" + GetParam().folder;
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   // As a user comes to it: with parameters that were fitted although the effect is in the logs. Fitted they are,
   // trusted or not.
   const std::string robot = installed("robots/mujoco_delta4.urdf");
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Diagnosing, LabelledLog,
 TEST(MeasuredAxis, HasViscousFrictionThatDiffersByDirectionAndNothingElse) {
   const std::string data = shared_data("emps/identification.csv");
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with emps/identification.csv";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string robot = installed("robots/emps.urdf");
   succeed({"delta-identify", robot, data + "/emps/identification.csv", "-o", folder.path("params.csv")});
   succeed({"delta-diagnose", robot, "--params", folder.path("params.csv"), data + "/emps/identification.csv",
@@ -257,7 +257,7 @@ class DirtyLogs : public ::testing::Test {
   }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
-  testing::TemporaryFolder folder_;
+  testing_support::TemporaryFolder folder_;
 };
 
 TEST_F(DirtyLogs, MissNothingWhereNothingIsHidden) {
@@ -299,7 +299,7 @@ class DiagnosedDrive : public ::testing::TestWithParam<MeasuredSet> {};
 TEST_P(DiagnosedDrive, IsNamedRightOrUndecided) {
   const std::string data = shared_data("measured/README.md") + "/measured/";
   if (shared_data("measured/README.md").empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string robot = folder.path("robot.urdf");
   succeed(Words{"delta-model", "create", "axis", "-o", robot} + GetParam().robot);
   Words logs;

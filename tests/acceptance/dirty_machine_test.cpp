@@ -38,7 +38,7 @@ class DirtyMachine : public ::testing::Test {
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
   std::string data_;
-  testing::TemporaryFolder folder_;
+  testing_support::TemporaryFolder folder_;
 };
 
 void check_friction(const ParameterTable& found, const ParameterTable& truth) {

@@ -45,7 +45,7 @@ Words excite(const std::string& robot) {
 }
 
 TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed(excite("mujoco_delta4.urdf") + kMainCase +
               Words{"-o", folder.path("t.csv"), "--coefficients", folder.path("c.csv"), "--summary",
                     folder.path("s.csv"), "--starts", "16", "--time-limit-s", "500"},
@@ -81,7 +81,7 @@ TEST(Excite, ReachesTheEfficiencyAndKeepsTheLimits) {
 
 // Everything that is seen of a plan is one judgement: the word of the summary and the line on the terminal.
 TEST(Excite, SlowAndFastSegmentsHaveFilesOfTheirOwnAndRowsAwayFromReversals) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const ToolResult result =
       run(excite("mujoco_delta4.urdf") + kMainCase +
               Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--segments", "2",
@@ -107,7 +107,7 @@ TEST(Excite, SlowAndFastSegmentsHaveFilesOfTheirOwnAndRowsAwayFromReversals) {
 }
 
 TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string truth = installed("logs/mujoco_delta4/truth.csv");
   const Lines lines = to_lines(read_text(truth));
   std::string light = lines[0] + "\n";
@@ -132,7 +132,7 @@ TEST(Excite, APriorThatIsTooLightDoesNotSaturateTheRobot) {
 }
 
 TEST(Excite, SameSeedSameBytesWhateverTheThreads) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const Words flags =
       excite("mujoco_delta4.urdf") + kMainCase + Words{"--starts", "2", "--harmonics", "3", "--time-limit-s", "500"};
   for (const std::string threads : {"1", "3"}) {
@@ -148,7 +148,7 @@ TEST(Excite, SameSeedSameBytesWhateverTheThreads) {
 }
 
 TEST(Excite, CtrlCGivesTheBestMotionSoFar) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const Words words = excite("mujoco_delta4.urdf") + kMainCase +
                       Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--time-limit-s", "500"};
   const RunningTool tool = start(words, {600});
@@ -163,7 +163,7 @@ TEST(Excite, CtrlCGivesTheBestMotionSoFar) {
 }
 
 TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const Words few = {"--starts", "2", "--harmonics", "3", "--time-limit-s", "300"};
   const struct {
     const char* robot;
@@ -194,7 +194,7 @@ TEST(Excite, ServesEveryRobotWithTheLimitsOfItsFile) {
 // Each limit makes sense and slow states that fall inside them exist, but no pose holds itself and its friction with 12
 // N m.
 TEST(Excite, LimitsThatCannotBeMetAreNamedWithExitCodeFour) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const ToolResult result = run(excite("mujoco_delta4.urdf") + Words{"-o",
                                                                      folder.path("t.csv"),
                                                                      "--workspace",
@@ -228,7 +228,7 @@ TEST(Excite, LimitsThatCannotBeMetAreNamedWithExitCodeFour) {
 
 // However short the time, the limits hold, and a motion that shows little is not handed out without a word.
 TEST(Excite, SaysWhenTheTimeWasTooShort) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const ToolResult result = run(excite("mujoco_delta4.urdf") + kMainCase +
                                 Words{"--segments", "2", "--segment-speeds", "0.3,1", "--time-limit-s", "0.01", "-o",
                                       folder.path("t.csv"), "--summary", folder.path("s.csv")});

@@ -40,7 +40,7 @@ ParameterTable scaled(ParameterTable table, double factor) {
 class Identified {
  public:
   /// delta-identify on the two identification logs, then delta-validate on the third, in `folder`.
-  Identified(const testing::TemporaryFolder& folder, const Words& flags) : folder_(folder) {
+  Identified(const testing_support::TemporaryFolder& folder, const Words& flags) : folder_(folder) {
     Words words = {"delta-identify",
                    installed(kRobot),
                    log("identification_fast.csv"),
@@ -71,7 +71,7 @@ class Identified {
   ParameterTable params;
 
  private:
-  const testing::TemporaryFolder& folder_;
+  const testing_support::TemporaryFolder& folder_;
 };
 
 /// Largest ratio of the residual on the verification log to that of the true parameters, less 1, in percent.
@@ -247,7 +247,7 @@ void check_positive_definite(const Pair& pair) {
 class FromPrior : public ::testing::TestWithParam<double> {};
 
 TEST_P(FromPrior, MeetsTheTargets) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const ParameterTable truth = read_parameters(log("truth.csv"));
   write_parameters(folder.path("prior.csv"), scaled(truth, GetParam()));
   const Identified result(folder, {"--prior", folder.path("prior.csv")});
@@ -286,7 +286,7 @@ INSTANTIATE_TEST_SUITE_P(ThirtyPercent, FromPrior, ::testing::Values(0.7, 1.3),
                          [](const auto& one) { return one.param < 1 ? "Below" : "Above"; });
 
 TEST(Identification, OtherPriorsAndMethodsPredictAsWell) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed({"delta-model", "prior", installed(kRobot), "-o", folder.path("nominal.csv")});
   const std::pair<const char*, Words> variants[] = {
       {"nominal prior", {"--prior", folder.path("nominal.csv")}},
@@ -306,7 +306,7 @@ TEST(Identification, OtherPriorsAndMethodsPredictAsWell) {
 }
 
 TEST(Identification, AVeryShortLogGivesAConsistentModelThatIsNotTrusted) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string text = read_text(log("identification_fast.csv"));
   std::size_t end = 0;
   for (int line = 0; line < 700; ++line) end = text.find('\n', end) + 1;
@@ -321,7 +321,7 @@ TEST(Identification, AVeryShortLogGivesAConsistentModelThatIsNotTrusted) {
 
 TEST(Identification, ReportsAreWholePages) {
   if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string identification = folder.path("identification.html"), validation = folder.path("validation.html");
   succeed({"delta-identify", installed(kRobot), log("identification_fast.csv"), log("identification_slow.csv"),
            "--cutoff-hz", "40", "--prior", log("truth.csv"), "-o", folder.path("params.csv"), "--report",
@@ -340,7 +340,7 @@ TEST(Identification, ReportsAreWholePages) {
 }
 
 TEST(Identification, SameInputSameBytesWithAnyNumberOfThreads) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const auto identify = [&](const std::string& threads, const std::string& name) {
     succeed({"delta-identify", installed(kRobot), log("identification_slow.csv"), "--prior", log("truth.csv"),
              "--cutoff-hz", "40", "--threads", threads, "-o", folder.path(name), "--base",
@@ -360,7 +360,7 @@ TEST(Identification, SameInputSameBytesWithAnyNumberOfThreads) {
 }
 
 TEST(Identification, RigidStatesOfTheMuJoCoPlant) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   ParameterTable rigid = read_parameters(log("truth.csv"));
   for (ParameterEntry& entry : rigid.entries) {
     if (entry.name.find("viscous") != std::string::npos || entry.name.find("coulomb") != std::string::npos)
@@ -392,7 +392,7 @@ std::string shared_data(const std::string& name) {
 TEST(PublishedRobots, EmpsAsAnAxis) {
   const std::string data = shared_data("emps/identification.csv");
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with emps/identification.csv";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const ToolResult result =
       succeed({"delta-identify", installed("robots/emps.urdf"), data, "-o", folder.path("params.csv")});
   const ParameterTable params = read_parameters(folder.path("params.csv"));
@@ -410,7 +410,7 @@ TEST(PublishedRobots, EmpsAsAnAxis) {
 TEST(PublishedRobots, TorqueOfTheAutonoxDelta) {
   const std::string data = shared_data("delta_rl5/trajectory1.csv");
   if (data.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with delta_rl5/trajectory1.csv";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed({"delta-validate", installed("robots/delta_rl5.urdf"), "--params", shared_data("delta_rl5/params.csv"), data,
            "--no-filter", "--summary", folder.path("summary.csv")});
   const auto summary = read_summary(folder.path("summary.csv"));

@@ -71,7 +71,7 @@ class Spoilt {
   }
 
  private:
-  testing::TemporaryFolder folder_;
+  testing_support::TemporaryFolder folder_;
   RobotDescription robot_;
   Words logs_;
 };

@@ -88,7 +88,7 @@ TEST_P(MeasuredDrive, IsIdentifiedAndValidated) {
   const std::string train = measured(bench.train), holdout = measured(bench.holdout);
   if (train.empty() || holdout.empty())
     GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured/" << bench.train;
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string robot = folder.path("axis.urdf"), params = folder.path("params.csv"),
                     base = folder.path("base.csv");
   succeed(Words{"delta-model", "create", "axis", "-o", robot} + bench.robot);
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Sets, MeasuredDrive, ::testing::ValuesIn(kBenches),
 TEST(MeasuredDrive, SomebodyPushesItAndTheToolsSaySo) {
   const std::string train = measured("dfki/sac");
   if (train.empty()) GTEST_SKIP() << "DELTADYN_SHARED_DATA names no folder with measured/dfki";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed({"delta-model", "create", "axis", "-o", folder.path("axis.urdf"), "--arm", "0.5"});
   const ToolResult check = run({"delta-log", "check", train, "--robot", folder.path("axis.urdf")});
   EXPECT_NE(check.out.find("pushed from outside"), std::string::npos) << check.out;

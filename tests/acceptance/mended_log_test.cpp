@@ -123,7 +123,7 @@ std::vector<Fault> faults() {
 class MendedLog : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(MendedLog, GivesTheFrictionOfTheMachine) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   std::vector<std::string> logs;
   std::mt19937_64 random(23);
   for (const char* name : {"identification_fast.csv", "identification_slow.csv"}) {

@@ -27,7 +27,7 @@ class Counts : public ::testing::TestWithParam<Count> {};
 
 TEST_P(Counts, AreThoseOfThePaper) {
   const Count& count = GetParam();
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string file = folder.path("info.csv");
   succeed(Words{"delta-model", "info", installed(std::string("robots/") + count.robot), "--summary", file} +
           count.flags);
@@ -59,7 +59,7 @@ std::ostream& operator<<(std::ostream& out, const Type& type) {
 class Create : public ::testing::TestWithParam<Type> {};
 
 TEST_P(Create, ReadsBackToWhatWasAskedFor) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const std::string robot = folder.path("robot.urdf"), summary = folder.path("info.csv"),
                     prior = folder.path("prior.csv");
   succeed(Words{"delta-model", "create"} + GetParam().create + Words{"-o", robot});
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return one.param.name; });
 
 TEST(Create, MakesAnAxis) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   for (const char* kind : {"revolute", "prismatic"}) {
     const std::string robot = folder.path(std::string(kind) + ".urdf"), summary = folder.path("info.csv");
     succeed({"delta-model", "create", "axis", "--drive-kind", kind, "-o", robot});
@@ -130,7 +130,7 @@ TEST(Create, MakesAnAxis) {
 // The advice says the flags that make the same machine: gravity acts along a vertical axis, and at 60 degrees to one
 // that leans by 30.
 TEST(Create, OfAnAxisThatIsNotHorizontalNamesTheGravityThatIsAlike) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const Words create = {"delta-model", "create", "axis", "--arm", "0.3", "-o", folder.path("axis.urdf")};
   for (const auto& [axis, gravity] : {std::pair("0,0,1", "--gravity-direction 0,-1,0"),
                                       std::pair("0,0.8660254037844386,0.5", "--gravity-direction 0,-0.5,-0.866025")}) {
@@ -144,7 +144,7 @@ TEST(Create, OfAnAxisThatIsNotHorizontalNamesTheGravityThatIsAlike) {
 }
 
 TEST(Create, WritesTheShippedFileAgainByteForByte) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed({"delta-model",
            "create",
            "delta4",
@@ -175,7 +175,7 @@ TEST(Create, WritesTheShippedFileAgainByteForByte) {
 
 TEST(Info, DrawsTheWorkspace) {
   if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   succeed({"delta-model", "info", installed("robots/irb360_6_1600.urdf"), "--plot", folder.path("workspace.png")});
   EXPECT_EQ(folder.read("workspace.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(folder.files(), 1);

@@ -213,7 +213,7 @@ TEST_F(VirtualRobot, AnUnstableLoopIsToldAndLeavesNoLog) {
 }
 
 /// A study by its installed script; `run` takes tools from bin/, so the script is named from there.
-std::map<std::string, std::string> study(const testing::TemporaryFolder& folder, const std::string& script) {
+std::map<std::string, std::string> study(const testing_support::TemporaryFolder& folder, const std::string& script) {
   const std::string results = folder.path("results");
   const ToolResult result = run({"../libexec/deltadyn/" + script, results, "--short"}, {600});
   EXPECT_EQ(result.code, 0) << result.out << result.err;
@@ -224,7 +224,7 @@ std::map<std::string, std::string> study(const testing::TemporaryFolder& folder,
 }
 
 TEST(Studies, SurrogateModelMeetsThePapersFigures) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const auto summary = study(folder, "surrogate.sh");
   for (const std::string id : {"id1", "id2"}) {
     figure("friction_percent_" + id, number(summary, "friction_" + id), 0.2);
@@ -247,7 +247,7 @@ TEST(Studies, SurrogateModelMeetsThePapersFigures) {
 }
 
 TEST(Studies, IndustrialRobotNeedsItsSpindleMendedByHand) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const auto summary = study(folder, "industrial.sh");
   figure("rms_spindle_identified", number(summary, "rms_identified_drive4"), 0.25);
   figure("rms_spindle_by_hand", number(summary, "rms_by_hand_drive4"), 0.18);

@@ -50,7 +50,7 @@ class VirtualRobot : public ::testing::Test {
                  "--summary",      path("summary.csv")} +
            flags;
   }
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
 };
 
 }  // namespace deltadyn::acceptance

@@ -143,7 +143,7 @@ class Workshop {
   }
 
  private:
-  testing::TemporaryFolder folder_;
+  testing_support::TemporaryFolder folder_;
 };
 
 }  // namespace deltadyn::acceptance

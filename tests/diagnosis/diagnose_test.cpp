@@ -27,7 +27,7 @@ Log dirty_log(std::uint64_t seed, double stribeck) {
   dirty.base_hz = seed % 2 == 1 ? 0.37 : 0.13;
   Log log = dirty.make();
   log.file = "axis" + std::to_string(seed);
-  const testing::MultiSine motion{dirty.base_hz, dirty.amplitude};
+  const testing_support::MultiSine motion{dirty.base_hz, dirty.amplitude};
   const Eigen::VectorXd v = motion.at(log.t_s, 1, 0.7 * static_cast<double>(seed));
   for (Eigen::Index k = 0; k < v.size(); ++k)
     log.tau(k, 0) += stribeck * std::exp(-std::pow(v(k) / kStribeckRate, 2)) * (v(k) > 0 ? 1 : -1);

@@ -28,7 +28,7 @@ struct Searched {
     const double n = share * 2 * std::numbers::pi / range;
     Eigen::ArrayXd wave = 0.8 * (n * log.q.col(0).array() + 0.3).cos();
     if (friction)
-      wave *= testing::MultiSine{plain.base_hz, plain.amplitude}
+      wave *= testing_support::MultiSine{plain.base_hz, plain.amplitude}
                   .at(log.t_s, 1, 0.7 * static_cast<double>(plain.seed))
                   .array()
                   .sign();

@@ -27,13 +27,13 @@ struct AxisLog {
   [[nodiscard]] Log make() const {
     std::mt19937_64 random(seed);
     NormalDistribution normal;
-    const testing::MultiSine motion{base_hz, amplitude};
+    const testing_support::MultiSine motion{base_hz, amplitude};
     const double phase = 0.7 * static_cast<double>(seed);
     Log log;
     log.file = "axis";
-    log.t_s = testing::times(rate_hz, static_cast<Eigen::Index>(duration_s * rate_hz));
+    log.t_s = testing_support::times(rate_hz, static_cast<Eigen::Index>(duration_s * rate_hz));
     const Eigen::VectorXd v = motion.at(log.t_s, 1, phase);
-    log.q = testing::quantised(motion.at(log.t_s, 0, phase), encoder_bits);
+    log.q = testing_support::quantised(motion.at(log.t_s, 0, phase), encoder_bits);
     log.tau = inertia * motion.at(log.t_s, 2, phase) + viscous * v;
     constexpr int kSteps = 10;
     double z = v(0) > 0 ? 1 : -1;

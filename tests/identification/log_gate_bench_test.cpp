@@ -18,7 +18,7 @@ GateResult examine(const Log& log) {
   return examine_logs(*robot, {log}, {}, {});
 }
 
-std::string told(const GateResult& result) {
+std::string verdict_of(const GateResult& result) {
   std::string text;
   for (const LogFinding& f : result.findings) text += "  [" + f.key + "] " + f.text + "\n";
   return text;
@@ -53,11 +53,11 @@ TEST_P(LogGateBench, RemovesADelayOfSomeSamples) {
     move.seed = ++seed;
     const GateResult result = examine(move.make());
     const LogFinding* found = timing(result);
-    ASSERT_NE(found, nullptr) << told(result);
-    EXPECT_NEAR(found->value, late, 0.6e-3) << told(result);
+    ASSERT_NE(found, nullptr) << verdict_of(result);
+    EXPECT_NEAR(found->value, late, 0.6e-3) << verdict_of(result);
     // A short one beside peaks in the torque may be said only.
     const bool said = found->level == FindingLevel::warning && move.peak_share > 0 && late < 6e-3;
-    EXPECT_TRUE(said || found->level == FindingLevel::mended) << told(result);
+    EXPECT_TRUE(said || found->level == FindingLevel::mended) << verdict_of(result);
   }
 }
 
@@ -90,10 +90,10 @@ TEST(LogGateBenchBand, IsThatOfTheModel) {
         move.seed = ++seed;
         const GateResult result = examine(move.make());
         const LogFinding* found = timing(result);
-        ASSERT_NE(found, nullptr) << told(result);
-        EXPECT_NEAR(found->value, late, std::max(4 * found->std, 0.3e-3)) << told(result);
-        EXPECT_TRUE(late != 0 || found->level == FindingLevel::fine) << told(result);
-        EXPECT_TRUE(late < 0.01 || found->level == FindingLevel::mended) << told(result);
+        ASSERT_NE(found, nullptr) << verdict_of(result);
+        EXPECT_NEAR(found->value, late, std::max(4 * found->std, 0.3e-3)) << verdict_of(result);
+        EXPECT_TRUE(late != 0 || found->level == FindingLevel::fine) << verdict_of(result);
+        EXPECT_TRUE(late < 0.01 || found->level == FindingLevel::mended) << verdict_of(result);
       }
     }
   }

@@ -29,7 +29,7 @@ Eigen::VectorXd truth_of(const Robot& robot, const Recording& how) {
 }
 
 /// A fast log and a slow one, as a drive records them.
-std::vector<Log> recorded(const Robot& robot, const Recording& how = {}) {
+std::vector<Log> recordings_of(const Robot& robot, const Recording& how = {}) {
   std::vector<Log> logs;
   for (const std::uint64_t part : {0U, 1U}) {
     SyntheticOptions synthetic;
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, LogGate, testing::Values("delta3", "linear-delt
 
 TEST_P(LogGate, CallsEveryFaultByItsName) {
   const auto robot = make_robot(delta_description(GetParam()));
-  const std::vector<Log> sound = recorded(*robot);
+  const std::vector<Log> sound = recordings_of(*robot);
   for (const FaultyLog& fault : faulty_logs(robot->description())) {
     std::vector<Log> logs = sound;
     for (Log& log : logs) fault.spoil(log);
@@ -98,7 +98,7 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
         how.encoder_bits = bits;
         how.seed = ++seed;
         const double prior = seed % 2 == 0 ? 0.7 : 1.3;  // 30 % off either way is no fault
-        const GateResult result = examine(*robot, recorded(*robot, how), prior);
+        const GateResult result = examine(*robot, recordings_of(*robot, how), prior);
         for (const LogFinding& f : result.findings) {
           EXPECT_EQ(f.level, FindingLevel::fine)
               << rate << " Hz, noise " << noise << ", " << bits << " bits: " << f.text;
@@ -112,7 +112,7 @@ TEST_P(LogGate, LeavesSoundLogsAlone) {
 // some extent.
 TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
   const auto robot = make_robot(delta_description(GetParam()));
-  const std::vector<Log> sound = recorded(*robot);
+  const std::vector<Log> sound = recordings_of(*robot);
   for (const double share : {0.1, 0.3, 1.0}) {  // of the drive's largest torque, over its range
     for (const bool all : {false, true}) {
       std::vector<Log> logs = sound;
@@ -153,7 +153,7 @@ TEST_P(LogGate, LeavesPickAndPlaceAndStandstillAlone) {
           how.rate_hz = rate;
           how.noise = noise;
           how.seed = seed;
-          logs.push_back(recorded(*robot, how).front());
+          logs.push_back(recordings_of(*robot, how).front());
         }
         const GateResult result = examine(*robot, logs);
         for (const LogFinding& f : result.findings) {
@@ -172,7 +172,7 @@ TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
     Recording how;
     how.seed = ++seed;
     how.fast_hz = 0.6;  // as a planned excitation
-    std::vector<Log> logs = recorded(*robot, how);
+    std::vector<Log> logs = recordings_of(*robot, how);
     const std::vector<Log> sound = logs;
     for (Log& log : logs) make_late(log, delay, 0);
     const GateResult result = examine(*robot, logs);
@@ -192,7 +192,7 @@ TEST_P(LogGate, RemovesADelayAndSaysHowLongItWas) {
 TEST_P(LogGate, FindsALowPassOfTheTorque) {
   const auto robot = make_robot(delta_description(GetParam()));
   for (const double lag : {0.5e-3, 3e-3}) {
-    std::vector<Log> logs = recorded(*robot);
+    std::vector<Log> logs = recordings_of(*robot);
     for (Log& log : logs) make_late(log, 0, lag);
     const GateResult result = examine(*robot, logs);
     const LogFinding* finding = find(result, {"lag", "delay"}, FindingLevel::mended);
@@ -206,7 +206,7 @@ TEST(LogGateDelay, OfOneDriveOrOneLogOnly) {
   Recording other;
   other.seed = 2;
   // In a slow log 3 ms hardly show: both are fast.
-  std::vector<Log> one_drive = recorded(*robot), one_log = {one_drive[0], recorded(*robot, other)[0]};
+  std::vector<Log> one_drive = recordings_of(*robot), one_log = {one_drive[0], recordings_of(*robot, other)[0]};
   one_log[1].file = "another";
   for (Log& log : one_drive) make_late(log, 3e-3, 0, 1);
   const GateResult by_drive = examine(*robot, one_drive);
@@ -226,7 +226,7 @@ TEST_P(LogGate, FindsClocksThatRunApart) {
   const auto robot = make_robot(delta_description(GetParam()));
   Recording how;
   how.noise = 0.03;
-  const std::vector<Log> sound = recorded(*robot, how);
+  const std::vector<Log> sound = recordings_of(*robot, how);
   std::vector<Log> logs = sound;
   constexpr double kRate = 8e-4;
   for (Log& log : logs) {
@@ -247,7 +247,7 @@ TEST_P(LogGate, FindsClocksThatRunApart) {
 
 TEST_P(LogGate, NamesATorqueWhoseZeroIsOff) {
   const auto robot = make_robot(delta_description(GetParam()));
-  std::vector<Log> logs = recorded(*robot);
+  std::vector<Log> logs = recordings_of(*robot);
   for (Log& log : logs) log.tau.col(1).array() += 5;
   const GateResult result = examine(*robot, logs);
   const LogFinding* finding = find(result, {"torque_offset"}, FindingLevel::warning);
@@ -263,7 +263,7 @@ TEST_P(LogGate, NamesTheOffsetsOfAllDrives) {
   const auto robot = make_robot(delta_description(GetParam()));
   for (const Eigen::Vector3d& offsets : {Eigen::Vector3d(1.5, -2, 1), Eigen::Vector3d(3, 3, 3)}) {
     const double unit = robot->description().kind_of_drive(0) == DriveKind::revolute ? 1 : 5;
-    std::vector<Log> logs = recorded(*robot);
+    std::vector<Log> logs = recordings_of(*robot);
     for (Log& log : logs) log.tau.leftCols(3).rowwise() += unit * offsets.transpose();
     const GateResult result = examine(*robot, logs);
     const LogFinding* finding = find(result, {"torque_offset"}, FindingLevel::warning);
@@ -280,7 +280,7 @@ TEST(LogGateScale, IsJudgedBesideATorqueWhoseZeroIsOff) {
   const auto robot = make_robot(delta_description("delta3"));
   const Eigen::VectorXd prior = delta_truth(*robot);
   const Eigen::VectorXd std = (0.02 * prior.cwiseAbs()).cwiseMax(1e-4);
-  std::vector<Log> logs = recorded(*robot);
+  std::vector<Log> logs = recordings_of(*robot);
   for (Log& log : logs) {
     log.tau *= 1.5;
     log.tau.col(1).array() += 5;
@@ -294,7 +294,7 @@ TEST(LogGateScale, IsJudgedBesideATorqueWhoseZeroIsOff) {
 
 TEST(LogGateDelay, StaysInTheLogIfAsked) {
   const auto robot = make_robot(delta_description("delta3"));
-  std::vector<Log> logs = recorded(*robot);
+  std::vector<Log> logs = recordings_of(*robot);
   for (Log& log : logs) make_late(log, 2e-3, 0);
   GateOptions options;
   options.keep_delay = true;
@@ -307,7 +307,7 @@ TEST(LogGateScale, WeighedMassesMakeItCertain) {
   const auto robot = make_robot(delta_description("delta3"));
   const Eigen::VectorXd prior = delta_truth(*robot);
   const Eigen::VectorXd std = (0.02 * prior.cwiseAbs()).cwiseMax(1e-4);
-  std::vector<Log> logs = recorded(*robot);
+  std::vector<Log> logs = recordings_of(*robot);
   EXPECT_FALSE(examine_logs(*robot, logs, prior, std).fault());
   for (Log& log : logs) log.tau *= 1.5;
   const GateResult result = examine_logs(*robot, logs, prior, std);
@@ -336,7 +336,7 @@ TEST(LogGateMirror, TellsLimbsAndYawThatDoNotBelongTogether) {
     how.fast_hz = 0.6;
     how.unbalance = 0.002;
     for (const auto& [yaw, limbs] : {std::pair(true, false), {false, true}, {true, true}, {false, false}}) {
-      std::vector<Log> logs = recorded(*robot, how);
+      std::vector<Log> logs = recordings_of(*robot, how);
       for (Log& log : logs) {
         if (yaw) turn_yaw(log);
         if (limbs) number_clockwise(log);
@@ -358,7 +358,7 @@ TEST(LogGateMirror, NamesBothCausesOfAPlainFault) {
   Recording how;
   how.unbalance = 0.02;
   for (const auto& spoil : {turn_yaw, number_clockwise}) {
-    std::vector<Log> logs = recorded(*robot, how);
+    std::vector<Log> logs = recordings_of(*robot, how);
     for (Log& log : logs) spoil(log);
     const GateResult result = examine(*robot, logs);
     const LogFinding* finding = find(result, {"position_sign"}, FindingLevel::fault);
@@ -380,7 +380,7 @@ TEST(LogGateMirror, IsSilentOnSoundLogs) {
       how.encoder_bits = seed % 2 == 0 ? 16 : 20;
       how.unbalance = seed % 3 == 0 ? 0.005 : 0;
       how.seed = ++seed;
-      const GateResult result = examine(*robot, recorded(*robot, how));
+      const GateResult result = examine(*robot, recordings_of(*robot, how));
       EXPECT_EQ(find(result, {"mirrored"}, FindingLevel::warning), nullptr) << noise << " " << fast_hz << "\n"
                                                                             << told(result);
     }
@@ -419,7 +419,7 @@ TEST(LogGateLoad, AnotherLoadInOneLogIsNoFault) {
   for (int k = 0; k < robot->parameters(); ++k) {
     if (robot->parameter_names()[static_cast<std::size_t>(k)] == "platform.m") heavy(k) += 1.5;
   }
-  std::vector<Log> logs = recorded(*robot);
+  std::vector<Log> logs = recordings_of(*robot);
   SyntheticOptions synthetic;
   synthetic.torque_noise = 0.1;
   synthetic.encoder_step = 1.2e-5;

@@ -66,7 +66,7 @@ TEST(OutsideTorque, IsNotWhatTheModelLacks) {
     how.torque_noise = seed == 6 ? 1.5 : 0.05;
     Log log = how.make();
     const Eigen::VectorXd v =
-        testing::MultiSine{how.base_hz, how.amplitude}.at(log.t_s, 1, 0.7 * static_cast<double>(seed));
+        testing_support::MultiSine{how.base_hz, how.amplitude}.at(log.t_s, 1, 0.7 * static_cast<double>(seed));
     for (Eigen::Index k = 0; k < log.samples(); ++k)
       log.tau(k, 0) += (v(k) > 0 ? 2.0 : -2.0) * std::exp(-std::abs(v(k)) / 0.1);
     EXPECT_TRUE(pushes(*robot, {log}).empty()) << seed;

@@ -14,11 +14,11 @@ namespace {
 
 using namespace testing_support;
 
-std::unique_ptr<Robot> axis() {
+std::unique_ptr<Robot> axis_of_tests() {
   return make_robot(axis_description(DriveKind::revolute));
 }
 
-double value(const Robot& robot, const Eigen::VectorXd& p, const std::string& name) {
+double value_of(const Robot& robot, const Eigen::VectorXd& p, const std::string& name) {
   const auto& names = robot.parameter_names();
   return p(std::find(names.begin(), names.end(), name) - names.begin());
 }
@@ -34,7 +34,7 @@ class Presliding : public ::testing::TestWithParam<double> {};
 
 // The rows near reversals then take part, and friction comes out right.
 TEST_P(Presliding, IsFoundFromTheReversals) {
-  const auto robot = axis();
+  const auto robot = axis_of_tests();
   std::vector<Log> logs;
   for (const std::uint64_t seed : {1U, 2U}) {
     AxisLog log;
@@ -46,8 +46,8 @@ TEST_P(Presliding, IsFoundFromTheReversals) {
   ASSERT_EQ(result.presliding.size(), 1U);
   EXPECT_NEAR(result.presliding[0].displacement, GetParam(), 0.05 * GetParam());
   EXPECT_LT(std::abs(result.presliding[0].displacement - GetParam()), 4 * result.presliding[0].std);
-  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);
-  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.viscous"), 0.8, 0.016);
+  EXPECT_NEAR(value_of(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);
+  EXPECT_NEAR(value_of(*robot, result.fit.p, "drive1.viscous"), 0.8, 0.016);
   EXPECT_LT(result.drives[0].masked_rows, result.drives[0].rows / 20);
 
   AxisLog fresh;
@@ -64,7 +64,7 @@ class BristleDamping : public ::testing::TestWithParam<std::pair<double, double>
 // Its torque about reversals follows the acceleration: unseen, it makes inertia come out too large and the displacement
 // too small.
 TEST_P(BristleDamping, IsFoundAndLeavesTheInertiaAlone) {
-  const auto robot = axis();
+  const auto robot = axis_of_tests();
   const auto [displacement, damping_s] = GetParam();
   std::vector<Log> logs;
   for (const std::uint64_t seed : {11U, 12U}) {
@@ -79,16 +79,16 @@ TEST_P(BristleDamping, IsFoundAndLeavesTheInertiaAlone) {
   EXPECT_NEAR(result.presliding[0].damping_s, damping_s,
               std::max(4 * result.presliding[0].damping_std_s, 0.1 * damping_s));
   EXPECT_NEAR(result.presliding[0].displacement, displacement, 0.05 * displacement);
-  EXPECT_NEAR(value(*robot, result.fit.p, "upper_arm.Iyy"), 0.4, 0.002);
-  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);
-  EXPECT_NEAR(value(*robot, result.fit.p, "drive1.viscous"), 0.8, 0.016);
+  EXPECT_NEAR(value_of(*robot, result.fit.p, "upper_arm.Iyy"), 0.4, 0.002);
+  EXPECT_NEAR(value_of(*robot, result.fit.p, "drive1.coulomb"), 1.5, 0.015);
+  EXPECT_NEAR(value_of(*robot, result.fit.p, "drive1.viscous"), 0.8, 0.016);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bristles, BristleDamping,
                          ::testing::Values(std::pair(1.5e-3, 2e-3), std::pair(4e-3, 1.5e-3), std::pair(1e-2, 4e-3)));
 
 TEST(FindPresliding, NamesNoDampingWhereThereIsNone) {
-  const auto robot = axis();
+  const auto robot = axis_of_tests();
   for (const std::uint64_t seed : {21U, 22U, 23U, 24U}) {
     AxisLog log;
     log.presliding = 3e-3;
@@ -102,7 +102,7 @@ TEST(FindPresliding, NamesNoDampingWhereThereIsNone) {
 }
 
 TEST(FindPresliding, FindsNoneWhereCoulombsLawHolds) {
-  const auto robot = axis();
+  const auto robot = axis_of_tests();
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     AxisLog log;
     log.seed = seed;

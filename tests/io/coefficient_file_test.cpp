@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(CoefficientFile, HoldsExactlyWhatWasGiven) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   const RobotDescription robot = testing_support::delta_description("delta4");
   testing_support::Random random(1);
   std::vector<FourierSeries> segments;

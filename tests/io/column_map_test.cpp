@@ -11,7 +11,7 @@ namespace deltadyn {
 namespace {
 
 using ::testing::HasSubstr;
-using namespace testing;
+using namespace testing_support;
 
 constexpr const char* kChannel = "[[channel]]\ndrive = 1\nquantity = \"torque\"\nsource = \"a\"\n";
 

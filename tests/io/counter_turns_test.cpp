@@ -16,7 +16,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using namespace testing;
+using namespace testing_support;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kCountsPerRad = 20.0 * 8192.0 / (2.0 * kPi);

@@ -10,7 +10,7 @@
 namespace deltadyn {
 namespace {
 
-using ::deltadyn::testing::TemporaryFolder;
+using ::deltadyn::testing_support::TemporaryFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

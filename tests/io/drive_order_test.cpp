@@ -15,7 +15,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using namespace testing;
+using namespace testing_support;
 
 /// Names in the order of the message, the drive that each is, and what is to be said of it.
 struct Joints {

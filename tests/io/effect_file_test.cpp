@@ -21,7 +21,7 @@ class EffectFile : public ::testing::Test {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
   }
-  testing::TemporaryFolder folder_;
+  testing_support::TemporaryFolder folder_;
   RobotDescription robot_ = testing_support::delta_description("delta4");
 };
 

@@ -18,7 +18,7 @@ TEST(RippleRows, ReadBackAsTheyWere) {
   ParameterTable table;
   table.entries.push_back({"drive1.coulomb", 1.0, "N*m"});
   for (const ParameterEntry& row : ripple_rows(ripples, robot)) table.entries.push_back(row);
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   write_parameters(folder.path("p.csv"), table);
   const ParameterTable read = read_parameters(folder.path("p.csv"), robot);
   const std::vector<Ripple> found = ripples_of(read, robot);

@@ -16,7 +16,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using namespace testing;
+using namespace testing_support;
 
 std::string with_comma(std::string text) {
   std::replace(text.begin(), text.end(), '.', ',');

@@ -12,7 +12,7 @@
 namespace deltadyn {
 namespace {
 
-using ::deltadyn::testing::TemporaryFolder;
+using ::deltadyn::testing_support::TemporaryFolder;
 using ::testing::HasSubstr;
 
 RobotDescription axis(DriveKind kind) {

@@ -6,8 +6,6 @@
 namespace deltadyn {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(LogUnits, KnowsUnitsInTheSpellingsOfRecorders) {
   struct Row {
     const char* text;
@@ -16,12 +14,12 @@ TEST(LogUnits, KnowsUnitsInTheSpellingsOfRecorders) {
     double factor;
   };
   for (const Row& row :
-       {Row{"[deg]", Quantity::position, Dimension::angle, kPi / 180},
-        Row{"\xC2\xB0", Quantity::position, Dimension::angle, kPi / 180},
-        Row{"1/min", Quantity::velocity, Dimension::angle, kPi / 30},
+       {Row{"[deg]", Quantity::position, Dimension::angle, std::numbers::pi / 180},
+        Row{"\xC2\xB0", Quantity::position, Dimension::angle, std::numbers::pi / 180},
+        Row{"1/min", Quantity::velocity, Dimension::angle, std::numbers::pi / 30},
         Row{"rad_s2", Quantity::acceleration, Dimension::angle, 1},
         Row{"rad/s^2", Quantity::acceleration, Dimension::angle, 1},
-        Row{"deg/sec", Quantity::velocity, Dimension::angle, kPi / 180},
+        Row{"deg/sec", Quantity::velocity, Dimension::angle, std::numbers::pi / 180},
         Row{"(mNm)", Quantity::torque, Dimension::moment, 1e-3}, Row{"N m", Quantity::torque, Dimension::moment, 1},
         Row{"N*m", Quantity::torque, Dimension::moment, 1}, Row{"N\xC2\xB7m", Quantity::torque, Dimension::moment, 1},
         Row{"kN", Quantity::torque, Dimension::force, 1e3}, Row{"Arms", Quantity::torque, Dimension::current, 1},
@@ -30,7 +28,7 @@ TEST(LogUnits, KnowsUnitsInTheSpellingsOfRecorders) {
         Row{"[0/00]", Quantity::torque, Dimension::share_of_rated, 1e-3},
         Row{"cnt", Quantity::position, Dimension::counts, 1}, Row{"counts/s", Quantity::velocity, Dimension::counts, 1},
         Row{"mm", Quantity::position, Dimension::length, 1e-3},
-        Row{"rev", Quantity::position, Dimension::angle, 2 * kPi}}) {
+        Row{"rev", Quantity::position, Dimension::angle, 2 * std::numbers::pi}}) {
     const auto unit = log_unit(row.text);
     ASSERT_TRUE(unit.has_value()) << row.text;
     EXPECT_EQ(unit->quantity, row.quantity) << row.text;

@@ -13,7 +13,7 @@
 namespace deltadyn {
 namespace {
 
-using ::deltadyn::testing::TemporaryFolder;
+using ::deltadyn::testing_support::TemporaryFolder;
 using ::testing::HasSubstr;
 
 TEST(OutputFile, AppearsOnCommitOnly) {

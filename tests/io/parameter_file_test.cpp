@@ -14,7 +14,7 @@
 namespace deltadyn {
 namespace {
 
-using ::deltadyn::testing::TemporaryFolder;
+using ::deltadyn::testing_support::TemporaryFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

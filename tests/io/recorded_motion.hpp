@@ -11,7 +11,7 @@
 
 #include "deltadyn/runtime/robot_description.hpp"
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 inline constexpr int kMotionRows = 600;
 inline constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -50,4 +50,4 @@ inline std::string recorded(const std::string& head, const std::function<std::st
   return text;
 }
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

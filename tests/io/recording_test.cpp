@@ -12,7 +12,7 @@ namespace deltadyn {
 namespace {
 
 using ::testing::HasSubstr;
-using namespace testing;
+using namespace testing_support;
 
 const RecordedChannel& channel(const Recording& recording, const std::string& name) {
   for (const RecordedChannel& one : recording.channels) {

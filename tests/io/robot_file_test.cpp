@@ -17,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Draws geometries of every type, far from the usual symmetric ones.
 class RandomRobot {
  public:
@@ -31,7 +29,7 @@ class RandomRobot {
     robot.drive_kind = type == "linear-delta3" ? DriveKind::prismatic : DriveKind::revolute;
     for (int i = 0; i < 3; ++i) {
       LimbGeometry<double> limb;
-      limb.azimuth = 2 * kPi / 3 * i + in(0, 1);
+      limb.azimuth = 2 * std::numbers::pi / 3 * i + in(0, 1);
       limb.p_WD = vector(0.3);
       limb.strut = in(0.3, 1.5);
       limb.strut_spacing = in(0.02, 0.3);
@@ -154,8 +152,8 @@ TEST(RobotFile, AzimuthOfAFullTurnStaysInRange) {
   RandomRobot random(8);
   RobotDescription robot = random.delta("delta3");
   robot.limbs[0].azimuth = 0;
-  robot.limbs[1].azimuth = 2 * kPi / 3;
-  robot.limbs[2].azimuth = 4 * kPi / 3;
+  robot.limbs[1].azimuth = 2 * std::numbers::pi / 3;
+  robot.limbs[2].azimuth = 4 * std::numbers::pi / 3;
   const RobotDescription back = robot_from_urdf(robot_to_urdf(robot), "memory");
   expect_same(robot, back);
 }

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 /// Writes CDR, either order of bytes.
 class CdrWriter {
@@ -89,4 +89,4 @@ class Bag {
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_{nullptr, &sqlite3_close};
 };
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

@@ -10,7 +10,7 @@ namespace deltadyn {
 namespace {
 
 TEST(Summary, KeepsOrderAndReplacesValues) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   Summary summary;
   summary.add("base_parameters", 37);
   summary.add("rms_residual_drive1", 0.1 + 0.2, "N*m");

@@ -7,7 +7,7 @@
 #include <string>
 #include <unistd.h>
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 /// A folder of its own for one test, removed afterwards.
 class TemporaryFolder {
@@ -49,4 +49,4 @@ class TemporaryFolder {
   std::filesystem::path folder_;
 };
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

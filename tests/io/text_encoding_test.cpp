@@ -11,7 +11,7 @@ namespace deltadyn {
 namespace {
 
 using ::testing::HasSubstr;
-using namespace testing;
+using namespace testing_support;
 
 // German Windows: the degree sign and the per mille sign are one byte each, 0xB0 and 0x89.
 TEST(TextEncoding, Windows1252IsReadAndItsMapIsUtf8ThatReadsBack) {

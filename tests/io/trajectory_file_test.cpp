@@ -14,7 +14,7 @@
 namespace deltadyn {
 namespace {
 
-using ::deltadyn::testing::TemporaryFolder;
+using ::deltadyn::testing_support::TemporaryFolder;
 using ::testing::HasSubstr;
 using testing_support::delta_description;
 using testing_support::IsNear;

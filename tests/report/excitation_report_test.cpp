@@ -59,7 +59,7 @@ TEST(ExcitationReport, ShowsPathLimitsAndWhatWillBeIdentified) {
   context.robot_file = "robot.urdf";
   context.command_line = "delta-excite robot.urdf -o <t>.csv";
   const std::string page = excitation_report(run.input(0.1), context);
-  const auto headings = testing::texts(page, "h2");
+  const auto headings = testing_support::texts(page, "h2");
   for (const char* heading : {"Path", "Limits", "What the motion will identify", "Settings"})
     EXPECT_THAT(headings, ::testing::Contains(HasSubstr(heading)));
   EXPECT_THAT(page, AllOf(HasSubstr("seen at an angle"), HasSubstr("From above"), HasSubstr("segment 2"),
@@ -67,7 +67,7 @@ TEST(ExcitationReport, ShowsPathLimitsAndWhatWillBeIdentified) {
                           HasSubstr("lower half ball of radius 0.35 m"), HasSubstr("&lt;t&gt;.csv")));
   // A row for every limit and for every base parameter.
   std::size_t cells = 0;
-  for (const std::string& text : testing::texts(page, "td")) {
+  for (const std::string& text : testing_support::texts(page, "td")) {
     for (const std::string& expression : run.base.expressions) cells += text == expression ? 1 : 0;
   }
   EXPECT_GE(cells, run.base.expressions.size());

@@ -12,12 +12,12 @@
 namespace deltadyn {
 namespace {
 
-using testing::attributes;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::texts;
+using testing_support::attributes;
+using testing_support::texts;
 
 PlotSpec plot() {
   PlotSpec spec;
@@ -108,7 +108,7 @@ TEST(HtmlReport, TablesKeepOrderAlignmentAndHighlight) {
   EXPECT_THAT(texts(page, "td"), ElementsAre("m", "1.2 ± 0.1", "mcx", "–", "m", "1.2 ± 0.1", "mcx", "–"));
   EXPECT_THAT(texts(page, "caption"), ElementsAre("Table 1. second"));
   std::vector<std::string> row_classes, cell_classes;
-  testing::for_each_element(page, [&](const tinyxml2::XMLElement& element) {
+  testing_support::for_each_element(page, [&](const tinyxml2::XMLElement& element) {
     const char* value = element.Attribute("class");
     if (std::string(element.Name()) == "tr") row_classes.emplace_back(value == nullptr ? "" : value);
     if (std::string(element.Name()) == "td") cell_classes.emplace_back(value == nullptr ? "" : value);

@@ -18,10 +18,10 @@ using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::shipped_robot;
-using testing::synthetic_run;
-using testing::SyntheticRun;
-using testing::texts;
+using testing_support::shipped_robot;
+using testing_support::synthetic_run;
+using testing_support::SyntheticRun;
+using testing_support::texts;
 
 constexpr std::size_t kLargestPage = 2'000'000;
 
@@ -307,9 +307,9 @@ TEST(IdentificationReport, MarksThePriorAndFoldsAwayWhatWasNotFitted) {
   };
   const auto row_class = [&](const std::string& name) {
     std::string found = "none";
-    testing::for_each_element(page_of(run), [&](const tinyxml2::XMLElement& element) {
+    testing_support::for_each_element(page_of(run), [&](const tinyxml2::XMLElement& element) {
       if (std::string(element.Name()) != "tr" || element.FirstChildElement("td") == nullptr) return;
-      if (testing::text_of(*element.FirstChildElement("td")) != name) return;
+      if (testing_support::text_of(*element.FirstChildElement("td")) != name) return;
       found = element.Attribute("class") != nullptr ? element.Attribute("class") : "";
     });
     return found;

@@ -17,14 +17,14 @@
 namespace deltadyn {
 namespace {
 
-using testing::attributes;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::texts;
+using testing_support::attributes;
+using testing_support::texts;
 
-const double kNaN = std::numeric_limits<double>::quiet_NaN();
+const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 Series sine(const std::string& label, Eigen::Index n = 200) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 0.0, 10.0);
@@ -137,7 +137,7 @@ TEST(RenderSvg, IdsAreUniqueCarryThePrefixAndEveryReferenceHasItsTarget) {
 TEST(RenderSvg, ScalesWithThePageAndSaysWhatItShows) {
   const std::string svg = render_svg({simple()});
   EXPECT_TRUE(svg.starts_with("<svg"));
-  testing::for_each_element(svg, [](const tinyxml2::XMLElement& element) {
+  testing_support::for_each_element(svg, [](const tinyxml2::XMLElement& element) {
     if (std::string(element.Name()) != "svg") return;
     EXPECT_STREQ(element.Attribute("width"), "100%");
     EXPECT_EQ(element.Attribute("height"), nullptr);
@@ -162,7 +162,7 @@ TEST(RenderSvg, DrawsEveryStyle) {
   for (const SeriesStyle style :
        {SeriesStyle::line, SeriesStyle::points, SeriesStyle::impulses, SeriesStyle::steps, SeriesStyle::errorbars}) {
     PlotSpec empty = simple();
-    empty.series[0].y.setConstant(kNaN);
+    empty.series[0].y.setConstant(kMissing);
     PlotSpec spec = simple();
     spec.series[0] = sine("s", 30);
     spec.series[0].style = empty.series[0].style = style;
@@ -185,7 +185,7 @@ TEST(RenderSvg, OddDataIsDrawnWithoutComplaint) {
   };
   const double inf = std::numeric_limits<double>::infinity();
   for (const PlotSpec& spec : {with_y({1.0, 1.0}), with_y({0.0, 0.0, 0.0}), with_y({5.0}), with_y({1e-320, 0.0}),
-                               with_y({kNaN, 2.0, inf}), with_y({-1e299, 1e299}), with_y({1e9, 1e9 + 1e-6})}) {
+                               with_y({kMissing, 2.0, inf}), with_y({-1e299, 1e299}), with_y({1e9, 1e9 + 1e-6})}) {
     for (const bool log : {false, true}) {
       PlotSpec variant = spec;
       variant.log_y = log;

@@ -20,7 +20,7 @@
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 /// Torque that the model does not know of: of a drive, at its position and velocity.
 using HiddenTorque = std::function<double(int drive, double q, double qd)>;
@@ -99,4 +99,4 @@ inline SyntheticRun synthetic_run(const std::string& robot_name, double noise = 
   return run;
 }
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

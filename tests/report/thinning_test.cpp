@@ -11,7 +11,7 @@ namespace deltadyn {
 namespace {
 
 constexpr Eigen::Index kMany = 500'000;
-const double kNaN = std::numeric_limits<double>::quiet_NaN();
+const double kGap = std::numeric_limits<double>::quiet_NaN();
 
 Series noise(SeriesStyle style = SeriesStyle::line) {
   std::mt19937 generator(7);
@@ -29,7 +29,7 @@ TEST(Thin, KeepsEveryColumnsExtremesOfALine) {
   const Series full = noise();
   const Series few = thin(full, frame());
   EXPECT_LE(few.x.size(), 2 * 802);
-  Eigen::MatrixXd full_ends = Eigen::MatrixXd::Constant(801, 2, kNaN), few_ends = full_ends;
+  Eigen::MatrixXd full_ends = Eigen::MatrixXd::Constant(801, 2, kGap), few_ends = full_ends;
   const auto collect = [](const Series& series, Eigen::MatrixXd& ends) {
     for (Eigen::Index i = 0; i < series.x.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(std::floor(series.x(i) * 800.0));
@@ -71,7 +71,7 @@ TEST(Thin, KeepsTheOrderOfALine) {
 
 TEST(Thin, KeepsGaps) {
   Series series = noise();
-  series.y.segment(100'000, 50'000).setConstant(kNaN);
+  series.y.segment(100'000, 50'000).setConstant(kGap);
   const Series few = thin(series, frame());
   bool gap = false;
   for (Eigen::Index i = 1; i + 1 < few.x.size(); ++i) {
@@ -87,7 +87,7 @@ TEST(Thin, KeepsGaps) {
 
 TEST(Thin, ManyGapsStayFew) {
   Series series = noise();
-  for (Eigen::Index i = 0; i < kMany; i += 2) series.y(i) = kNaN;
+  for (Eigen::Index i = 0; i < kMany; i += 2) series.y(i) = kGap;
   const Series few = thin(series, frame());
   EXPECT_LT(few.x.size(), 5 * 802);
   EXPECT_GT(few.y.array().isFinite().count(), 2 * 790);

@@ -14,10 +14,10 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::HiddenTorque;
-using testing::shipped_robot;
-using testing::synthetic_log;
-using testing::texts;
+using testing_support::HiddenTorque;
+using testing_support::shipped_robot;
+using testing_support::synthetic_log;
+using testing_support::texts;
 
 struct Case {
   std::unique_ptr<Robot> robot;

@@ -9,7 +9,7 @@
 #include <tinyxml2.h>
 #include <vector>
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 /// Visits all elements. A document that is not well-formed is a failure of the test.
 inline void for_each_element(const std::string& xml, const std::function<void(const tinyxml2::XMLElement&)>& visit) {
@@ -49,4 +49,4 @@ inline std::vector<std::string> attributes(const std::string& xml, const std::st
   return result;
 }
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

@@ -80,7 +80,7 @@ void in_millimetres(LimbGeometry<double>& limb) {
   limb.strut_spacing *= 1000;
 }
 
-const DescriptionFault kFaults[] = {
+const DescriptionFault kImplausible[] = {
     {"AllInMillimetres", "delta4",
      [](auto& r) {
        for (auto& limb : r.limbs) in_millimetres(limb);
@@ -138,7 +138,7 @@ TEST_P(ImplausibleRobot, IsRefusedWithTheUnitAndTheMend) {
   expect_refused(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, ImplausibleRobot, ::testing::ValuesIn(kFaults),
+INSTANTIATE_TEST_SUITE_P(Table, ImplausibleRobot, ::testing::ValuesIn(kImplausible),
                          [](const auto& entry) { return std::string(entry.param.name); });
 
 TEST(Plausibility, TheUnitThatWouldFitIsNamed) {

@@ -21,7 +21,7 @@ using namespace testing_support;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 ParameterOptions all_columns(int drives) {
   ParameterOptions options;
@@ -148,7 +148,7 @@ TEST(Robot, LeavesOutColumnsByName) {
 TEST(Robot, LeavesTheOutputAloneOnFailure) {
   const auto robot = make_robot(delta_description("delta3"));
   Eigen::VectorXd out = Eigen::VectorXd::Constant(3, 42), bad = Eigen::VectorXd::Zero(3);
-  bad(1) = kNaN;
+  bad(1) = kMissing;
   EXPECT_EQ(robot->inverse_kinematics(bad, out), Status::out_of_range);
   EXPECT_EQ(robot->inverse_kinematics(Eigen::Vector3d(9, 9, 9), out), Status::unreachable);
   EXPECT_EQ(robot->forward_kinematics(bad, out), Status::out_of_range);

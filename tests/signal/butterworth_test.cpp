@@ -10,7 +10,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 TEST(Butterworth, BothPassesTogetherHaveTheirCutOffWhereAsked) {
   for (int order = 1; order <= 8; ++order) {

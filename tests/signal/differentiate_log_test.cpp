@@ -10,7 +10,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 Log encoder_log(const MultiSine& motion, int bits) {
   Log log;

@@ -9,7 +9,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 Eigen::VectorXd power_derivative(const Eigen::VectorXd& t, int power, int derivative) {
   double factor = 1;

@@ -12,7 +12,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 TEST(FirDecimator, IsSymmetricFlatAndQuietWhereItShould) {
   for (const double cutoff : {4.0, 20.0, 45.0}) {

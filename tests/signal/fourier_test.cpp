@@ -11,7 +11,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 /// Two drives with 19-bit encoders and noisy torque, `rate_hz` not necessarily a multiple of the base frequency.
 Log periodic_log(const MultiSine& motion, double rate_hz, Eigen::Index samples, double torque_noise) {

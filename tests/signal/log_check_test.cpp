@@ -16,7 +16,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 

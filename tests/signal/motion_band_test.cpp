@@ -11,7 +11,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 constexpr double kRate = 1000;
 

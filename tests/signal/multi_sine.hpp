@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace deltadyn::testing {
+namespace deltadyn::testing_support {
 
 /// A drive motion with known derivatives: five harmonics of a base frequency, as an encoder of `bits` a turn sees it.
 struct MultiSine {
@@ -35,4 +35,4 @@ inline double rms(const Eigen::VectorXd& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
 }
 
-}  // namespace deltadyn::testing
+}  // namespace deltadyn::testing_support

@@ -13,13 +13,13 @@ struct Recording {
   Eigen::MatrixXd motion;
   double step = 2 * 3.14159265358979323846 / 4096;
   Recording() {
-    const testing::MultiSine sine{0.37, 0.6};
-    log.t_s = testing::times(1000, 4000);
+    const testing_support::MultiSine sine{0.37, 0.6};
+    log.t_s = testing_support::times(1000, 4000);
     motion.resize(4000, 2);
     motion.col(0) = sine.at(log.t_s, 0, 0.3);
     motion.col(1) = sine.at(log.t_s, 0, 1.1);
     log.q = motion;
-    log.q.col(0) = testing::quantised(motion.col(0), 12);
+    log.q.col(0) = testing_support::quantised(motion.col(0), 12);
     log.tau = Eigen::MatrixXd::Zero(4000, 2);
   }
 };

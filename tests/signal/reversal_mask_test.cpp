@@ -13,7 +13,7 @@
 namespace deltadyn {
 namespace {
 
-using namespace deltadyn::testing;
+using namespace deltadyn::testing_support;
 
 TEST(ReversalMask, MarksSlowSamplesAndTheirNeighbours) {
   Eigen::VectorXd v(12);

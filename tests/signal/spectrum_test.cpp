@@ -13,7 +13,7 @@
 namespace deltadyn {
 namespace {
 
-constexpr double kRate = 1000.0;
+constexpr double kSampleRate = 1000.0;
 
 Eigen::VectorXd white_noise(Eigen::Index n, double sigma, unsigned seed = 3) {
   std::mt19937 generator(seed);
@@ -23,7 +23,7 @@ Eigen::VectorXd white_noise(Eigen::Index n, double sigma, unsigned seed = 3) {
 
 Eigen::VectorXd sine(Eigen::Index n, double amplitude, double frequency_hz) {
   return Eigen::VectorXd::NullaryExpr(n, [=](Eigen::Index i) {
-    return amplitude * std::sin(2.0 * std::numbers::pi * frequency_hz * static_cast<double>(i) / kRate);
+    return amplitude * std::sin(2.0 * std::numbers::pi * frequency_hz * static_cast<double>(i) / kSampleRate);
   });
 }
 
@@ -32,8 +32,8 @@ double power(const PowerSpectrum& spectrum) {
 }
 
 TEST(WelchSpectrum, ASineStandsAtItsFrequencyWithHalfItsSquaredAmplitude) {
-  const double frequency = 50.0 * kRate / 1024.0;  // exactly on the grid
-  const PowerSpectrum spectrum = welch_spectrum(sine(10'240, 3.0, frequency), kRate, 1024);
+  const double frequency = 50.0 * kSampleRate / 1024.0;  // exactly on the grid
+  const PowerSpectrum spectrum = welch_spectrum(sine(10'240, 3.0, frequency), kSampleRate, 1024);
   Eigen::Index peak = 0;
   spectrum.density.maxCoeff(&peak);
   EXPECT_NEAR(spectrum.frequency_hz(peak), frequency, 1e-9);
@@ -46,9 +46,9 @@ TEST(WelchSpectrum, ASineStandsAtItsFrequencyWithHalfItsSquaredAmplitude) {
 
 TEST(WelchSpectrum, WhiteNoiseIsFlatAtItsVarianceOverTheBand) {
   const double sigma = 0.7;
-  const PowerSpectrum spectrum = welch_spectrum(white_noise(400'000, sigma), kRate, 512);
+  const PowerSpectrum spectrum = welch_spectrum(white_noise(400'000, sigma), kSampleRate, 512);
   const Eigen::VectorXd inside = spectrum.density.segment(2, 253);
-  const double expected = sigma * sigma / (0.5 * kRate);
+  const double expected = sigma * sigma / (0.5 * kSampleRate);
   EXPECT_NEAR(inside.mean() / expected, 1.0, 0.01);
   const double scatter = std::sqrt((inside.array() / expected - 1.0).square().mean());
   // Neighbouring pieces share half their samples: the correlation of their Hann-windowed noise is 1/6.
@@ -60,39 +60,39 @@ TEST(WelchSpectrum, WhiteNoiseIsFlatAtItsVarianceOverTheBand) {
 
 TEST(WelchSpectrum, TheIntegralIsTheVariance) {
   for (const Eigen::Index segment : {64, 250, 333, 4096}) {
-    const PowerSpectrum spectrum = welch_spectrum(white_noise(200'000, 2.0), kRate, segment);
+    const PowerSpectrum spectrum = welch_spectrum(white_noise(200'000, 2.0), kSampleRate, segment);
     EXPECT_NEAR(power(spectrum), 4.0, 0.1) << segment;
     EXPECT_EQ(spectrum.density.size(), segment / 2 + 1);
   }
 }
 
 TEST(WelchSpectrum, AConstantIsTakenOut) {
-  const PowerSpectrum spectrum = welch_spectrum(Eigen::VectorXd::Constant(1000, 12.0), kRate);
+  const PowerSpectrum spectrum = welch_spectrum(Eigen::VectorXd::Constant(1000, 12.0), kSampleRate);
   EXPECT_LT(spectrum.density.maxCoeff(), 1e-20);
 }
 
 TEST(WelchSpectrum, PiecesWithGapsAreLeftOut) {
-  Eigen::VectorXd signal = sine(10'240, 3.0, 50.0 * kRate / 1024.0);
+  Eigen::VectorXd signal = sine(10'240, 3.0, 50.0 * kSampleRate / 1024.0);
   signal(5000) = std::numeric_limits<double>::quiet_NaN();
-  const PowerSpectrum spectrum = welch_spectrum(signal, kRate, 1024);
+  const PowerSpectrum spectrum = welch_spectrum(signal, kSampleRate, 1024);
   EXPECT_EQ(spectrum.segments, 17);
   EXPECT_NEAR(power(spectrum), 4.5, 1e-9);
 }
 
 TEST(WelchSpectrum, ChoosesThePieceFromTheLength) {
-  EXPECT_NEAR(welch_spectrum(white_noise(100, 1.0), kRate).resolution_hz, kRate / 16.0, 1e-9);
-  EXPECT_NEAR(welch_spectrum(white_noise(10'000, 1.0), kRate).resolution_hz, kRate / 2048.0, 1e-9);
-  EXPECT_NEAR(welch_spectrum(white_noise(100'000, 1.0), kRate).resolution_hz, kRate / 4096.0, 1e-9);
+  EXPECT_NEAR(welch_spectrum(white_noise(100, 1.0), kSampleRate).resolution_hz, kSampleRate / 16.0, 1e-9);
+  EXPECT_NEAR(welch_spectrum(white_noise(10'000, 1.0), kSampleRate).resolution_hz, kSampleRate / 2048.0, 1e-9);
+  EXPECT_NEAR(welch_spectrum(white_noise(100'000, 1.0), kSampleRate).resolution_hz, kSampleRate / 4096.0, 1e-9);
 }
 
 TEST(WelchSpectrum, BadInputIsRefused) {
   EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), 0.0)), Error);
   EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), std::nan(""))), Error);
-  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(15, 1.0), kRate)), Error);
-  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), kRate, 101)), Error);
-  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), kRate, -4)), Error);
+  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(15, 1.0), kSampleRate)), Error);
+  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), kSampleRate, 101)), Error);
+  EXPECT_THROW(static_cast<void>(welch_spectrum(white_noise(100, 1.0), kSampleRate, -4)), Error);
   const Eigen::VectorXd gaps = Eigen::VectorXd::Constant(100, std::nan(""));
-  EXPECT_THROW(static_cast<void>(welch_spectrum(gaps, kRate)), Error);
+  EXPECT_THROW(static_cast<void>(welch_spectrum(gaps, kSampleRate)), Error);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::string print(const Eigen::MatrixBase<Derived>& matrix) {
   return stream.str();
 }
 
-namespace detail {
+namespace matchers {
 
 MATCHER_P2(IsNearMatrix, expected, tolerance,
            (negation ? "differs from\n" : "is near\n") + print(expected) + "\nto " +
@@ -43,13 +43,13 @@ MATCHER_P2(IsNearMatrix, expected, tolerance,
   return numbers && largest <= tolerance;
 }
 
-}  // namespace detail
+}  // namespace matchers
 
 /// Every entry within `tolerance` (absolute) of `expected`, and the same shape. NaN matches nothing.
 template <class Derived>
 auto IsNear(const Eigen::MatrixBase<Derived>& expected, double tolerance) {
   // A copy, because an expression may hold on to what is gone by the time the matcher is used.
-  return detail::IsNearMatrix(typename Derived::PlainObject(expected), tolerance);
+  return matchers::IsNearMatrix(typename Derived::PlainObject(expected), tolerance);
 }
 
 }  // namespace deltadyn::testing_support
