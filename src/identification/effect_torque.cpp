@@ -180,7 +180,8 @@ Identification identify_with_effects(const Robot& robot, const std::vector<Log>&
                                      std::vector<Effect>& effects) {
   if (effects.empty()) return identify(robot, logs, prior, prior_std, options);
   if (!options.processing.filter) {
-    throw Error("effects need the filtered motion", "", "leave out --no-filter or --effects", ExitCode::usage);
+    throw Error("effects need the filtered motion", "--effects with --no-filter", "leave out one of the two flags",
+                ExitCode::usage);
   }
   IdentificationOptions settled = options;
   if (options.choose_cutoff) {

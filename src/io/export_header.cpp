@@ -133,14 +133,15 @@ std::string model_text(const RobotDescription& robot, const std::vector<Effect>&
   for (const Effect& effect : effects) {
     const EffectKind& kind = effect_kind(effect.id);
     const std::string name = fmt::format("deltadyn::effect_named(\"{}\")", kind.name);
-    std::string columns;
-    for (const AmplitudeTraits& one : kind.amplitudes)
-      columns += fmt::format(" {} [{}],", one.name, effect_unit(one.unit, effect.joint, robot));
-    const std::string shape = effect_shape_text(effect, robot);
-    rows += fmt::format("    {{{}, {}, {}, {}}},  // at {}:{} {}\n", name, effect.joint,
-                        list(shape_of(effect), kind.shapes.size()), list(amplitudes_of(effect), kind.amplitudes.size()),
-                        effect_joint_name(effect.id, effect.joint), columns, shape);
-    while (rows.ends_with(" \n") || rows.ends_with(",\n")) rows.replace(rows.size() - 2, 2, "\n");
+    rows += fmt::format("    // {} at {}\n", kind.name, effect_joint_name(effect.id, effect.joint));
+    for (std::size_t k = 0; k < kind.amplitudes.size(); ++k)
+      rows += fmt::format("    //   {} {:.4g} {}\n", kind.amplitudes[k].name, amplitudes_of(effect)[k],
+                          effect_unit(kind.amplitudes[k].unit, effect.joint, robot));
+    if (const std::string shape = effect_shape_text(effect, robot); !shape.empty())
+      rows += fmt::format("    //   {}\n", shape);
+    rows +=
+        fmt::format("    {{{}, {}, {},\n     {}}},\n", name, effect.joint, list(shape_of(effect), kind.shapes.size()),
+                    list(amplitudes_of(effect), kind.amplitudes.size()));
     if (std::find(listed.begin(), listed.end(), effect.id) != listed.end()) continue;
     listed.push_back(effect.id);
     names += (names.empty() ? "" : ", ") + name;

@@ -131,9 +131,10 @@ TEST(ModelExport, HandsEffectsToTheController) {
   EXPECT_THAT(
       some.text,
       AllOf(HasSubstr("<deltadyn/firmware/effect_feed_forward.hpp>"), HasSubstr("kEffectCount = 3;"),
-            HasSubstr("{deltadyn::effect_named(\"stribeck\"), 1, {0.5, 0.5}, {2}},  // at drive2: friction [N*m]"),
+            HasSubstr("    // stribeck at drive2\n    //   friction 2 N*m\n    //   rate=0.5 rad/s; exponent=0.5\n"
+                      "    {deltadyn::effect_named(\"stribeck\"), 1, {0.5, 0.5},\n     {2}},\n"),
             HasSubstr("SomeEffects<deltadyn::effect_named(\"stribeck\"), deltadyn::effect_named(\"hose_force\")>"),
-            HasSubstr("{deltadyn::effect_named(\"hose_force\"), -1, {}, {4, 4, 4, 4, 4, 4}}")));
+            HasSubstr("{deltadyn::effect_named(\"hose_force\"), -1, {},\n     {4, 4, 4, 4, 4, 4}}")));
 }
 
 TEST(ModelExport, SaysWhyAControllerCannotTakeAnEffect) {

@@ -19,7 +19,8 @@ template <class T>
 using Shape = std::array<T, kMostShapes>;
 
 /// What the law of a joint may depend on. `sign` is that of the rate as its user sees it: sharp in a fit, the sense of
-/// sliding in a simulation (also at rate 0), smooth in a controller.
+/// sliding in a simulation (also at rate 0), smooth in a controller. The virtual robot finds its acceleration by the
+/// law, so it leaves acceleration and gravity at 0: a law that uses one of them must have change() (MachineChange).
 template <class T>
 struct JointInput {
   T position = T(0), rate = T(0), acceleration = T(0);  ///< [rad | m] and per s, s^2
@@ -30,13 +31,13 @@ struct JointInput {
   T side_load = T(0);                    ///< of the telescope's guide, per unit mass [m/s^2]
 };
 
-/// A law of a joint (`drive`, `arm`, `limb`, `telescope`, `passive_joints`):
+/// A law of a joint (places `drive`, `arm`, `limb`, `limb_or_all`, `telescope`, `passive_joints`):
 ///   template <class T> static std::array<T, N> columns(const JointInput<T>&, const Shape<T>&)
 /// for N amplitudes, [N m | N] per unit.
 /// A law of the load is homogeneous in it: columns(c load) = c columns(load) for c > 0.
 struct JointLaw {};
 
-/// A law of a joint with one number of memory, a function of the way:
+/// A law of a joint (`drive`) with one number of memory, a function of the way:
 ///   T start(sign, shape)                 state of a joint that has slid long in the direction `sign` (0: at rest)
 ///   T moved(state, step, input, shape)   after a further `step` [rad | m]; two steps one way are as good as their sum
 ///   std::array<T, N> columns(state, input, shape)
@@ -50,7 +51,7 @@ struct PlateInput {
   Vector3<T> gravity = Vector3<T>::Zero();  ///< in W [m/s^2]
 };
 
-/// A force that the robot has to bear at the plate:
+/// A force that the robot has to bear at the plate (`platform`):
 ///   template <class T> static std::array<Vector3<T>, N> columns(const PlateInput<T>&, const Shape<T>&)
 /// in W, [N] per unit.
 struct PlateForce {};
@@ -73,13 +74,13 @@ struct ElasticInput {
   bool own = true;       ///< is the drive asked for the elastic one?
 };
 
-/// A spring in a drive, seen from all drives:
+/// A spring in a drive (`drive`), seen from all drives:
 ///   template <class T> static T column(const ElasticInput<T>&, const Shape<T>&)
 struct ElasticJoint {};
 
-/// A change of the machine that a fit sees by differences:
+/// A change of the machine (`arm`, `limb`, `robot`) that a fit sees by differences:
 ///   template <class Machine>
-///   static void change(Machine&, int joint, const std::array<double, 6>& amplitude, const Shape<double>&)
+///   static void change(Machine&, int joint, const std::array<double, kMostAmplitudes>&, const Shape<double>&)
 /// with a Machine as below; kStep is the amplitude that makes a difference, small beside any real one and large beside
 /// rounding. Effects of the other kinds may have change(), too: then the virtual robot is built with it, and uses no
 /// law.
