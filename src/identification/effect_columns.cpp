@@ -409,10 +409,8 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
 MatrixXd low_passed_rows(const PreparedLog& log, const Eigen::Ref<const MatrixXd>& values) {
   MatrixXd rows(log.rows, values.cols());
   if (log.low_pass) {
-    const Index reach = log.low_pass->half_width();
-    const Index first = log.first - reach;
-    const Index needed = (log.rows - 1) * log.stride + 2 * reach + 1;
-    log.low_pass->apply(values.middleRows(first, needed), 0, log.rows, rows);
+    const Index first = log.first - log.low_pass->half_width(), needed = log.low_pass->inputs(log.rows);
+    log.low_pass->apply(values.middleRows(first, needed), rows);
   } else {
     for (Index k = 0; k < log.rows; ++k) rows.row(k) = values.row(sample_of_row(log, k));
   }

@@ -349,7 +349,7 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   Eigen::MatrixXd rows;
   if (log.low_pass) {
     rows.resize(count, raw.cols());
-    log.low_pass->apply(raw, 0, count, rows);
+    log.low_pass->apply(raw, rows);
   } else {
     rows.swap(raw);
   }

@@ -45,7 +45,7 @@ Log thinned(const Log& log) {
   if (rows < 2) return log;
   Eigen::MatrixXd in(log.samples(), 2 * log.drives()), out(rows, 2 * log.drives());
   in << log.q, log.tau;
-  pass.apply(in, 0, rows, out);
+  pass.apply(in, out);
   Log thin;
   thin.file = log.file;
   thin.q = out.leftCols(log.drives());
@@ -55,7 +55,7 @@ Log thinned(const Log& log) {
   if (log.torque_out.size() > 0) thin.torque_out.resize(rows, log.drives());
   const Index width = 2 * pass.half_width() + 1;
   for (Index k = 0; k < rows; ++k) {
-    const Index first = pass.first_input(k);
+    const Index first = pass.centre(k) - pass.half_width();
     thin.t_s(k) = log.t_s(pass.centre(k));
     if (log.torque_out.size() > 0) thin.torque_out.row(k) = log.torque_out.middleRows(first, width).colwise().any();
     if (log.filled.empty()) continue;

@@ -19,6 +19,10 @@ namespace deltadyn::checks {
 
 using Eigen::Index;
 
+inline constexpr int kLongestFilledRows = 3;        ///< longest run of missing samples that is filled in, however slow
+inline constexpr Index kFewestSamples = 50;         ///< shorter logs are refused
+inline constexpr double kShortestDuration_s = 0.5;  ///< shorter logs are refused
+
 /// One column of the log.
 struct Channel {
   Eigen::MatrixXd* block;

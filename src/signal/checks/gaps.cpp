@@ -16,9 +16,8 @@ namespace {
 constexpr double kLargestSampleTime = 0.2;   // s; slower sampling shows nothing of the dynamics
 constexpr double kUnevenShare = 0.1;         // of the steps away from the usual one: then a longer step is no lost row
 constexpr double kLongestUnevenStep = 0.03;  // s; within it a drive's motion is still a cubic
-constexpr double kShortParts[] = {4.0, 2.0,
-                                  // s; the shorter a part, the larger the share that the filters lose at its ends
-                                  1.0};
+// s; the shorter a part, the larger the share that the filters lose at its ends
+constexpr double kShortParts[] = {4.0, 2.0, 1.0};
 constexpr double kEnough = 0.8;  // of the recorded time has to stay in the parts that are used
 
 /// A longer step than this is a gap.
@@ -128,7 +127,7 @@ std::vector<Log> split(CheckRoom& room) {
     for (std::size_t k = 0; k + 1 < borders.size(); ++k) sum += seconds(k) >= least ? seconds(k) : 0.0;
     return sum;
   };
-  double shortest = room.options.min_duration_s;
+  double shortest = kShortestDuration_s;
   for (const double least : kShortParts) {
     if (least <= shortest || time_in_parts_of(least) < kEnough * time_in_parts_of(0)) continue;
     shortest = least;
@@ -145,7 +144,7 @@ std::vector<Log> split(CheckRoom& room) {
   Tally dropped;
   for (std::size_t k = 0; k + 1 < borders.size(); ++k) {
     const Index samples = borders[k + 1] - borders[k];
-    if (samples < room.options.min_samples || seconds(k) < shortest) {
+    if (samples < kFewestSamples || seconds(k) < shortest) {
       dropped.add(borders[k]);
       continue;
     }

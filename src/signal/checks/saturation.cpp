@@ -12,9 +12,10 @@
 namespace deltadyn::checks {
 namespace {
 
-constexpr Index kShortestRun = 3;    // equal values in a row at the level
-constexpr Index kFewestClipped = 6;  // rows; fewer are chance
-constexpr Index kMostBeyond = 3;     // rows beyond a level that is still the level of a cut: spikes
+constexpr double kMostCutOff = 0.05;  // of samples where the torque is cut off; fewer are only left out of fits
+constexpr Index kShortestRun = 3;     // equal values in a row at the level
+constexpr Index kFewestClipped = 6;   // rows; fewer are chance
+constexpr Index kMostBeyond = 3;      // rows beyond a level that is still the level of a cut: spikes
 
 /// The rows of one drive at a level where its torque is cut off.
 struct Cut {
@@ -85,7 +86,7 @@ void check_saturation(CheckRoom& room) {
     const std::string levels = above.rows.empty()   ? fmt::format("{:.9g}", below.level)
                                : below.rows.empty() ? fmt::format("{:.9g}", above.level)
                                                     : fmt::format("{:.9g} or {:.9g}", below.level, above.level);
-    if (share > room.options.max_saturated_share) {
+    if (share > kMostCutOff) {
       throw Error(
           fmt::format("the torque is at its extreme ({}) in {:.2g} % of the samples, the first one here: it is cut off",
                       levels, 100.0 * share),

@@ -13,6 +13,7 @@
 namespace deltadyn::checks {
 namespace {
 
+constexpr double kOutlier = 30.0;     // times farther from the cubic through its neighbours than usual
 constexpr double kRounding = 1e-9;    // of the value: what the digits of a file leave of a constant
 constexpr Index kWindow = 25;         // samples on either side that tell what is usual here
 constexpr double kManySpikes = 0.01;  // of the samples: then the recording itself is in doubt
@@ -49,11 +50,11 @@ class SpikeSearch {
 
   void run() {
     const Index n = values_.size();
-    const double floor = std::max(room_.options.outlier_ratio * usual_, 1e-12 * largest_);
+    const double floor = std::max(kOutlier * usual_, 1e-12 * largest_);
     for (Index i = 2; i + 2 < n; ++i) {
       if (at(i) <= floor || !is_peak(i)) continue;
       const double nearby = largest_nearby(i, 3);
-      if (at(i) > room_.options.outlier_ratio * nearby / 5.0) {
+      if (at(i) > kOutlier * nearby / 5.0) {
         if (replaced_leaves_little(i, nearby)) {
           replace(i, i + 1);
           continue;
@@ -114,7 +115,7 @@ class SpikeSearch {
         double least = 1e300;
         for (Index k = begin; k < end; ++k)
           least = std::min(least, std::abs(values_(k) - bridge(values_, begin, end, k)));
-        if (least < 8.0 * around || least < room_.options.outlier_ratio * usual_) continue;
+        if (least < 8.0 * around || least < kOutlier * usual_) continue;
         i = begin;
         return end;
       }

@@ -43,7 +43,7 @@ void thin_to_fresh_rows(CheckRoom& room) {
   for (Index i = phase; i < log.samples(); i += factor) {
     if (i >= half && i + half < log.samples()) rows.push_back(i);
   }
-  if (static_cast<Index>(rows.size()) < room.options.min_samples) {
+  if (static_cast<Index>(rows.size()) < kFewestSamples) {
     throw UnusablePart(
         fmt::format("a channel changes only every {} rows, which leaves {} samples", factor, rows.size()), log.file,
         "record at the rate at which the drives answer, for longer");
@@ -56,8 +56,7 @@ void thin_to_fresh_rows(CheckRoom& room) {
     for (Index d = 0; d < from->cols(); ++d) {
       if ((*stale)[static_cast<std::size_t>(d)] > 1) continue;
       Eigen::MatrixXd out(static_cast<Index>(rows.size()), 1);
-      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), 0,
-                     out.rows(), out);
+      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), out);
       to->col(d) = out;
     }
   }
