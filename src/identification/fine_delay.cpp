@@ -210,9 +210,8 @@ std::vector<Log> without_delay(std::vector<Log> logs, double delay_s) {
     const double step_s = log.sample_time_s();
     for (Index j = 0; j < log.tau.cols(); ++j) log.tau.col(j) = mend_timing(log.tau.col(j), step_s, delay_s, 0.0);
     const auto lost = std::min<Index>(log.samples(), static_cast<Index>(std::ceil(std::abs(delay_s) / step_s)));
-    if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), Log::kMeasured);
-    const auto begin = delay_s > 0 ? log.filled.end() - lost : log.filled.begin();
-    std::fill(begin, begin + lost, Log::kLeftOut);
+    const Index begin = delay_s > 0 ? log.samples() - lost : 0;
+    log.leave_out(begin, begin + lost);
   }
   return logs;
 }

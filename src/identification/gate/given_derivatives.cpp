@@ -145,20 +145,20 @@ std::vector<LogFinding> examine_derivatives(const RobotDescription& robot, const
           wrong(c, derivative == 1 ? fmt::format("qd{}", j + 1) : fmt::format("qdd{}", j + 1),
                 derivative == 1 ? fmt::format("dq{}/dt", j + 1) : fmt::format("d2q{}/dt2", j + 1), derivative);
       if (text.empty()) continue;
-      LogFinding finding;
-      finding.level = used ? FindingLevel::fault : FindingLevel::warning;
-      finding.key = derivative == 1 ? "rate" : "acceleration";
-      finding.file = log.file;
-      finding.drive = static_cast<int>(j);
-      finding.value = std::abs(c.delay_s) > kLate_s ? c.delay_s : c.factor;
-      finding.std = std::abs(c.delay_s) > kLate_s ? c.delay_std : c.factor_std;
-      finding.unit = std::abs(c.delay_s) > kLate_s ? "s" : "";
-      finding.text = text + (used ? "" : "; it is not used, the positions are differentiated");
-      finding.mend =
-          used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
-                     (derivative == 1 ? names.qd : names.qdd)
-               : "";
-      out.push_back(std::move(finding));
+      const bool late = std::abs(c.delay_s) > kLate_s;
+      out.push_back(
+          {.level = used ? FindingLevel::fault : FindingLevel::warning,
+           .key = derivative == 1 ? "rate" : "acceleration",
+           .file = log.file,
+           .drive = static_cast<int>(j),
+           .value = late ? c.delay_s : c.factor,
+           .std = late ? c.delay_std : c.factor_std,
+           .unit = late ? "s" : "",
+           .text = text + (used ? "" : "; it is not used, the positions are differentiated"),
+           .mend =
+               used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
+                          (derivative == 1 ? names.qd : names.qdd)
+                    : ""});
     }
   }
   return out;

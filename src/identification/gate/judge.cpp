@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "deltadyn/runtime/in_parallel.hpp"
@@ -16,9 +15,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSoundResidual =
-    // Of the torque: friction of another law, load and noise leave less; wrong signs leave more
-    0.02;
+// Of the torque: friction of another law, load and noise leave less; wrong signs leave more
+constexpr double kSoundResidual = 0.02;
 constexpr double kSoundRatio = 1.2;  // all drives together over each drive by itself: one machine explains all torques
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
 // ... or, where noise covers the rest, leaves nothing between all drives together and each alone
@@ -74,17 +72,6 @@ class Judge {
   }
 
  private:
-  [[nodiscard]] std::vector<Eigen::MatrixXd> torques(const Rows& rows, const Points& points) const {
-    std::vector<Eigen::MatrixXd> tau;
-    for (const DriveRows& drive : rows.drives) {
-      Eigen::MatrixXd one(drive.count(), points.tau.cols());
-      for (Index k = 0; k < drive.count(); ++k)
-        one.row(k) = points.tau.row(drive.at[static_cast<std::size_t>(k)].point);
-      tau.push_back(std::move(one));
-    }
-    return tau;
-  }
-
   [[nodiscard]] bool enough(const Rows& rows) const {
     Index total = 0;
     for (const DriveRows& drive : rows.drives) {
@@ -99,19 +86,25 @@ class Judge {
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     unreachable_ = rows.unreachable;
     if (!enough(rows)) return std::nullopt;
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
-    const int n = robot_.drives();
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points_.tau);
     Explanation out;
     out.reading = reading;
-    for (int j = 0; j < n; ++j) out.assignment.push_back(j);
-    out.factor.setOnes(n);
+    out.assignment = own_columns();
+    out.factor.setOnes(robot_.drives());
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
     alone_ = root_mean_square(own_residuals(blocks));
     with_springs_ = relative_residual(
-        residual_form(fold_torques(with_springs(rows), torques(rows, points_)), out.assignment, out.factor),
-        out.factor);
+        residual_form(fold_torques(with_springs(rows), points_.tau), out.assignment, out.factor), out.factor);
     return out;
+  }
+
+  /// Each drive's torque in the column of its position.
+  [[nodiscard]] std::vector<int> own_columns() const { return Reading::as_given(robot_.drives()).source; }
+
+  /// The signs of the torques as the bits of a number.
+  [[nodiscard]] Eigen::VectorXd signs_of(int set) const {
+    return Eigen::VectorXd::NullaryExpr(robot_.drives(), [set](Index j) { return (set >> j & 1) != 0 ? -1.0 : 1.0; });
   }
 
   /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault
@@ -123,8 +116,7 @@ class Judge {
       const Index before = drive.Y.cols();
       drive.Y.conservativeResize(Eigen::NoChange, before + n);
       drive.Y.rightCols(n).setZero();
-      for (Index k = 0; k < drive.count(); ++k)
-        drive.Y(k, before + j) = points_.q(drive.at[static_cast<std::size_t>(k)].point, j);
+      drive.Y.col(before + j) = drive.of_points(points_.q.col(j));
     }
     return rows;
   }
@@ -156,7 +148,7 @@ class Judge {
       for (std::size_t k = 0; k < residual.size(); ++k) {
         if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
       }
-      std::sort(own.begin(), own.end(), [](const Start& a, const Start& b) { return a.residual < b.residual; });
+      std::ranges::sort(own, {}, &Start::residual);
       if (own.size() > kBestStarts) own.resize(kBestStarts);
       for (const Start& one : own) least = std::min(least, one.residual);
       found.insert(found.end(), own.begin(), own.end());
@@ -174,9 +166,7 @@ class Judge {
   [[nodiscard]] std::optional<Explanation> best_of_positions() const {
     std::optional<Explanation> best;
     for (const Explanation& e : all_) {
-      const bool torques_as_given =
-          std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
-      if (torques_as_given && (!best || e.residual < best->residual)) best = e;
+      if (e.torques_as_given() && (!best || e.residual < best->residual)) best = e;
     }
     return best;
   }
@@ -186,14 +176,13 @@ class Judge {
     const Reading reading = compose(h.reading, start);
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points_.tau);
     reading_alone_ = root_mean_square(own_residuals(blocks));
     if (h.drives_moved) {
       add_signs_and_factors(h, reading, before, blocks, h.reading.source);
       return;
     }
-    std::vector<int> order(blocks.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order = own_columns();
     do {
       add_signs_and_factors(h, reading, before, blocks, order);
       // Both columns in another order is the robot numbered in another way: no further hypothesis.
@@ -204,11 +193,11 @@ class Judge {
                              const std::vector<TorqueBlock>& blocks, const std::vector<int>& order) {
     const int n = robot_.drives();
     const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
-    Eigen::VectorXd s(n);
+    Eigen::VectorXd s;
     // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is
     // taken.
     for (int set = 0; set < (1 << (n - 1)); ++set) {
-      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
+      s = signs_of(set);
       if (2 * (s.array() < 0).count() > n) s = -s;
       add(h, reading, before, order, s, relative_residual(form, s), -1, {});
     }
@@ -341,19 +330,14 @@ class Judge {
     const Reading reading = compose(member(family, robot_.description(), value, 0).reading, start);
     const Rows rows = rows_of_points(robot_, base_, points, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return std::numeric_limits<double>::infinity();
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points));
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points.tau);
     const int n = robot_.drives();
-    std::vector<int> order(blocks.size());
-    std::iota(order.begin(), order.end(), 0);
+    const std::vector<int> order = own_columns();
     const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
     double best = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd s(n);
-    for (int set = 0; set < (1 << (n - 1)); ++set) {
-      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
-      best = std::min(best, relative_residual(form, s));
-    }
+    for (int set = 0; set < (1 << (n - 1)); ++set) best = std::min(best, relative_residual(form, signs_of(set)));
     if (!family.geometric || family.drives.size() != 1 || n == 1) return best;
-    s.setOnes();
+    Eigen::VectorXd s = Eigen::VectorXd::Ones(n);
     s(family.drives.front()) = best_factor(blocks, order, family.drives.front()).value;
     if (s.cwiseAbs().minCoeff() < 1e-6) return best;
     return std::min(best, relative_residual(residual_form(blocks, order, s.cwiseAbs()), s.cwiseSign()));
@@ -364,17 +348,12 @@ class Judge {
     few.sigma_s = points_.sigma_s;
     const Index N = points_.q.rows(), step = std::max<Index>(1, N / count);
     for (Index k = 0; k < N; k += step) few.at.push_back(points_.at[static_cast<std::size_t>(k)]);
-    const auto pick = [&](const Eigen::MatrixXd& all) {
-      Eigen::MatrixXd some(static_cast<Index>(few.at.size()), all.cols());
-      for (Index k = 0; k < some.rows(); ++k) some.row(k) = all.row(k * step);
-      return some;
-    };
-    few.q = pick(points_.q);
-    few.qd = pick(points_.qd);
-    few.qdd = pick(points_.qdd);
-    few.tau = pick(points_.tau);
-    few.torque_out.resize(few.tau.rows(), few.tau.cols());
-    for (Index k = 0; k < few.tau.rows(); ++k) few.torque_out.row(k) = points_.torque_out.row(k * step);
+    const auto rows = Eigen::seqN(0, std::ssize(few.at), step);
+    few.q = points_.q(rows, Eigen::all);
+    few.qd = points_.qd(rows, Eigen::all);
+    few.qdd = points_.qdd(rows, Eigen::all);
+    few.tau = points_.tau(rows, Eigen::all);
+    few.torque_out = points_.torque_out(rows, Eigen::all);
     return few;
   }
 
@@ -392,32 +371,26 @@ class Judge {
         out.push_back(e);
     }
     if (out.empty()) return out;
-    std::sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {
-      return a.changes != b.changes ? a.changes < b.changes : a.residual < b.residual;
-    });
+    std::ranges::sort(out, {}, [](const Explanation& e) { return std::pair(e.changes, e.residual); });
     // Searches end near one another: of the same words the best.
     std::vector<Explanation> distinct;
     for (const Explanation& e : out) {
-      if (std::none_of(distinct.begin(), distinct.end(), [&](const Explanation& d) {
+      if (std::ranges::none_of(distinct, [&](const Explanation& d) {
             return d.words == e.words || (d.key == e.key && d.drive == e.drive && is_search(d.key));
           }))
         distinct.push_back(e);
     }
-    out = std::move(distinct);
-    const double fewest = out.front().changes;
-    out.erase(std::remove_if(out.begin(), out.end(), [&](const Explanation& e) { return e.changes > fewest + 0.5; }),
-              out.end());
-    return out;
+    const double fewest = distinct.front().changes;
+    std::erase_if(distinct, [&](const Explanation& e) { return e.changes > fewest + 0.5; });
+    return distinct;
   }
 
   /// Noise may cover most of a residual. What is left of a fault then is that all drives together fit worse than each
   /// one alone.
   [[nodiscard]] bool heals(const Explanation& e, double as_given) const {
-    const bool torques_as_given =
-        std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
     if (e.odd && e.key == "position_scale") return false;  // a wrong length of the robot file looks like that, too
-    return torques_as_given && as_given > kBreaks * alone_ && e.residual < (e.odd ? kWinsOdd : kWinsNoisy) * as_given &&
-           e.residual < kHeals * e.alone;
+    return e.torques_as_given() && as_given > kBreaks * alone_ &&
+           e.residual < (e.odd ? kWinsOdd : kWinsNoisy) * as_given && e.residual < kHeals * e.alone;
   }
 
   static bool is_search(const std::string& key) { return key == "position_scale" || key == "position_zero"; }

@@ -4,6 +4,7 @@
 /// All hypotheses about signs, order, units and zeros of positions and torques, judged together: the one whose residual
 /// falls most, and to that of a sound fit, wins; others that explain as much are said beside it.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct Explanation {
   int drive = -1;
   bool odd = false;           ///< PositionHypothesis::odd
   double value = 0, std = 0;  ///< of a scale
+
+  [[nodiscard]] bool torques_as_given() const {
+    return std::ranges::is_sorted(assignment) && (factor.array() == 1.0).all();
+  }
 };
 
 struct Judgement {

@@ -259,7 +259,6 @@ class DriveRowsSeen {
 LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& rows, const DriveRowsSeen& seen,
                      const std::vector<Push>& pushes) {
   const double spacing = rows.rows() > 1 ? rows.t_s(1) - rows.t_s(0) : 0.0;
-  if (log.torque_out.size() == 0) log.torque_out.setConstant(log.samples(), log.drives(), false);
   std::string times;
   double largest = 0, length_s = 0;
   for (const Push& push : pushes) {
@@ -267,24 +266,19 @@ LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& ro
     largest = std::max(largest, push.largest);
     length_s += to - from;
     times += fmt::format("{}{:.4g} to {:.4g}", times.empty() ? "" : ", ", from, to);
-    for (Index k = 0; k < log.samples(); ++k) {
-      if (log.t_s(k) >= from && log.t_s(k) <= to) log.torque_out(k, drive) = true;
-    }
+    log.leave_torque_out(drive, std::ranges::lower_bound(log.t_s, from) - log.t_s.begin(),
+                         std::ranges::upper_bound(log.t_s, to) - log.t_s.begin());
   }
-  LogFinding f;
-  f.level = FindingLevel::mended;
-  f.key = "outside_torque";
-  f.file = log.file;
-  f.drive = drive;
-  f.value = length_s;
-  f.unit = "s";
-  f.text = fmt::format(
-      "drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where the drive gives at "
-      "most {:.3g}; "
-      "left "
-      "out: t_s = {} ({:.2g} s)",
-      drive + 1, largest, unit, seen.largest_torque(), times, length_s);
-  return f;
+  return {
+      .level = FindingLevel::mended,
+      .key = "outside_torque",
+      .file = log.file,
+      .drive = drive,
+      .value = length_s,
+      .unit = "s",
+      .text = fmt::format("drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where "
+                          "the drive gives at most {:.3g}; left out: t_s = {} ({:.2g} s)",
+                          drive + 1, largest, unit, seen.largest_torque(), times, length_s)};
 }
 
 std::vector<Seen> see(const Robot& robot, const std::vector<Log>& logs) {

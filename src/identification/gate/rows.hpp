@@ -34,6 +34,8 @@ struct DriveRows {
   Eigen::MatrixXd Y;  ///< rows x base parameters
 
   [[nodiscard]] Eigen::Index count() const { return Y.rows(); }
+  /// Of columns with a value a point, the values in these rows.
+  [[nodiscard]] Eigen::MatrixXd of_points(const Eigen::MatrixXd& columns) const;
 };
 
 struct Rows {

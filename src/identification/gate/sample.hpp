@@ -30,9 +30,8 @@ struct Sample {
   std::vector<Stretch> stretches;
   double band_hz = 0;  ///< -6 dB point of the Gaussian low pass that regressor and torque share
   double sigma_s = 0;  ///< of that Gaussian
-  bool coarse =
-      /// Even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
-      false;
+  /// Even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
+  bool coarse = false;
 };
 
 struct SampleOptions {
@@ -55,5 +54,10 @@ struct SampleOptions {
 
 /// Logs too short for a stretch are left out; the result may be empty.
 [[nodiscard]] Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options = {});
+
+/// How much of a residual the noise of the torque record makes by itself: white noise of the recorded torques (the
+/// floor of their spectra) under the sample's Gaussian, over the torques under it; rms over the drives, as
+/// Timing::rms_after counts.
+[[nodiscard]] double relative_torque_noise(const std::vector<Log>& logs, const Sample& sample);
 
 }  // namespace deltadyn::gate

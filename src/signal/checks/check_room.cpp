@@ -67,11 +67,6 @@ void CheckRoom::mark_filled(Index sample, char mark) const {
   if (flag != Log::kLeftOut) flag = mark;
 }
 
-void CheckRoom::leave_torque_out(Index drive, Index begin, Index end) const {
-  if (log.torque_out.size() == 0) log.torque_out.setConstant(log.samples(), log.drives(), false);
-  log.torque_out.col(drive).segment(begin, end - begin).setConstant(true);
-}
-
 double CheckRoom::travel(Index drive, Index begin, Index end) const {
   const auto part = log.q.col(drive).segment(begin, end - begin);
   return part.maxCoeff() - part.minCoeff();

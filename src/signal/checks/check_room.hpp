@@ -67,8 +67,6 @@ struct CheckRoom {
             double value, const std::string& unit, const std::string& sentence, const std::string& mend = {}) const;
   /// Marks a sample whose values were made up; Log::kBridged never takes back Log::kLeftOut.
   void mark_filled(Index sample, char mark) const;
-  /// Marks samples [begin, end) whose torque of one drive is no evidence.
-  void leave_torque_out(Index drive, Index begin, Index end) const;
   [[nodiscard]] bool turns(Index drive) const {
     return robot.kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute;
   }

@@ -132,7 +132,7 @@ void check_constant_torque(CheckRoom& room) {
     }
     std::vector<std::string> columns;
     for (const Run& run : together) {
-      room.leave_torque_out(run.drive, run.begin, run.end);
+      room.log.leave_torque_out(run.drive, run.begin, run.end);
       begin = std::min(begin, run.begin);
       end = std::max(end, run.end);
       columns.push_back(

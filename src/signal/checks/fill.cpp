@@ -88,13 +88,13 @@ class Filler {
     for (Index k = begin; k < end; ++k) values(k) = knots.at(room_.log.t_s(k));
     if (stale_ > 1 && end - begin <= longest_) {
       // What was never measured is no loss; thinned out later. Only at the ends the update is missing.
-      if (long_run && channel_.block == &room_.log.tau) room_.leave_torque_out(channel_.drive, begin, end);
+      if (long_run && channel_.block == &room_.log.tau) room_.log.leave_torque_out(channel_.drive, begin, end);
       return;
     }
     const bool told =
         room_.log.is_filled(begin) || (!room_.log.line.empty() && room_.log.line[static_cast<std::size_t>(begin)] == 0);
     if (channel_.block == &room_.log.tau && long_run) {
-      room_.leave_torque_out(channel_.drive, begin, end);
+      room_.log.leave_torque_out(channel_.drive, begin, end);
     } else if (channel_.block == &room_.log.q || channel_.block == &room_.log.tau) {
       for (Index k = begin; k < end; ++k) room_.mark_filled(k, mark);
     }

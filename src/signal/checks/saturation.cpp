@@ -92,7 +92,7 @@ void check_saturation(CheckRoom& room) {
                       levels, 100.0 * share),
           room.where(rows.front(), column), "record a gentler motion, or widen the range of the recorder");
     }
-    for (const Index i : rows) room.leave_torque_out(d, i, i + 1);
+    for (const Index i : rows) room.log.leave_torque_out(d, i, i + 1);
     room.tell(FindingLevel::mended, "torque_cut_off", rows.front(), column, static_cast<int>(d),
               static_cast<double>(clipped), "rows",
               fmt::format("the torque is cut off at {} from here on in {} samples, left out of fits", levels, clipped));
