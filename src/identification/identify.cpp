@@ -9,6 +9,7 @@
 #include "deltadyn/runtime/error.hpp"
 
 #include "encoder_uncertainty.hpp"
+#include "least_squares.hpp"
 #include "noise_bias.hpp"
 #include "residual_noise.hpp"
 #include "ripple_search.hpp"
@@ -27,49 +28,25 @@ constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (H
 // Of the best known parameter's standard deviation: a smaller bias is no matter
 constexpr double kFeltNoise = 0.1;
 
-DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads,
-                  const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {}) {
-  DataFold fold;
-  for (const PreparedLog& log : logs) fold.add(fold_log(robot, log, threads, p, weight));
-  return fold;
-}
-
-/// Regular rows that are fewer than those near reversals show little of the motion: reversals are then judged beside a
-/// fit of both.
-bool needs_reversals(const DriveFold& regular, const DriveFold& reversal) {
-  return regular.rows < reversal.rows;
-}
-
 /// Which drives keep their rows near reversals.
 std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice,
                                  std::vector<DriveReport>& drives) {
   std::vector<bool> keep(drives.size(), choice == Reversals::keep);
   if (choice == Reversals::keep) return keep;
-  std::vector<DriveFold> folds = fold.regular;
-  for (std::size_t j = 0; j < folds.size() && choice == Reversals::automatic; ++j) {
-    keep[j] = fold.regular[j].rows < kFewestReversalRows;
-    if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
-  }
-  const BaseEstimate estimate = estimate_base_parameters(base, folds);
+  const bool automatic = choice == Reversals::automatic;
+  for (std::size_t j = 0; j < keep.size(); ++j) keep[j] = automatic && fold.regular[j].rows < kFewestReversalRows;
+  const BaseEstimate estimate = estimate_base_parameters(base, automatic ? fold.to_begin_with() : fold.regular);
   const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
   for (std::size_t j = 0; j < drives.size(); ++j) {
     if (fold.reversal[j].rows < kFewestReversalRows || fold.regular[j].rows < kFewestReversalRows) continue;
     drives[j].reversal_ratio = fold.reversal[j].rms(p) / std::max(fold.regular[j].rms(p), 1e-12);
-    keep[j] = keep[j] || (choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio);
+    keep[j] = keep[j] || (automatic && drives[j].reversal_ratio < kReversalRatio);
   }
   return keep;
 }
 
 bool averages_periods(const std::vector<PreparedLog>& logs) {
   return std::any_of(logs.begin(), logs.end(), [](const PreparedLog& log) { return log.period_s.has_value(); });
-}
-
-std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& keep) {
-  std::vector<DriveFold> folds = fold.regular;
-  for (std::size_t j = 0; j < folds.size(); ++j) {
-    if (keep[j]) folds[j].add(fold.reversal[j]);
-  }
-  return folds;
 }
 
 /// Bands of the positions' filters.
@@ -101,21 +78,13 @@ MotionHz motion_bands(const std::vector<Log>& logs, const Identification& found)
   }
 }
 
-std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs,
-                                     const ProcessingOptions& options) {
-  std::vector<PreparedLog> prepared;
-  prepared.reserve(logs.size());
-  for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
-  return prepared;
-}
-
 /// The rows of one fit.
 struct Rows {
   std::vector<PreparedLog> prepared;
   DataFold fold;
   std::vector<bool> keep;  ///< one a drive: rows near reversals count
 
-  [[nodiscard]] std::vector<DriveFold> used() const { return select(fold, keep); }
+  [[nodiscard]] std::vector<DriveFold> used() const { return fold.with_reversals(keep); }
 };
 
 /// One identification at work.
@@ -185,11 +154,8 @@ class Identifier {
   /// short.
   [[nodiscard]] double unexplained(const ProcessingOptions& processing) const {
     try {
-      const DataFold fold = fold_all(robot_, prepare_all(robot_, logs_, processing), options_.threads);
-      std::vector<DriveFold> folds = fold.regular;
-      for (std::size_t j = 0; j < folds.size(); ++j) {
-        if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
-      }
+      const std::vector<DriveFold> folds =
+          fold_logs(robot_, prepare_logs(robot_, logs_, processing), options_.threads).to_begin_with();
       const BaseEstimate estimate = estimate_base_parameters(out_.base, folds);
       const Eigen::VectorXd p = any_parameters(out_.base, estimate.value, robot_.parameters());
       double sum = 0;
@@ -201,8 +167,8 @@ class Identifier {
   }
 
   void make_rows() {
-    rows_.prepared = prepare_all(robot_, logs_, out_.processing);
-    rows_.fold = fold_all(robot_, rows_.prepared, options_.threads);
+    rows_.prepared = prepare_logs(robot_, logs_, out_.processing);
+    rows_.fold = fold_logs(robot_, rows_.prepared, options_.threads);
     rows_.keep = keep_reversals(out_.base, rows_.fold, options_.reversals, out_.drives);
   }
 
@@ -263,7 +229,7 @@ class Identifier {
         const double limit = kHuber * scale[static_cast<std::size_t>(drive)];
         return std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);
       };
-      folds = select(fold_all(robot_, rows_.prepared, options_.threads, &p, weight), rows_.keep);
+      folds = fold_logs(robot_, rows_.prepared, options_.threads, &p, weight).with_reversals(rows_.keep);
       out_.base_estimate = estimate_base_parameters(out_.base, folds);
     }
     return folds;
@@ -273,7 +239,7 @@ class Identifier {
   void add_encoder_steps(const std::vector<double>& correlation) {
     const auto estimate = [&](const std::vector<Log>& logs) -> Eigen::VectorXd {
       const std::vector<DriveFold> folds =
-          select(fold_all(robot_, prepare_all(robot_, logs, out_.processing), options_.threads), rows_.keep);
+          fold_logs(robot_, prepare_logs(robot_, logs, out_.processing), options_.threads).with_reversals(rows_.keep);
       std::optional<NoiseBias> bias;
       if (bias_) bias = noise_bias(robot_, out_.base, logs, out_.processing, rows_.keep, motion_.instrument);
       return estimate_base_parameters(out_.base, folds, correlation, bias ? &*bias : nullptr).value;

@@ -164,13 +164,10 @@ PreparedLog copy_log(const Robot& robot, const Log& log) {
                 log.file, "use the robot file of the machine that the log was recorded on");
   }
   PreparedLog out;
-  out.file = log.file;
+  static_cast<Log&>(out) = log;
+  out.notes.clear();
+  out.findings.clear();
   out.rate_hz = 1.0 / log.sample_time_s();
-  out.t_s = log.t_s;
-  out.tau = log.tau;
-  out.line = log.line;
-  out.filled = log.filled;
-  out.torque_out = log.torque_out;
   return out;
 }
 
@@ -282,9 +279,6 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
       throw Error("without filtering, the log must hold velocities and accelerations", log.file,
                   "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
     }
-    out.q = log.q;
-    out.qd = log.qd;
-    out.qdd = log.qdd;
     out.stride = std::max(1, options.stride);
     out.rows = (samples + out.stride - 1) / out.stride;
     out.reversal.setConstant(samples, robot.drives(), false);
@@ -314,6 +308,18 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   }
   mark_reversals(robot, options, velocity_noise(log, motion_cutoff_hz(options)), out);
   return out;
+}
+
+std::vector<PreparedLog> prepare_logs(const Robot& robot, const std::vector<Log>& logs,
+                                      const ProcessingOptions& options) {
+  std::vector<PreparedLog> prepared;
+  for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
+  return prepared;
+}
+
+Eigen::Array<bool, Eigen::Dynamic, 1> usable_rows(const RowUses& use, Index drive, bool with_reversals) {
+  if (with_reversals) return use.col(drive) != RowUse::unusable;
+  return use.col(drive) == RowUse::regular;
 }
 
 bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
@@ -364,14 +370,11 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   }
   block.use.setConstant(count, n, RowUse::regular);
   for (Index k = 0; k < count; ++k) {
-    const Index centre = sample_of_row(log, first_row + k);
+    const Index from = sample_of_row(log, first_row + k) - reach, length = 2 * reach + 1;
     for (int j = 0; j < n; ++j) {
-      if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
-      if (log.rest.size() > 0 && log.rest.col(j).segment(centre - reach, 2 * reach + 1).any())
+      if (log.reversal.col(j).segment(from, length).any()) block.use(k, j) = RowUse::reversal;
+      if ((log.rest.size() > 0 && log.rest.col(j).segment(from, length).any()) || left_out(log, j, from, length))
         block.use(k, j) = RowUse::unusable;
-    }
-    for (int j = 0; j < n; ++j) {
-      if (left_out(log, j, centre - reach, 2 * reach + 1)) block.use(k, j) = RowUse::unusable;
     }
   }
 }

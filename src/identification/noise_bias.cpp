@@ -60,11 +60,7 @@ std::vector<Products> products_of(const Robot& robot, const BaseParameters& base
     read_rows(robot, narrow, first, count, instruments);
     for (std::size_t j = 0; j < keep.size(); ++j) {
       const auto drive = static_cast<Index>(j);
-      VectorXd used(count);
-      for (Index k = 0; k < count; ++k) {
-        const RowUse use = wide.use(k, drive);
-        used(k) = use == RowUse::regular || (use == RowUse::reversal && keep[j]) ? 1 : 0;
-      }
+      const VectorXd used = usable_rows(wide.use, drive, keep[j]).cast<double>();
       const MatrixXd Y = base_rows(base, wide, j, used), Z = base_rows(base, instruments, j, used);
       const VectorXd tau = wide.tau.col(drive);
       Products& part = parts[static_cast<std::size_t>(b)][j];

@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kNoiseMemory_s = 0.2;  // time over which residual correlation is looked for
-
 /// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations
 /// alternates, so that little of it is left in slow sums; the steps of a coarse one follow the motion about its turning
 /// points.
@@ -40,7 +38,6 @@ std::vector<double> correlations(const Robot& robot, const std::vector<Log>& rec
     const PreparedLog& log = logs[l];
     const Eigen::VectorXd position_noise = position_noise_std(recorded[l]);
     const Prediction prediction = predict(robot, log, p, threads);
-    const auto lags = static_cast<Index>(std::ceil(kNoiseMemory_s * log.rate_hz / static_cast<double>(log.stride)));
     const double white = log.low_pass ? log.low_pass->white_correlation() : 1.0;
     for (std::size_t j = 0; j < keep.size(); ++j) {
       const auto drive = static_cast<int>(j);
@@ -48,7 +45,7 @@ std::vector<double> correlations(const Robot& robot, const std::vector<Log>& rec
       const auto count = static_cast<double>(usable.count());
       const Eigen::VectorXd residual = prediction.tau.col(drive) - prediction.model.col(drive);
       const double least = white * least_correlation(recorded[l].q.col(drive), position_noise(drive));
-      sum[j] += count * std::max(least, noise_correlation(residual, usable, std::min<Index>(lags, 50), white));
+      sum[j] += count * std::max(least, residual_memory(residual, usable, log.row_rate_hz(), white));
       rows[j] += count;
     }
   }
