@@ -9,7 +9,6 @@
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
-#include "least_squares.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -214,9 +213,7 @@ class Gate {
       const ModelCutoff choice = choose_model_cutoff(robot_, base_, out_.logs, processing);
       const double band_hz = processing.torque_cutoff_ratio * choice.model.limit_hz;
       if (choice.model.limit_hz == 0 || band_hz >= sample.band_hz) return std::nullopt;
-      SampleOptions options;
-      options.highest_band_hz = options.lowest_band_hz = band_hz;
-      Sample narrow = take_sample(out_.logs, options);
+      Sample narrow = take_sample(out_.logs, SampleOptions::in_band(band_hz));
       if (!narrow.stretches.empty()) return narrow;
     } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
       // Logs too short for a cut-off, or poses out of reach: others say so.
@@ -245,9 +242,7 @@ class Gate {
   [[nodiscard]] Timing steady_timing(Sample sample) const {
     Timing timing = timing_of(sample);
     while (timing.significant && sample.band_hz > kLowestTiming_hz) {
-      SampleOptions options;
-      options.highest_band_hz = options.lowest_band_hz = sample.band_hz / std::numbers::sqrt2;
-      Sample lower = take_sample(out_.logs, options);
+      Sample lower = take_sample(out_.logs, SampleOptions::in_band(sample.band_hz / std::numbers::sqrt2));
       if (lower.stretches.empty()) return timing;
       Timing there = timing_of(lower);
       if (holds(timing, there)) return timing;

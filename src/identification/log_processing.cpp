@@ -20,6 +20,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 20;
+constexpr double kReversalSigmas = 4;   // a rate below this many standard deviations of its noise has no certain sign
 constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
@@ -126,7 +127,7 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
   std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
-    const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
+    const double noise = j < sigma_qd.size() ? kReversalSigmas * sigma_qd(j) : 0.0;
     mask.push_back(
         reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), 0));
     rest.push_back(rest_of(mask.back(), log.rate_hz));
@@ -188,9 +189,7 @@ void ProcessingOptions::validate() const {
   if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10))
     refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
   if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
-  if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
   if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
-  if (stride < 0) refuse("stride", "it must be at least 0");
   if (!((presliding.array() >= 0).all() && presliding.allFinite()))
     refuse("presliding", "displacements must be at least 0");
   if (!((presliding_damping_s.array() >= 0).all() && presliding_damping_s.allFinite()))
@@ -206,8 +205,8 @@ double motion_cutoff_hz(const ProcessingOptions& options) {
 /// Low pass of regressor and torque.
 std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
   const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
-  const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
-  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz, factor);
+  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz,
+                                        std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz)));
 }
 
 /// The period to average over, if the log has one and the series stays small.
@@ -279,8 +278,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
       throw Error("without filtering, the log must hold velocities and accelerations", log.file,
                   "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
     }
-    out.stride = std::max(1, options.stride);
-    out.rows = (samples + out.stride - 1) / out.stride;
+    out.rows = samples;
     out.reversal.setConstant(samples, robot.drives(), false);
     add_ripples(options, out);
     (void)joint_rates(robot, out);  // refuses poses out of reach

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/QR>
-#include <cmath>
 #include <vector>
 
 #include "deltadyn/identification/base_parameters.hpp"

@@ -1,7 +1,6 @@
 #include "deltadyn/identification/prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/statistics.hpp"

@@ -1,7 +1,6 @@
 #include "deltadyn/identification/residual_structure.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "least_squares.hpp"

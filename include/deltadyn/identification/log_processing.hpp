@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "deltadyn/identification/ripple.hpp"
@@ -35,14 +34,13 @@ struct ProcessingOptions {
   double torque_cutoff_ratio = 1.25;  ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
   Periods periods = Periods::detect;  ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
   double period_s = 0;                ///< used if periods is `given`
-  double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
-  double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
+  /// A rate below this share of the joint's largest one has no certain sign, nor one in its noise
+  double reversal_floor = 0.003;
   /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after
   /// a reversal [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
-  int stride = 0;                        ///< use every stride-th sample; 0: what the pass band asks for
 
   /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
   void keep_motion(double motion_hz);

@@ -3,7 +3,6 @@
 /// \file
 /// Is a recorded log fit for use? Repairs what is safe to repair and refuses the rest, with file, line and column.
 
-#include <string>
 #include <vector>
 
 #include "deltadyn/runtime/robot_description.hpp"

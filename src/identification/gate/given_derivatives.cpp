@@ -5,13 +5,11 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
-#include <optional>
 
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/log_columns.hpp"
 
-#include "readings.hpp"
 #include "sample.hpp"
 
 namespace deltadyn::gate {

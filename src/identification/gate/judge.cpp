@@ -177,29 +177,37 @@ class Judge {
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
     const std::vector<TorqueBlock> blocks = fold_torques(rows, points_.tau);
-    reading_alone_ = root_mean_square(own_residuals(blocks));
-    if (h.drives_moved) {
-      add_signs_and_factors(h, reading, before, blocks, h.reading.source);
-      return;
+    Explanation e;
+    if (before != nullptr) {
+      e.words = before->words;
+      e.key = before->key;
+      e.mend = before->mend;
+      e.changes = before->changes;
     }
-    std::vector<int> order = own_columns();
+    e.drive = before != nullptr ? before->drive : h.drive;
+    e.reading = reading;
+    e.alone = root_mean_square(own_residuals(blocks));
+    e.changes += h.changes;
+    e.odd = h.odd;
+    if (!h.words.empty()) e.say(h.key, h.words, h.mend);
+    e.assignment = h.drives_moved ? h.reading.source : own_columns();
     do {
-      add_signs_and_factors(h, reading, before, blocks, order);
+      add_signs_and_factors(h, e, blocks);
       // Both columns in another order is the robot numbered in another way: no further hypothesis.
-    } while (h.key != "position_order" && std::next_permutation(order.begin(), order.end()));
+    } while (!h.drives_moved && h.key != "position_order" && std::ranges::next_permutation(e.assignment).found);
   }
 
-  void add_signs_and_factors(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
-                             const std::vector<TorqueBlock>& blocks, const std::vector<int>& order) {
+  void add_signs_and_factors(const PositionHypothesis& h, Explanation e, const std::vector<TorqueBlock>& blocks) {
     const int n = robot_.drives();
-    const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
-    Eigen::VectorXd s;
+    if (!h.drives_moved) tell_order(e);
+    const Eigen::MatrixXd form = residual_form(blocks, e.assignment, Eigen::VectorXd::Ones(n));
     // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is
     // taken.
     for (int set = 0; set < (1 << (n - 1)); ++set) {
-      s = signs_of(set);
-      if (2 * (s.array() < 0).count() > n) s = -s;
-      add(h, reading, before, order, s, relative_residual(form, s), -1, {});
+      e.factor = signs_of(set);
+      if (2 * (e.factor.array() < 0).count() > n) e.factor = -e.factor;
+      e.residual = relative_residual(form, e.factor);
+      add(e, -1, {});
     }
     if (n == 1) return;
     // Another unit of one torque beside a wrong position is two faults, unless it is one drive's motor side.
@@ -207,47 +215,25 @@ class Judge {
     if (!h.words.empty() && !motor_side) return;
     for (int j = 0; j < n; ++j) {
       if (motor_side && j != h.drive) continue;
-      const Factor factor = best_factor(blocks, order, j);
+      const Factor factor = best_factor(blocks, e.assignment, j);
       if (std::abs(std::abs(factor.value) - 1) < kScaleWorth || std::abs(factor.value) < 5 * factor.std) continue;
-      s.setOnes();
-      s(j) = factor.value;
-      const Eigen::MatrixXd again = residual_form(blocks, order, s.cwiseAbs());
-      add(h, reading, before, order, s, relative_residual(again, s.cwiseSign()), j, factor);
+      e.factor.setOnes();
+      e.factor(j) = factor.value;
+      const Eigen::MatrixXd again = residual_form(blocks, e.assignment, e.factor.cwiseAbs());
+      e.residual = relative_residual(again, e.factor.cwiseSign());
+      add(e, j, factor);
     }
   }
 
-  void add(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
-           const std::vector<int>& order, const Eigen::VectorXd& factor, double residual, int scaled_drive,
-           const Factor& scale) {
-    Explanation e;
-    e.reading = reading;
-    e.assignment = order;
-    e.factor = factor;
-    e.residual = residual;
-    e.alone = reading_alone_;
-    e.changes = h.changes + (before != nullptr ? before->changes : 0.0);
-    e.drive = h.drive;
-    e.odd = h.odd;
-    if (before != nullptr && !before->words.empty()) {
-      e.words = before->words;
-      e.key = before->key;
-      e.mend = before->mend;
-      e.drive = before->drive;
-    }
-    const auto say = [&e](const std::string& key, const std::string& words, const std::string& mend) {
-      e.words += (e.words.empty() ? "" : ", and ") + words;
-      if (e.key.empty()) e.key = key;
-      if (e.mend.empty()) e.mend = mend;
-    };
-    if (!h.words.empty()) say(h.key, h.words, h.mend);
-    if (!h.drives_moved) tell_order(order, e, say);
-    tell_signs(factor, scaled_drive, e, say);
-    if (scaled_drive >= 0) tell_factor(factor, scaled_drive, scale, e, say);
+  /// \param scaled_drive  whose torque has another scale; -1: none
+  void add(Explanation e, int scaled_drive, const Factor& scale) {
+    tell_signs(scaled_drive, e);
+    if (scaled_drive >= 0) tell_factor(scaled_drive, scale, e);
     if (!e.words.empty()) all_.push_back(std::move(e));
   }
 
-  template <class Say>
-  void tell_order(const std::vector<int>& order, Explanation& e, const Say& say) const {
+  static void tell_order(Explanation& e) {
+    const std::vector<int>& order = e.assignment;
     std::vector<int> moved;
     std::string columns;
     for (std::size_t j = 0; j < order.size(); ++j) {
@@ -263,36 +249,34 @@ class Judge {
             : fmt::format(
                   "the torques are in another order than the positions: drives 1 to {} have the torque columns {}",
                   order.size(), columns);
-    say("torque_order", words,
-        "bring positions and torques of each drive together (delta-log import: source in the map)");
+    e.say("torque_order", words,
+          "bring positions and torques of each drive together (delta-log import: source in the map)");
   }
 
-  template <class Say>
-  void tell_signs(const Eigen::VectorXd& factor, int scaled_drive, Explanation& e, const Say& say) const {
+  void tell_signs(int scaled_drive, Explanation& e) const {
     std::vector<int> turned;
-    for (int j = 0; j < factor.size(); ++j) {
-      if (factor(j) < 0 && j != scaled_drive) turned.push_back(j);
+    for (int j = 0; j < e.factor.size(); ++j) {
+      if (e.factor(j) < 0 && j != scaled_drive) turned.push_back(j);
     }
     if (turned.empty()) return;
     e.changes += static_cast<double>(turned.size());
     if (e.drive < 0 && turned.size() == 1) e.drive = turned.front();
-    say("torque_sign", fmt::format("the torque of {} has the wrong sign", drives_in_words(turned, robot_.drives())),
-        "turn the sign of the torque column (delta-log import: sign = -1 in the map)");
+    e.say("torque_sign", fmt::format("the torque of {} has the wrong sign", drives_in_words(turned, robot_.drives())),
+          "turn the sign of the torque column (delta-log import: sign = -1 in the map)");
   }
 
-  template <class Say>
-  void tell_factor(const Eigen::VectorXd& factor, int drive, const Factor& scale, Explanation& e,
-                   const Say& say) const {
+  static void tell_factor(int drive, const Factor& scale, Explanation& e) {
+    const double factor = e.factor(drive);
     // The form's factor turns the column into the torque; what the user sees is its inverse.
-    e.changes += factor(drive) < 0 ? 2.5 : 1.5;
-    e.value = 1 / factor(drive);
-    e.std = scale.std / (factor(drive) * factor(drive));
+    e.changes += factor < 0 ? 2.5 : 1.5;
+    e.value = 1 / factor;
+    e.std = scale.std / (factor * factor);
     e.drive = drive;
-    say("torque_scale_drive",
-        fmt::format("the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque "
-                    "constant or gear ratio?",
-                    drive + 1, e.value, e.std),
-        "give the torque of every drive in N m at the joint (N for a carriage)");
+    e.say("torque_scale_drive",
+          fmt::format("the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque "
+                      "constant or gear ratio?",
+                      drive + 1, e.value, e.std),
+          "give the torque of every drive in N m at the joint (N for a carriage)");
   }
 
   [[nodiscard]] double refine(const PositionFamily& family, const Reading& start, double value) const {
@@ -398,7 +382,7 @@ class Judge {
   const Robot& robot_;
   const BaseParameters& base_;
   const Points& points_;
-  double unreachable_ = 0, alone_ = 0, reading_alone_ = 0;
+  double unreachable_ = 0, alone_ = 0;
   double with_springs_ = 1;  ///< residual of the log as given with a spring on every drive
   std::vector<Explanation> all_;
 };

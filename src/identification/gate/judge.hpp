@@ -28,6 +28,12 @@ struct Explanation {
   bool odd = false;           ///< PositionHypothesis::odd
   double value = 0, std = 0;  ///< of a scale
 
+  /// Adds what it says; key and mend are those of what is said first.
+  void say(const std::string& key_of_it, const std::string& words_of_it, const std::string& mend_of_it) {
+    words += (words.empty() ? "" : ", and ") + words_of_it;
+    if (key.empty()) key = key_of_it;
+    if (mend.empty()) mend = mend_of_it;
+  }
   [[nodiscard]] bool torques_as_given() const {
     return std::ranges::is_sorted(assignment) && (factor.array() == 1.0).all();
   }

@@ -22,7 +22,10 @@ constexpr double kPerPeriod = 13;   // grid points a period of the band
 // The motion's own filter ends well above the Gaussian that torque and regressor share: what it takes off the regressor
 // alone would look like a lag.
 constexpr double kMotionRatio = 2.0;
-constexpr Index kFewestSamples = 60;  // of a stretch
+constexpr Index kFewestSamples = 60;       // of a stretch
+constexpr double kPointsOfSample = 16000;  // of all stretches together, about
+// The band falls until the noise of the acceleration is below this share of its rms
+constexpr double kAccelerationNoise = 0.003;
 
 /// Smallest step of a recorded position: the encoder's, where it counts.
 double resolution(const Eigen::Ref<const Eigen::VectorXd>& position) {
@@ -108,7 +111,7 @@ double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions
   double cutoff = highest;
   const auto too_noisy = [&](double hz) {
     for (Index j = 0; j < drives; ++j) {
-      if (derivative_noise(noise(j), rate_hz, hz, 4, 2) > options.acceleration_noise * acceleration(j)) return true;
+      if (derivative_noise(noise(j), rate_hz, hz, 4, 2) > kAccelerationNoise * acceleration(j)) return true;
     }
     return false;
   };
@@ -138,7 +141,7 @@ Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
     if (log.samples() < kFewestSamples) continue;
     const double rate_hz = 1.0 / log.sample_time_s();
     const double grid_hz = std::min(rate_hz, kPerPeriod * options.highest_band_hz);
-    const double share_s = static_cast<double>(options.points) / static_cast<double>(logs.size()) / grid_hz;
+    const double share_s = kPointsOfSample / static_cast<double>(logs.size()) / grid_hz;
     const double length_s = static_cast<double>(log.samples()) / rate_hz;
     const int count = length_s <= 1.5 * share_s ? 1 : options.stretches;
     const auto samples = count == 1 ? log.samples() : static_cast<Index>((share_s / count + 2 * margin_s) * rate_hz);

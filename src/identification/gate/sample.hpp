@@ -35,12 +35,12 @@ struct Sample {
 };
 
 struct SampleOptions {
-  Eigen::Index points = 16000;  ///< of all stretches together, about
-  int stretches = 12;           ///< a log that is longer than its share
+  int stretches = 12;  ///< a log that is longer than its share
   double highest_band_hz = 40;
   double lowest_band_hz = 8;
-  /// The band falls until the noise of the acceleration is below this share of its rms
-  double acceleration_noise = 0.003;
+
+  /// A sample in one band, whatever the noise.
+  [[nodiscard]] static SampleOptions in_band(double hz) { return {.highest_band_hz = hz, .lowest_band_hz = hz}; }
 };
 
 /// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the
