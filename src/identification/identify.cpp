@@ -4,14 +4,16 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 #include "encoder_uncertainty.hpp"
 #include "least_squares.hpp"
 #include "noise_bias.hpp"
-#include "residual_noise.hpp"
 #include "ripple_search.hpp"
 #include "seconds_since.hpp"
 
@@ -47,6 +49,19 @@ std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fol
 
 bool averages_periods(const std::vector<PreparedLog>& logs) {
   return std::any_of(logs.begin(), logs.end(), [](const PreparedLog& log) { return log.period_s.has_value(); });
+}
+
+/// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations
+/// alternates, so that little of it is left in slow sums; the steps of a coarse one follow the motion about its turning
+/// points.
+double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double noise_std) {
+  // Of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
+  constexpr double kCountsPerSample = 3;
+  constexpr double kFine = 0.05, kCoarse = 0.25;
+  const double step = std::sqrt(12.0) * noise_std;
+  const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
+  const double usual = root_mean_square(moved);
+  return usual > kCountsPerSample * step ? kFine : kCoarse;
 }
 
 /// Bands of the positions' filters.
@@ -204,7 +219,7 @@ class Identifier {
     if (options_.robust) {
       folds = reweighted();
     } else if (options_.processing.filter && !averages_periods(rows_.prepared)) {
-      out_.noise_share = acceleration_noise_share(logs_, rows_.prepared, out_.processing);
+      out_.noise_share = acceleration_noise_share();
       // By about this share noise pulls an inertia down.
       const double best_known = (out_.base_estimate.std().array() / out_.base_estimate.value.array().abs()).minCoeff();
       if (out_.noise_share > kFeltNoise * best_known) {
@@ -212,11 +227,71 @@ class Identifier {
         out_.base_estimate = estimate_base_parameters(out_.base, folds, {}, &*bias_);
       }
     }
-    const std::vector<double> correlation =
-        correlations(robot_, logs_, rows_.prepared, any(), rows_.keep, options_.threads);
+    const std::vector<double> correlation = correlations();
     out_.base_estimate = estimate_base_parameters(out_.base, folds, correlation, bias_ ? &*bias_ : nullptr);
     if (!options_.robust && options_.processing.filter && !averages_periods(rows_.prepared))
       add_encoder_steps(correlation);
+  }
+
+  /// DriveNoise::correlation of each drive: mean over the logs, weighted by their rows.
+  [[nodiscard]] std::vector<double> correlations() const {
+    const Eigen::VectorXd p = any();
+    std::vector<double> sum(rows_.keep.size(), 0.0), rows(sum.size(), 0.0);
+    for (std::size_t l = 0; l < logs_.size(); ++l) {
+      const PreparedLog& log = rows_.prepared[l];
+      const Eigen::VectorXd position_noise = position_noise_std(logs_[l]);
+      const Prediction prediction = predict(robot_, log, p, options_.threads);
+      const double white = log.low_pass ? log.low_pass->white_correlation() : 1.0;
+      for (std::size_t j = 0; j < sum.size(); ++j) {
+        const auto drive = static_cast<int>(j);
+        const auto usable = prediction.usable(drive, rows_.keep[j]);
+        const auto count = static_cast<double>(usable.count());
+        const Eigen::VectorXd residual = prediction.residual().col(drive);
+        const double least = white * least_correlation(logs_[l].q.col(drive), position_noise(drive));
+        sum[j] += count * std::max(least, residual_memory(residual, usable, log.row_rate_hz(), white));
+        rows[j] += count;
+      }
+    }
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] = rows[j] > 0 ? sum[j] / rows[j] : 1.0;
+    return sum;
+  }
+
+  /// Standard deviation of each drive's residual from its median size, which outliers hardly move.
+  [[nodiscard]] std::vector<double> robust_scales(const Eigen::VectorXd& p) const {
+    std::vector<std::vector<double>> sizes(rows_.keep.size());
+    for (const PreparedLog& log : rows_.prepared) {
+      const Prediction prediction = predict(robot_, log, p, options_.threads);
+      const Eigen::MatrixXd size = prediction.residual().cwiseAbs();
+      for (std::size_t j = 0; j < sizes.size(); ++j) {
+        const auto drive = static_cast<int>(j);
+        const auto usable = prediction.usable(drive, rows_.keep[j]);
+        for (Index k = 0; k < usable.size(); ++k) {
+          if (usable(k)) sizes[j].push_back(size(k, drive));
+        }
+      }
+    }
+    std::vector<double> scales;
+    for (std::vector<double>& size : sizes)
+      scales.push_back(std::max(kMedianToSigma * upper_median(std::move(size)), 1e-12));
+    return scales;
+  }
+
+  /// Largest share, over logs and drives, of the power of the accelerations that is encoder noise. White up to the
+  /// positions' cut-off f, of density D, encoder noise has the power (2 pi)^4 D f^5 / 5 in the acceleration.
+  [[nodiscard]] double acceleration_noise_share() const {
+    const double f = out_.processing.motion_over_pass * out_.processing.cutoff_hz;
+    double share = 0;
+    for (std::size_t l = 0; l < logs_.size(); ++l) {
+      const PreparedLog& log = rows_.prepared[l];
+      const Eigen::VectorXd std = position_noise_std(logs_[l]);
+      for (Index j = 0; j < std.size(); ++j) {
+        const double density = 2 * std(j) * std(j) / log.rate_hz;
+        const double noise = std::pow(2 * std::numbers::pi, 4) * density * std::pow(f, 5) / 5;
+        const double power = log.qdd.col(j).squaredNorm() / static_cast<double>(log.qdd.rows());
+        if (power > 0) share = std::max(share, noise / power);
+      }
+    }
+    return share;
   }
 
   /// Huber's weights, a few passes of them.
@@ -224,7 +299,7 @@ class Identifier {
     std::vector<DriveFold> folds;
     for (int pass = 0; pass < 5; ++pass) {
       const Eigen::VectorXd p = any();
-      const std::vector<double> scale = robust_scales(robot_, rows_.prepared, p, rows_.keep, options_.threads);
+      const std::vector<double> scale = robust_scales(p);
       const RowWeight weight = [&scale](int drive, double residual) {
         const double limit = kHuber * scale[static_cast<std::size_t>(drive)];
         return std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);

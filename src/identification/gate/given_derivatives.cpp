@@ -9,6 +9,7 @@
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/log_columns.hpp"
+#include "deltadyn/signal/log_part.hpp"
 
 #include "sample.hpp"
 
@@ -115,11 +116,8 @@ std::string wrong(const Comparison& c, const std::string& column, const std::str
 std::vector<LogFinding> examine_derivatives(const RobotDescription& robot, const Log& log, bool used) {
   std::vector<LogFinding> out;
   if (log.qd.size() == 0 || !is_motion(log)) return out;
-  Log piece;
-  const Index rows = std::min(kMostRows, log.samples()), from = (log.samples() - rows) / 2;
-  piece.file = log.file;
-  piece.t_s = log.t_s.segment(from, rows);
-  piece.q = log.q.middleRows(from, rows);
+  const Log piece = middle_of(log, kMostRows);
+  const Index rows = piece.samples(), from = (log.samples() - rows) / 2;
   const double rate_hz = 1 / log.sample_time_s();
   const double cutoff_hz = std::min(2 * noise_limited_band_hz({piece}, {}), 0.4 * rate_hz);
   const double length_s = static_cast<double>(rows) / rate_hz;

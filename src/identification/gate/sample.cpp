@@ -58,12 +58,6 @@ Eigen::MatrixXd thin(const Eigen::MatrixXd& columns, Index factor) {
   return out;
 }
 
-Eigen::MatrixXd every(const Eigen::MatrixXd& columns, Index factor) {
-  Eigen::MatrixXd out((columns.rows() + factor - 1) / factor, columns.cols());
-  for (Index row = 0; row < out.rows(); ++row) out.row(row) = columns.row(row * factor);
-  return out;
-}
-
 Stretch stretch_of(const Log& piece, int file, double band_hz) {
   const double rate_hz = 1.0 / piece.sample_time_s();
   const double cutoff_hz = std::min(kMotionRatio * band_hz, 0.4 * rate_hz);
@@ -72,10 +66,11 @@ Stretch stretch_of(const Log& piece, int file, double band_hz) {
   Stretch out;
   out.file = file;
   out.step_s = static_cast<double>(factor) / rate_hz;
-  out.q = every(motion.q, factor);
-  out.qd = every(motion.qd, factor);
-  out.qdd = every(motion.qdd, factor);
   out.tau = thin(piece.tau, factor);
+  const auto grid = Eigen::seqN(0, out.tau.rows(), factor);
+  out.q = motion.q(grid, Eigen::all);
+  out.qd = motion.qd(grid, Eigen::all);
+  out.qdd = motion.qdd(grid, Eigen::all);
   out.first = (motion.first + factor - 1) / factor;
   out.last = std::min<Index>(out.points(), motion.last / factor);
   out.spoilt.assign(static_cast<std::size_t>(out.points()), 0);
