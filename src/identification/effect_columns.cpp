@@ -239,12 +239,11 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     without = whole;
     for (const int column : own_friction_) without(column) = 0;
     if (const Status status = states_->at(q, qd, qdd, state); status != Status::ok) refuse(log, k, status);
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, whole, tau); status != Status::ok)
-      refuse(log, k, status);
-    out.torque.row(k) = tau.transpose();
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, without, tau); status != Status::ok)
-      refuse(log, k, status);
-    out.load.row(k) = tau.transpose();
+    for (const auto& [parameters, torque] : {std::pair(&whole, &out.torque), {&without, &out.load}}) {
+      if (const Status status = robot_.inverse_dynamics(q, qd, qdd, *parameters, tau); status != Status::ok)
+        refuse(log, k, status);
+      torque->row(k) = tau.transpose();
+    }
     out.position.row(k) = state.position.transpose();
     out.velocity.row(k) = state.velocity.transpose();
     out.acceleration.row(k) = state.acceleration.transpose();

@@ -317,9 +317,8 @@ Eigen::Array<bool, Eigen::Dynamic, 1> usable_rows(const RowUses& use, Index driv
 }
 
 bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
-  const auto begin = log.filled.begin() + (log.filled.empty() ? 0 : first);
-  if (!log.filled.empty() && std::find(begin, begin + count, Log::kLeftOut) != begin + count) return true;
-  return log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
+  return log.any_left_out(first, count) ||
+         (log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
 }
 
 void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {

@@ -43,6 +43,12 @@ struct Log {
   [[nodiscard]] bool is_left_out(Eigen::Index sample) const {
     return !filled.empty() && filled[static_cast<std::size_t>(sample)] == kLeftOut;
   }
+  /// Is one of samples [first, first + count) left out?
+  [[nodiscard]] bool any_left_out(Eigen::Index first, Eigen::Index count) const {
+    if (filled.empty()) return false;
+    const auto begin = filled.begin() + first;
+    return std::find(begin, begin + count, kLeftOut) != begin + count;
+  }
   /// Marks samples [first, last) as no evidence.
   void leave_out(Eigen::Index first, Eigen::Index last) {
     filled.resize(static_cast<std::size_t>(samples()), kMeasured);

@@ -28,16 +28,12 @@ struct DriveFit {
 
 /// Torques of each drive at its rows, under the Gaussian of the regressor.
 std::vector<Eigen::VectorXd> torques_at(const Sample& sample, const Rows& rows, const Reading& reading) {
-  int logs = 0;
-  for (const Stretch& stretch : sample.stretches) logs = std::max(logs, stretch.file + 1);
-  const std::vector<double> no_shift(static_cast<std::size_t>(logs), 0.0);
   std::vector<Eigen::VectorXd> out;
   for (std::size_t j = 0; j < rows.drives.size(); ++j) {
     const auto drive = static_cast<Index>(j);
-    std::vector<Eigen::VectorXd> column;
-    for (const Stretch& stretch : sample.stretches) column.emplace_back(stretch.tau.col(drive));
-    out.emplace_back(reading.factor(drive) *
-                     values_at(sample, column, rows.drives[j].at, no_shift, 0, sample.sigma_s).col(0));
+    const Eigen::VectorXd tau =
+        values_at(sample, recorded_torque(sample, drive), rows.drives[j].at, {}, 0, sample.sigma_s);
+    out.emplace_back(reading.factor(drive) * tau);
   }
   return out;
 }

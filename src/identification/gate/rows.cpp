@@ -243,7 +243,8 @@ Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorX
   Eigen::MatrixXd out(static_cast<Index>(at.size()), 1 + derivatives);
   std::vector<Kernel> kernels;  // one a stretch: steps and shifts may differ
   for (const Stretch& stretch : sample.stretches) {
-    kernels.emplace_back(sigma_s, stretch.step_s, shift_s_of_log[static_cast<std::size_t>(stretch.file)]);
+    kernels.emplace_back(sigma_s, stretch.step_s,
+                         shift_s_of_log.empty() ? 0.0 : shift_s_of_log[static_cast<std::size_t>(stretch.file)]);
   }
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto s = static_cast<std::size_t>(at[k].stretch);

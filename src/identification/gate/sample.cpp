@@ -126,6 +126,12 @@ std::vector<int> file_numbers(const std::vector<Log>& logs) {
   return out;
 }
 
+std::vector<Eigen::VectorXd> recorded_torque(const Sample& sample, Index drive) {
+  std::vector<Eigen::VectorXd> out;
+  for (const Stretch& stretch : sample.stretches) out.emplace_back(stretch.tau.col(drive));
+  return out;
+}
+
 Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
   std::vector<Log> pieces;
   std::vector<int> owner;

@@ -52,6 +52,9 @@ struct SampleOptions {
 /// The number of each log's file, from 0 in the order of the list: parts of one file share its delays.
 [[nodiscard]] std::vector<int> file_numbers(const std::vector<Log>& logs);
 
+/// Recorded torque of one drive, a column a stretch.
+[[nodiscard]] std::vector<Eigen::VectorXd> recorded_torque(const Sample& sample, Eigen::Index drive);
+
 /// Logs too short for a stretch are left out; the result may be empty.
 [[nodiscard]] Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options = {});
 

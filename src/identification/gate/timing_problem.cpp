@@ -45,9 +45,7 @@ TimingProblem::TimingProblem(const Sample& sample, const Rows& rows, int logs)
   for (int j = 0; j < drives_; ++j) {
     first_.push_back(total_);
     total_ += rows.drives[static_cast<std::size_t>(j)].count();
-    std::vector<Eigen::VectorXd> column;
-    for (const Stretch& stretch : sample.stretches) column.emplace_back(stretch.tau.col(j));
-    recorded_.push_back(std::move(column));
+    recorded_.push_back(recorded_torque(sample, j));
   }
   weight_.setOnes(drives_);
 }
@@ -58,10 +56,9 @@ bool TimingProblem::solvable() const {
 }
 
 double TimingProblem::prepare() {
-  const std::vector<double> none(static_cast<std::size_t>(logs_), 0.0);
   for (int j = 0; j < drives_; ++j) {
     const Eigen::VectorXd tau =
-        values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), none, 0, sample_.sigma_s);
+        values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), {}, 0, sample_.sigma_s);
     weight_(j) = std::sqrt(static_cast<double>(tau.size()) / std::max(tau.squaredNorm(), 1e-300));
   }
   make_basis();
@@ -168,7 +165,6 @@ void TimingProblem::make_basis() {
 Eigen::MatrixXd TimingProblem::model_slopes(const Eigen::VectorXd& tau, const Eigen::MatrixXd& lag, double calm) const {
   const Index B = rows_.drives.front().Y.cols();
   const Eigen::VectorXd beta = (qr_.solve(tau).array() / column_norm_.array()).head(B);
-  const std::vector<double> none(static_cast<std::size_t>(logs_), 0.0);
   Eigen::MatrixXd out(total_, 2);
   for (int j = 0; j < drives_; ++j) {
     std::vector<Eigen::VectorXd> model;
@@ -176,7 +172,7 @@ Eigen::MatrixXd TimingProblem::model_slopes(const Eigen::VectorXd& tau, const Ei
     model = behind_low_pass(model, -lag.col(j).cwiseAbs());
     const auto [row, count] = stacked(j);
     out.middleRows(row, count) =
-        weight_(j) * values_at(sample_, model, places(j), none, 2, calm * sample_.sigma_s).rightCols(2);
+        weight_(j) * values_at(sample_, model, places(j), {}, 2, calm * sample_.sigma_s).rightCols(2);
   }
   return out;
 }

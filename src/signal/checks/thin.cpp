@@ -62,9 +62,7 @@ void thin_to_fresh_rows(CheckRoom& room) {
   }
   // A spoilt sample spoils the rows that average over it.
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (Index i = rows[k] - half; i <= rows[k] + half && !log.filled.empty(); ++i) {
-      if (log.is_left_out(i)) thin.filled[k] = Log::kLeftOut;
-    }
+    if (log.any_left_out(rows[k] - half, 2 * half + 1)) thin.filled[k] = Log::kLeftOut;
     if (log.torque_out.size() > 0) {
       thin.torque_out.row(static_cast<Index>(k)) =
           log.torque_out.middleRows(rows[k] - half, 2 * half + 1).colwise().any();
