@@ -213,8 +213,7 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
       if (cost) chosen = middle;  // without convergence, look further up
     }
   }
-  std::sort(summary.l_curve.begin(), summary.l_curve.end(),
-            [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
+  std::ranges::sort(summary.l_curve, {}, &LCurvePoint::lambda);
   return std::exp(chosen);
 }
 

@@ -248,21 +248,20 @@ void ProcessingOptions::keep_motion(double motion_hz) {
 }
 
 void ProcessingOptions::validate() const {
-  const auto refuse = [](const char* field, const char* range) {
+  const auto demand = [](bool fine, const char* field, const char* range) {
+    if (fine) return;
     throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
                 ExitCode::usage);
   };
-  if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
-  if (!(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass))
-    refuse("motion_over_pass", "it must be 0.02 to 10");
-  if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10))
-    refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
-  if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
-  if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
-  if (!((presliding.array() >= 0).all() && presliding.allFinite()))
-    refuse("presliding", "displacements must be at least 0");
-  if (!((presliding_damping_s.array() >= 0).all() && presliding_damping_s.allFinite()))
-    refuse("presliding_damping_s", "dampings must be at least 0 s");
+  const auto not_negative = [](const Eigen::VectorXd& v) { return (v.array() >= 0).all() && v.allFinite(); };
+  demand(cutoff_hz > 0 && std::isfinite(cutoff_hz), "cutoff_hz", "it must be above 0 Hz");
+  demand(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass, "motion_over_pass", "it must be 0.02 to 10");
+  demand(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10, "torque_cutoff_ratio",
+         "it must be above 0 and at most 10");
+  demand(periods != Periods::given || period_s > 0, "period_s", "it must be above 0 s");
+  demand(reversal_floor >= 0 && reversal_floor < 1, "reversal_floor", "it must be at least 0 and below 1");
+  demand(not_negative(presliding), "presliding", "displacements must be at least 0");
+  demand(not_negative(presliding_damping_s), "presliding_damping_s", "dampings must be at least 0 s");
 }
 
 PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options) {

@@ -174,8 +174,7 @@ bool fails(const ModelBandPart& part) {
 }  // namespace
 
 const ModelBandPart* ModelBand::beyond() const {
-  const auto part =
-      std::find_if(parts.begin(), parts.end(), [&](const ModelBandPart& p) { return p.low_hz == limit_hz; });
+  const auto part = std::ranges::find(parts, limit_hz, &ModelBandPart::low_hz);
   return part != parts.end() ? &*part : nullptr;
 }
 

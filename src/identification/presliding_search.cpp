@@ -190,17 +190,13 @@ class Search {
     const double smallest = std::max(kSmallest * range_(joint), kOverNoise * jitter_(joint));
     if (smallest >= kLargest * range_(joint)) return out;
     const double ratio = std::pow(kLargest * range_(joint) / smallest, 1.0 / (kGrid - 1));
-    std::vector<double> tried, costs;
-    for (int k = 0; k < kGrid; ++k) {
-      tried.push_back(smallest * std::pow(ratio, k));
-      costs.push_back(cost(tried.back()));
-    }
-    const auto at = std::min_element(costs.begin(), costs.end()) - costs.begin();
+    const auto tried = [&](Index k) { return smallest * std::pow(ratio, k); };
+    Index at = 0;
+    const VectorXd costs = VectorXd::NullaryExpr(kGrid, [&](Index k) { return cost(tried(k)); });
+    const double least = costs.minCoeff(&at);
     const double without = cost(0);
-    if (at == 0 || without - costs[static_cast<std::size_t>(at)] < kClearGain) return out;
-    out.displacement =
-        golden_section_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
-                                    tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
+    if (at == 0 || without - least < kClearGain) return out;
+    out.displacement = golden_section_in_logarithm(cost, tried(at - 1), tried(std::min<Index>(at + 1, kGrid - 1)));
     const double found = cost(out.displacement);
     out.gain = without - found;
     out.std = deviation(cost, out.displacement);
