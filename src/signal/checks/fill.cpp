@@ -10,6 +10,7 @@
 #include "deltadyn/signal/resample.hpp"
 
 #include "checks.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
@@ -61,18 +62,13 @@ class Filler {
 
   void fill() {
     const auto values = channel_.values();
-    const Index n = values.size();
-    for (Index i = 0; i < n; ++i) {
-      Index end = i;
-      while (end < n && !std::isfinite(values(end))) ++end;
-      if (end == i) continue;
-      if (end - i == n) {
+    for_each_gap(values, [&](Index begin, Index end) {
+      if (end - begin == values.size()) {
         throw Error("the column holds no number", room_.where(0, channel_.name),
                     "record this drive, or give the column that holds its values");
       }
-      fill_run(i, end);
-      i = end;
-    }
+      fill_run(begin, end);
+    });
   }
   /// Numbers that were missing in this channel alone.
   [[nodiscard]] const Tally& filled() const { return filled_; }

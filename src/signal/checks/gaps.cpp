@@ -78,19 +78,14 @@ void drop_blind_rows(CheckRoom& room) {
   std::vector<char> blind(static_cast<std::size_t>(n), 0);
   std::vector<Tally> tallies(static_cast<std::size_t>(log.drives()));
   for (Index d = 0; d < log.drives(); ++d) {
-    const auto q = log.q.col(d);
     const int stale = room.stale_positions[static_cast<std::size_t>(d)];
     const Index longest = stale > 1 ? 3 * stale : room.longest_filled(usual);
-    for (Index i = 0; i < n;) {
-      Index end = i;
-      while (end < n && !std::isfinite(q(end))) ++end;
+    for_each_gap(log.q.col(d), [&](Index begin, Index end) {
       // At the ends there is nothing to fill from.
-      if (end > i && (end - i > longest || i == 0 || end == n)) {
-        std::fill(blind.begin() + i, blind.begin() + end, 1);
-        if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(i, end - i);
-      }
-      i = std::max(end, i + 1);
-    }
+      if (end - begin <= longest && begin != 0 && end != n) return;
+      std::fill(blind.begin() + begin, blind.begin() + end, 1);
+      if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(begin, end - begin);
+    });
   }
   std::vector<Index> rows;
   std::vector<Index> recordings;
