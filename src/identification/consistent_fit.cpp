@@ -59,11 +59,7 @@ class DataResidual final : public ceres::CostFunction {
       const auto columns = A_.middleCols(block.y, block.fitted());
       residual.noalias() += columns * y;
       if (!wanted) continue;
-      if (block.width() == 1) {
-        Eigen::Map<Eigen::VectorXd>(jacobians[i], A_.rows()).noalias() = columns * J.col(0);
-      } else {
-        Eigen::Map<RowMajor>(jacobians[i], A_.rows(), block.width()).noalias() = columns * J;
-      }
+      Eigen::Map<RowMajor>(jacobians[i], A_.rows(), block.width()).noalias() = columns * J;
     }
     return residual.allFinite();
   }
@@ -90,11 +86,7 @@ class RegularizationResidual final : public ceres::CostFunction {
     Eigen::Map<Eigen::VectorXd> residual(residuals, num_residuals());
     if (!fit::metric_residual(block_, layout_, metric_, y, residual, wanted ? &dr_dy : nullptr)) return false;
     residual *= weight_;
-    if (wanted && block_.width() == 1) {
-      Eigen::Map<Eigen::VectorXd>(jacobians[0], num_residuals()) = weight_ * dr_dy * dy_dpi.col(0);
-    } else if (wanted) {
-      Eigen::Map<RowMajor>(jacobians[0], num_residuals(), block_.width()) = weight_ * dr_dy * dy_dpi;
-    }
+    if (wanted) Eigen::Map<RowMajor>(jacobians[0], num_residuals(), block_.width()) = weight_ * dr_dy * dy_dpi;
     return residual.allFinite();
   }
 
@@ -142,10 +134,10 @@ void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eige
   ceres::Solver::Options solver;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.linear_solver_type = ceres::DENSE_QR;  // normal equations would lose the weakly excited directions
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.function_tolerance;
-  solver.gradient_tolerance = options.gradient_tolerance;
-  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.max_num_iterations = 200;
+  solver.function_tolerance = 1e-8;  // relative change of J
+  solver.gradient_tolerance = 1e-10;
+  solver.parameter_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;
   ceres::Solver::Summary result;
@@ -153,6 +145,15 @@ void solve_with_ceres(const Layout& layout, const Eigen::MatrixXd& A, const Eige
   summary.iterations = std::max(0, result.num_successful_steps + result.num_unsuccessful_steps - 1);
   summary.converged = result.termination_type == ceres::CONVERGENCE;
   summary.message = result.message;
+}
+
+void check_options(const ConsistentFitOptions& options) {
+  const auto demand = [](double value, const char* what) {
+    if (value > 0 && std::isfinite(value)) return;
+    throw Error(what, "consistent fit, options", "see ConsistentFitOptions for the ranges", ExitCode::usage);
+  };
+  demand(options.regularization.value_or(1), "regularization must be a positive number or chosen from the data");
+  demand(options.prior_relative_std, "prior_relative_std must be positive");
 }
 
 /// Where the search for lambda begins, as a share of the largest one.
@@ -196,7 +197,7 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
     if (!y) refuse(lowest);
     summary.data_cost_min = convex.data_cost(*y);
   }
-  const double limit = summary.data_cost_min + options.data_misfit_rise;
+  const double limit = summary.data_cost_min + ConsistentFitOptions::kDataMisfitRise;
   double low = std::log(lowest), high = std::log(highest);
   double chosen = low;
   // Where the largest lambda does not converge, data and prior contradict each other: it costs more than is admitted.
@@ -212,8 +213,7 @@ double choose_lambda(const Layout& layout, const ConvexProblem& convex, const Co
       if (cost) chosen = middle;  // without convergence, look further up
     }
   }
-  std::sort(summary.l_curve.begin(), summary.l_curve.end(),
-            [](const auto& a, const auto& b) { return a.lambda < b.lambda; });
+  std::ranges::sort(summary.l_curve, {}, &LCurvePoint::lambda);
   return std::exp(chosen);
 }
 
@@ -230,7 +230,6 @@ OptimalityCertificate certify(const ConvexProblem& convex, FitMetric metric, dou
   for (const Eigen::VectorXd& point : {Eigen::VectorXd(centred.head(y.size())), centred}) {
     OptimalityCertificate other = convex.certify(metric, lambda, point);
     other.gap = std::max(0.0, cost - (cost_centred - other.gap));
-    other.relative_gap = other.gap / std::max(1.0, cost);
     if (other.available && other.gap < best.gap) best = other;
   }
   return best;
@@ -314,30 +313,21 @@ bool ConsistentFitSummary::agrees_with_least_squares() const {
   return data_cost - data_cost_free <= expected + 3 * std::sqrt(2 * expected);
 }
 
-bool ConsistentFitOptions::is_valid(std::string* error) const {
-  auto refuse = [error](const std::string& text) {
-    if (error != nullptr) *error = text;
-    return false;
-  };
-  auto positive = [](double value) { return value > 0 && std::isfinite(value); };
-  if (regularization && !positive(*regularization))
-    return refuse("regularization must be a positive number or chosen from the data");
-  if (!positive(data_misfit_rise)) return refuse("data_misfit_rise must be positive");
-  if (max_iterations < 1) return refuse("max_iterations must be at least 1");
-  if (!positive(function_tolerance)) return refuse("function_tolerance must be positive");
-  if (!positive(gradient_tolerance)) return refuse("gradient_tolerance must be positive");
-  if (!positive(parameter_tolerance)) return refuse("parameter_tolerance must be positive");
-  if (!positive(prior_relative_std)) return refuse("prior_relative_std must be positive");
-  if (!positive(certificate_gap)) return refuse("certificate_gap must be positive");
-  return true;
+std::string ConsistentFitSummary::brief_report() const {
+  const std::string proof = !certificate.available ? "no certificate for this metric"
+                            : certificate.passed ? fmt::format("global optimum within {:.1e} of chi^2", certificate.gap)
+                                                 : fmt::format("not proven optimal (gap {:.2e})", certificate.gap);
+  return fmt::format(
+      "consistent fit: {} variables, chi^2 {:.6g} (prior {:.3g}), lambda {:.3g}{}, {} after {} + {} iterations, {:.1f} "
+      "ms, {}",
+      variables, data_cost, initial_data_cost, lambda, lambda_from_data ? " from the data" : "",
+      converged ? "converged" : "NOT converged", interior_point_iterations, iterations, 1e3 * solve_time_s, proof);
 }
 
 ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& problem,
                                                const ConsistentFitOptions& options) {
   const auto start_time = Clock::now();
-  if (std::string error; !options.is_valid(&error)) {
-    throw Error(error, "consistent fit, options", "see ConsistentFitOptions for the ranges", ExitCode::usage);
-  }
+  check_options(options);
   const Layout layout = fit::make_layout(problem, options.set);
   const int n = layout.fitted;
   ConsistentFitSummary summary;
@@ -380,7 +370,8 @@ ConsistentFitSummary fit_consistent_parameters(const ConsistentFitProblem& probl
   summary.data_cost_min = summary.lambda_from_data ? constant + summary.data_cost_min : summary.data_cost;
   for (LCurvePoint& point : summary.l_curve) point.data_cost += constant;
   summary.certificate = certify(convex, options.metric, summary.lambda, y, inside.x);
-  summary.certificate.passed = summary.certificate.available && summary.certificate.gap <= options.certificate_gap;
+  summary.certificate.passed =
+      summary.certificate.available && summary.certificate.gap <= ConsistentFitOptions::kCertificateGap;
   // Ceres measures its progress by the size of J, which rounding hides where J is next to nothing: the proof counts for
   // more.
   summary.converged = summary.converged || summary.certificate.passed;

@@ -89,7 +89,20 @@ void DataFold::add(const DataFold& other) {
     reversal[j].add(other.reversal[j]);
   }
   samples += other.samples;
-  unusable_rows += other.unusable_rows;
+}
+
+std::vector<DriveFold> DataFold::with_reversals(const std::vector<bool>& keep) const {
+  std::vector<DriveFold> folds = regular;
+  for (std::size_t j = 0; j < folds.size(); ++j) {
+    if (keep[j]) folds[j].add(reversal[j]);
+  }
+  return folds;
+}
+
+std::vector<DriveFold> DataFold::to_begin_with() const {
+  std::vector<bool> keep;
+  for (std::size_t j = 0; j < regular.size(); ++j) keep.push_back(regular[j].rows < reversal[j].rows);
+  return with_reversals(keep);
 }
 
 DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const Eigen::VectorXd* p,
@@ -98,24 +111,30 @@ DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads, const
   const auto drives = static_cast<std::size_t>(n);
   DataFold fold;
   fold.regular.assign(drives, DriveFold(robot.parameters()));
-  fold.reversal.assign(drives, DriveFold(robot.parameters()));
+  fold.reversal = fold.regular;
   const Eigen::Index blocks = (log.rows + kRowsPerBlock - 1) / kRowsPerBlock;
   const auto part_of = [&](Eigen::Index k) {
     RowBlock block;
     read_rows(robot, log, k * kRowsPerBlock, std::min(kRowsPerBlock, log.rows - k * kRowsPerBlock), block);
     DataFold part;
     part.regular.assign(drives, DriveFold(robot.parameters()));
-    part.reversal.assign(drives, DriveFold(robot.parameters()));
+    part.reversal = part.regular;
     for (int j = 0; j < n; ++j) {
       add_rows(block, j, RowUse::regular, p, weight, part.regular[static_cast<std::size_t>(j)]);
       add_rows(block, j, RowUse::reversal, p, weight, part.reversal[static_cast<std::size_t>(j)]);
     }
-    part.unusable_rows = (block.use == RowUse::unusable).count();
     return part;
   };
   in_parallel_in_order(
       blocks, part_of, [&](Eigen::Index, const DataFold& part) { fold.add(part); }, threads);
   fold.samples = log.t_s.size();
+  return fold;
+}
+
+DataFold fold_logs(const Robot& robot, const std::vector<PreparedLog>& logs, int threads, const Eigen::VectorXd* p,
+                   const RowWeight& weight) {
+  DataFold fold;
+  for (const PreparedLog& log : logs) fold.add(fold_log(robot, log, threads, p, weight));
   return fold;
 }
 

@@ -37,9 +37,13 @@ struct DataFold {
   std::vector<DriveFold> regular;   ///< one a drive
   std::vector<DriveFold> reversal;  ///< one a drive
   Eigen::Index samples = 0;         ///< of the logs
-  Eigen::Index unusable_rows = 0;
 
   void add(const DataFold& other);
+  /// Folds of the drives, with the rows near reversals of those that keep them.
+  [[nodiscard]] std::vector<DriveFold> with_reversals(const std::vector<bool>& keep) const;
+  /// Folds to begin with, before it is known whether reversals do harm: regular rows that are fewer than those near
+  /// reversals show little of the motion, and are taken together with them.
+  [[nodiscard]] std::vector<DriveFold> to_begin_with() const;
 };
 
 /// Weight of one row in a fold, at least 0 (for robust fits). Arguments: drive, torque residual [N m | N].
@@ -49,5 +53,8 @@ using RowWeight = std::function<double(int, double)>;
 /// \param p, weight  if given, each row is scaled by sqrt(weight(drive, tau - Y p))
 [[nodiscard]] DataFold fold_log(const Robot& robot, const PreparedLog& log, int threads = 0,
                                 const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {});
+/// The same for several logs together.
+[[nodiscard]] DataFold fold_logs(const Robot& robot, const std::vector<PreparedLog>& logs, int threads = 0,
+                                 const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {});
 
 }  // namespace deltadyn

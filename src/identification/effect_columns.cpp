@@ -200,6 +200,43 @@ std::vector<MachineDifference> differences_of(EffectList<Effects...>, const Robo
   return all;
 }
 
+std::vector<EffectColumn> columns_of_changes(const EffectSignals& s, const std::vector<MachineDifference>& differences,
+                                             EffectId id, int joint, const Shape<double>& shape) {
+  std::vector<EffectColumn> out;
+  for (std::size_t d = 0; d < differences.size(); ++d) {
+    const MachineDifference& one = differences[d];
+    if (one.id == id && one.joint == joint && one.shape == shape) out.push_back({-1, s.changed.at(d)});
+  }
+  return out;
+}
+
+template <class E>
+std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& s, const RobotDescription& robot, int joint,
+                                               const Shape<double>& shape) {
+  const Index N = s.q.rows(), n = s.q.cols();
+  const MatrixXd of_limbs = gravity_of_limbs(robot);
+  if (joint >= 0)
+    return columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, of_limbs, joint, k); });
+  std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, N, n);
+  for (Index j = 0; j < n; ++j) {
+    if (!acts_on_all(effect_id<E>, static_cast<int>(j), robot)) continue;
+    const auto one = columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_drive(s, of_limbs, j, k); });
+    for (std::size_t c = 0; c < one.size(); ++c) out[c].values.col(j) = one[c].values;
+  }
+  if constexpr (E::traits().place == EffectPlace::telescope) {
+    spread(
+        columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, robot.gravity, k); }),
+        [&](Index k) { return s.J_bar.row(k); }, out);
+  } else if constexpr (E::traits().place == EffectPlace::passive_joints) {
+    for (Index m = 0; m < s.passive_rate.cols(); ++m) {
+      spread(
+          columns_of_law<E>(0, shape, N, [&](Index k) { return input_at_rate(s, s.passive_rate(k, m), k); }),
+          [&](Index k) { return s.J_passive.row(k).segment(m * n, n); }, out);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effect_states(robot.description())) {
@@ -208,7 +245,6 @@ EffectModel::EffectModel(const Robot& robot) : robot_(robot), states_(make_effec
     if (id.kind != ParameterKind::inertial && id.number > 0) own_friction_.push_back(k);
     if (id.is_friction()) friction_.push_back(k);
   }
-  gravity_ = gravity_of_limbs(robot.description());
   differences_ = differences_of(AllEffects(), robot);
 }
 
@@ -239,12 +275,11 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     without = whole;
     for (const int column : own_friction_) without(column) = 0;
     if (const Status status = states_->at(q, qd, qdd, state); status != Status::ok) refuse(log, k, status);
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, whole, tau); status != Status::ok)
-      refuse(log, k, status);
-    out.torque.row(k) = tau.transpose();
-    if (const Status status = robot_.inverse_dynamics(q, qd, qdd, without, tau); status != Status::ok)
-      refuse(log, k, status);
-    out.load.row(k) = tau.transpose();
+    for (const auto& [parameters, torque] : {std::pair(&whole, &out.torque), {&without, &out.load}}) {
+      if (const Status status = robot_.inverse_dynamics(q, qd, qdd, *parameters, tau); status != Status::ok)
+        refuse(log, k, status);
+      torque->row(k) = tau.transpose();
+    }
     out.position.row(k) = state.position.transpose();
     out.velocity.row(k) = state.velocity.transpose();
     out.acceleration.row(k) = state.acceleration.transpose();
@@ -342,43 +377,6 @@ void EffectModel::add_differences(const PreparedLog& log, const VectorXd& p, Eff
   });
 }
 
-std::vector<EffectColumn> EffectModel::columns_of_changes(const EffectSignals& s, EffectId id, int joint,
-                                                          const Shape<double>& shape) const {
-  std::vector<EffectColumn> out;
-  for (std::size_t d = 0; d < differences_.size(); ++d) {
-    const MachineDifference& one = differences_[d];
-    if (one.id == id && one.joint == joint && one.shape == shape) out.push_back({-1, s.changed.at(d)});
-  }
-  return out;
-}
-
-template <class E>
-std::vector<EffectColumn> EffectModel::columns_of_joint_law(const EffectSignals& s, int joint,
-                                                            const Shape<double>& shape) const {
-  const Index N = s.q.rows(), n = s.q.cols();
-  if (joint >= 0)
-    return columns_of_law<E>(joint, shape, N, [&](Index k) { return input_of_drive(s, gravity_, joint, k); });
-  std::vector<EffectColumn> out = empty_columns(kAmplitudesOf<E>, -1, N, n);
-  for (Index j = 0; j < n; ++j) {
-    if (!acts_on_all(effect_id<E>, static_cast<int>(j), robot_.description())) continue;
-    const auto one = columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_drive(s, gravity_, j, k); });
-    for (std::size_t c = 0; c < one.size(); ++c) out[c].values.col(j) = one[c].values;
-  }
-  if constexpr (E::traits().place == EffectPlace::telescope) {
-    const Eigen::Vector3d gravity = robot_.description().gravity;
-    spread(
-        columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, gravity, k); }),
-        [&](Index k) { return s.J_bar.row(k); }, out);
-  } else if constexpr (E::traits().place == EffectPlace::passive_joints) {
-    for (Index m = 0; m < s.passive_rate.cols(); ++m) {
-      spread(
-          columns_of_law<E>(0, shape, N, [&](Index k) { return input_at_rate(s, s.passive_rate(k, m), k); }),
-          [&](Index k) { return s.J_passive.row(k).segment(m * n, n); }, out);
-    }
-  }
-  return out;
-}
-
 std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId id, int joint, const VectorXd& given,
                                                int log_number) const {
   const Shape<double> shape = shape_of(id, given);
@@ -386,7 +384,7 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
   visit_effect(id, [&](auto effect) {
     using E = decltype(effect);
     if constexpr (kIs<E, JointLaw> || kIs<E, JointMemory>) {
-      out = columns_of_joint_law<E>(s, joint, shape);
+      out = columns_of_joint_law<E>(s, robot_.description(), joint, shape);
     } else if constexpr (kIs<E, PlateForce>) {
       out = columns_on_plate<E>(s, shape, robot_.description().gravity);
     } else if constexpr (kIs<E, RecordedChange>) {
@@ -395,7 +393,7 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
       out = columns_of_spring<E>(s, joint, shape);
     } else {
       static_assert(kIs<E, MachineChange>, "an effect is of one of the kinds");
-      out = columns_of_changes(s, id, joint, shape);
+      out = columns_of_changes(s, differences_, id, joint, shape);
     }
   });
   const EffectKind& kind = effect_kind(id);
@@ -409,10 +407,8 @@ std::vector<EffectColumn> EffectModel::columns(const EffectSignals& s, EffectId 
 MatrixXd low_passed_rows(const PreparedLog& log, const Eigen::Ref<const MatrixXd>& values) {
   MatrixXd rows(log.rows, values.cols());
   if (log.low_pass) {
-    const Index reach = log.low_pass->half_width();
-    const Index first = log.first - reach;
-    const Index needed = (log.rows - 1) * log.stride + 2 * reach + 1;
-    log.low_pass->apply(values.middleRows(first, needed), 0, log.rows, rows);
+    const Index first = log.first - log.low_pass->half_width(), needed = log.low_pass->inputs(log.rows);
+    log.low_pass->apply(values.middleRows(first, needed), rows);
   } else {
     for (Index k = 0; k < log.rows; ++k) rows.row(k) = values.row(sample_of_row(log, k));
   }

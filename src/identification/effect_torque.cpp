@@ -1,7 +1,6 @@
 #include "deltadyn/identification/effect_torque.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "deltadyn/identification/model_band.hpp"
@@ -61,15 +60,10 @@ AmplitudeRows amplitude_rows(const Robot& robot, const BaseParameters& base, con
       const auto drive = static_cast<std::size_t>(j);
       MatrixXd& X = out.X[drive];
       VectorXd& y = out.y[drive];
-      const auto counts = [&](Index k) {
-        return block.use(k, j) == RowUse::regular ||
-               (block.use(k, j) == RowUse::reversal && used.keep_reversals[drive]);
-      };
-      Index count = 0;
-      for (Index k = 0; k < prepared.rows; ++k) count += counts(k) ? 1 : 0;
+      const auto counts = usable_rows(block.use, j, used.keep_reversals[drive]);
       Index row = X.rows();
-      X.conservativeResize(row + count, b + e);
-      y.conservativeResize(row + count);
+      X.conservativeResize(row + counts.count(), b + e);
+      y.conservativeResize(row + counts.count());
       for (Index k = 0; k < prepared.rows; ++k) {
         if (!counts(k)) continue;
         X.row(row).head(b) = block.Y[drive].row(k)(base.independent);

@@ -1,7 +1,6 @@
 #include "encoder_uncertainty.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "deltadyn/runtime/statistics.hpp"

@@ -9,7 +9,6 @@
 #include "deltadyn/signal/log_part.hpp"
 #include "deltadyn/signal/torque_timing_mend.hpp"
 
-#include "least_squares.hpp"
 #include "partial_fit.hpp"
 
 namespace deltadyn {
@@ -28,7 +27,6 @@ constexpr double kMost = 3;              // samples; a larger one is for the gat
 constexpr double kCleanDelayFit = 0.015;
 constexpr double kAlike = 4;  // standard deviations of the drives' own delays about the common one
 constexpr double kDampingStep_s = 1e-3, kDisplacementStep = 0.02;  // for the slopes; the second is a share
-constexpr double kMemory_s = 0.2;                                  // of the residual, as in identify()
 
 class DelaySearch {
  public:
@@ -68,7 +66,7 @@ class DelaySearch {
     shifted_ = without_delay(logs_, delay_s);
     for (const Log& log : shifted_) {
       prepared_.push_back(prepare_log(robot_, log, processing_));
-      Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
+      RowUses use;
       rows.push_back(base_rows(robot_, base_, prepared_.back(), use));
       rows.back().weight = (use == RowUse::regular).cast<double>().matrix();
       torque_.push_back(rows.back().tau);
@@ -79,34 +77,24 @@ class DelaySearch {
         X.setZero();
       }
     }
-    weigh(rows);
+    clean_ = is_clean(weigh_by_residual(rows, 2), rows);
     rows_ = rows;
     return PartialFit(std::move(rows));
   }
 
-  /// By the residual of each drive and its memory; says whether the model explains the torque.
-  void weigh(std::vector<BaseRows>& rows) {
-    for (int pass = 0; pass < 2; ++pass) {
-      const PartialFit fit(rows);
-      clean_ = true;
-      for (Index j = 0; j < robot_.drives(); ++j) {
-        double square = 0, torque = 0, count = 0, memory = 1;
-        for (std::size_t l = 0; l < rows.size(); ++l) {
-          const VectorXd e = fit.residual(l).col(j);
-          const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows[l].weight.col(j).array() > 0;
-          square += usable.select(e.array(), 0.0).square().sum();
-          torque += usable.select(torque_[l].col(j).array(), 0.0).square().sum();
-          count += static_cast<double>(usable.count());
-          const auto lags = static_cast<Index>(
-              std::ceil(kMemory_s * prepared_[l].rate_hz / static_cast<double>(prepared_[l].stride)));
-          memory = std::max(memory, noise_correlation(e, usable, std::min<Index>(lags, 50)));
-        }
-        clean_ = clean_ && count > 0 && square < kCleanDelayFit * kCleanDelayFit * torque;
-        const double weight = count > 0 ? count / std::max(square * memory, 1e-300) : 0.0;
-        for (BaseRows& log : rows)
-          log.weight.col(j) = (log.weight.col(j).array() > 0).select(weight, VectorXd::Zero(log.weight.rows()));
+  /// Does the model explain the torque of every drive but for noise?
+  /// \param left  mean square of each drive's residual
+  [[nodiscard]] bool is_clean(const VectorXd& left, const std::vector<BaseRows>& rows) const {
+    for (Index j = 0; j < left.size(); ++j) {
+      double torque = 0, count = 0;
+      for (std::size_t l = 0; l < rows.size(); ++l) {
+        const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows[l].weight.col(j).array() > 0;
+        torque += usable.select(torque_[l].col(j).array(), 0.0).square().sum();
+        count += static_cast<double>(usable.count());
       }
+      if (!(left(j) * count < kCleanDelayFit * kCleanDelayFit * torque)) return false;
     }
+    return true;
   }
 
   /// What a later torque does to the rows, for each of the drives (-1: all alike), then slopes of the bristles'
@@ -137,7 +125,7 @@ class DelaySearch {
 
   void add_slope(const ProcessingOptions& changed, Index joint, double step, std::vector<Columns>& out) const {
     for (std::size_t l = 0; l < shifted_.size(); ++l) {
-      Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
+      RowUses use;
       const BaseRows there = base_rows(robot_, base_, prepare_log(robot_, shifted_[l], changed), use);
       MatrixXd column(there.tau.rows(), there.tau.cols());
       for (Index j = 0; j < column.cols(); ++j) {
@@ -150,9 +138,7 @@ class DelaySearch {
 
   /// The joint's Coulomb friction among the base parameters; -1: not there.
   [[nodiscard]] Index base_index(Index joint) const {
-    const auto at =
-        std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
-    return at == base_.independent.end() ? -1 : at - base_.independent.begin();
+    return base_.place_of(coulomb_[static_cast<std::size_t>(joint)]);
   }
 
   /// The slopes' amplitudes are changes of the shapes times the friction.
@@ -210,9 +196,8 @@ std::vector<Log> without_delay(std::vector<Log> logs, double delay_s) {
     const double step_s = log.sample_time_s();
     for (Index j = 0; j < log.tau.cols(); ++j) log.tau.col(j) = mend_timing(log.tau.col(j), step_s, delay_s, 0.0);
     const auto lost = std::min<Index>(log.samples(), static_cast<Index>(std::ceil(std::abs(delay_s) / step_s)));
-    if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), Log::kMeasured);
-    const auto begin = delay_s > 0 ? log.filled.end() - lost : log.filled.begin();
-    std::fill(begin, begin + lost, Log::kLeftOut);
+    const Index begin = delay_s > 0 ? log.samples() - lost : 0;
+    log.leave_out(begin, begin + lost);
   }
   return logs;
 }

@@ -28,16 +28,9 @@ constexpr double kTiny = 1e-3;
 }
 
 /// What section VI keeps of a body.
-struct Reduction {
-  BlockKind shape;
-  std::vector<int> entries, variables;
-  int axes[2];
-  int inertia;
-};
-
-const Reduction& reduction_of(Body body) {
+const Fitted& reduction_of(Body body) {
   using namespace log_cholesky;
-  static const std::vector<Reduction> table = {
+  static const std::vector<Fitted> table = {
       // in the order of Body
       {BlockKind::planar, {kM, kMcx, kMcz, kIyy}, {kD1, kD3, kT1, kT3}, {0, 2}, kIyy},
       {BlockKind::spatial, {kM, kMcx, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT1}, {0, 0}, 0},
@@ -174,9 +167,10 @@ void make_point_anchor(Block& block, const Vector10& prior) {
   if (!is_physically_consistent(p)) p.segment<3>(kIxx).setConstant(prior(kM) * kLength * kLength);
 }
 
-void add_to(LinearMatrix& matrix, int row, int column, double value) {
-  matrix.basis.back()(row, column) = value;
-  matrix.basis.back()(column, row) = value;
+Eigen::Matrix4d symmetric(int row, int column, double value) {
+  Eigen::Matrix4d out = Eigen::Matrix4d::Zero();
+  out(row, column) = out(column, row) = value;
+  return out;
 }
 
 void make_matrices(Block& block) {
@@ -186,8 +180,7 @@ void make_matrices(Block& block) {
   };
   auto add_scalar = [&](LinearMatrix& matrix) {
     matrix.size = 1;
-    matrix.basis.push_back(Eigen::Matrix4d::Zero());
-    add_to(matrix, 0, 0, 1);
+    matrix.basis = {symmetric(0, 0, 1)};
   };
   if (block.shape == BlockKind::spatial) {
     add_spatial(block.cone);
@@ -195,20 +188,13 @@ void make_matrices(Block& block) {
   } else if (block.shape == BlockKind::planar) {
     // entries are: mass, first moment along each axis, inertia
     for (LinearMatrix* matrix : {&block.cone, &block.metric}) {
-      matrix->size = 3;
-      matrix->basis.assign(1, Eigen::Matrix4d::Zero());
-      add_to(*matrix, 2, 2, 1);
-      for (int j = 0; j < 2; ++j) {
-        matrix->basis.push_back(Eigen::Matrix4d::Zero());
-        add_to(*matrix, j, 2, 1);
-      }
-      matrix->basis.push_back(Eigen::Matrix4d::Zero());
       // metric: diag(I, I) is the plane's own invariant, positive definite where m I > |m c|^2
-      for (int j = 0; j < 2; ++j) add_to(*matrix, j, j, matrix == &block.cone ? 0.5 : 1.0);
+      const double share = matrix == &block.cone ? 0.5 : 1.0;
+      matrix->size = 3;
+      matrix->basis = {symmetric(2, 2, 1), symmetric(0, 2, 1), symmetric(1, 2, 1),
+                       symmetric(0, 0, share) + symmetric(1, 1, share)};
     }
-    block.cone.basis.push_back(Eigen::Matrix4d::Zero());
-    add_to(block.cone, 0, 0, 0.5);
-    add_to(block.cone, 1, 1, -0.5);
+    block.cone.basis.emplace_back(symmetric(0, 0, 0.5) + symmetric(1, 1, -0.5));
     block.cone.base(2, 2) = -block.mass_floor;
   } else if (block.shape != BlockKind::free) {
     add_scalar(block.cone);
@@ -278,17 +264,9 @@ Block make_body(const ConsistentFitProblem& problem, int column, ParameterSet se
   bool unseen_inertia = false;
   if (set == ParameterSet::full) {
     block.shape = BlockKind::spatial;
-    for (int i = 0; i < 10; ++i) {
-      block.entries.push_back(i);
-      block.variables.push_back(i);
-    }
+    block.entries = block.variables = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   } else {
-    const Reduction& reduction = reduction_of(body);
-    block.shape = reduction.shape;
-    block.entries = reduction.entries;
-    block.variables = reduction.variables;
-    std::copy(reduction.axes, reduction.axes + 2, block.axes);
-    block.inertia = reduction.inertia;
+    static_cast<Fitted&>(block) = reduction_of(body);
     block.fixed_alpha = body == Body::upper_arm;
     if (block.fixed_alpha) {
       // a carriage on a prismatic drive does not turn: only its mass is seen, as for the plate

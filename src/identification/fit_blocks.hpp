@@ -34,19 +34,23 @@ struct LinearMatrix {
   [[nodiscard]] Eigen::Matrix4d operator()(const Eigen::Ref<const Eigen::VectorXd>& x) const;
 };
 
-struct Block {
-  std::string name;  ///< "strut2" or "drive1.viscous"
+/// What is fitted of a body or scalar.
+struct Fitted {
   BlockKind shape = BlockKind::free;
-  int column = 0;              ///< first column of p
-  std::vector<int> entries;    ///< fitted entries, counted from `column`
+  std::vector<int> entries;    ///< fitted entries, counted from the block's first column
   std::vector<int> variables;  ///< free log-Cholesky variables
-  int y = 0;                   ///< first index in y
-  int split = -1;              ///< index in x, or -1
   int axes[2] = {0, 0};        ///< planar: the two axes of the plane
   int inertia = 0;             ///< planar: entry of the inertia about the plane's normal
-  bool fixed_alpha = false;    ///< planar: alpha is not a variable (upper arm, VI.b)
-  bool has_reference = true;   ///< false: a positive scalar whose prior is 0, which no divergence can be taken from
-  double mass_floor = 0;       ///< e^{2 alpha} of a fixed alpha: the mass stays above it
+};
+
+struct Block : Fitted {
+  std::string name;           ///< "strut2" or "drive1.viscous"
+  int column = 0;             ///< first column of p
+  int y = 0;                  ///< first index in y
+  int split = -1;             ///< index in x, or -1
+  bool fixed_alpha = false;   ///< planar: alpha is not a variable (upper arm, VI.b)
+  bool has_reference = true;  ///< false: a positive scalar whose prior is 0, which no divergence can be taken from
+  double mass_floor = 0;      ///< e^{2 alpha} of a fixed alpha: the mass stays above it
   /// Consistent body nearest to the prior; scalars: entry 0
   InertialVector<double> anchor = InertialVector<double>::Zero();
   LogCholeskyVector<double> pi = LogCholeskyVector<double>::Zero();  ///< of the anchor; scalars: entry 0

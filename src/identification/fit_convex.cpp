@@ -143,8 +143,7 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
   Result result;
   Eigen::VectorXd x = start.cwiseQuotient(scale_);  // scaled from here on
   auto unscaled = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return v.cwiseProduct(scale_); };
-  auto data_residual = [&](const Eigen::VectorXd& v) { return residual_at(v); };
-  Eigen::VectorXd residual = data_residual(x);
+  Eigen::VectorXd residual = residual_at(x);
   double barrier = kFirstBarrier;
   Terms terms;
   while (result.iterations < kMaxNewton) {
@@ -153,16 +152,14 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
     const double value = residual.squaredNorm() + terms.value;
     const Newton newton = newton_step(terms, residual);
     if (!newton.step.allFinite()) return result;
-    const Eigen::VectorXd& step = newton.step;
-    const double decrement = newton.decrement;
-
+    const auto& [step, decrement] = newton;
     double length = 1;
     bool accepted = false;
     for (int trial = 0; trial < 60 && decrement > 0; ++trial, length *= 0.5) {
       const Eigen::VectorXd candidate = x + length * step;
       Terms at_candidate;
       if (!separable_terms(metric, lambda, barrier, unscaled(candidate), at_candidate, false)) continue;
-      const Eigen::VectorXd new_residual = data_residual(candidate);
+      const Eigen::VectorXd new_residual = residual_at(candidate);
       if (new_residual.squaredNorm() + at_candidate.value > value - 1e-4 * length * decrement) continue;
       x = candidate;
       residual = new_residual;
@@ -299,7 +296,6 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
     }
     Eigen::VectorXd above = y.segment(block.y, count);
     above(0) -= block.mass_floor;
-    certificate.complementarity += own.dot(above);
     shifted.segment(block.y, count) = std::max(0.0, -cone.min_eigenvalue) * cone.identity;
     at_y += (own + shifted.segment(block.y, count)).dot(above);
   }
@@ -318,7 +314,6 @@ OptimalityCertificate ConvexProblem::certify(FitMetric metric, double lambda, co
   // z = 0 is a dual point too, and the better one where the optimum is inside the cones
   certificate.gap = std::min(std::max(at_y, 0.0) + growth_bound(slope), growth_bound(whole));
   certificate.available = true;
-  certificate.relative_gap = certificate.gap / std::max(1.0, cost(metric, lambda, y));
   return certificate;
 }
 

@@ -129,25 +129,7 @@ bool log_det_barrier(const LinearMatrix& matrix, const Eigen::Ref<const Eigen::V
 bool metric_terms(const Block& block, const Layout& layout, FitMetric metric,
                   const Eigen::Ref<const Eigen::VectorXd>& y, double& value, Eigen::VectorXd* gradient,
                   Eigen::MatrixXd* hessian) {
-  const int count = block.fitted();
-  if (is_relative(block, metric)) {
-    value = 0;
-    if (gradient != nullptr) {
-      gradient->resize(count);
-      hessian->setZero(count, count);
-    }
-    for (int i = 0; i < count; ++i) {
-      const double scale = layout.scale(block.column + block.entries[static_cast<std::size_t>(i)]);
-      const double deviation = (y(i) - layout.prior(block.y + i)) / scale;
-      value += deviation * deviation;
-      if (gradient != nullptr) {
-        (*gradient)(i) = 2 * deviation / scale;
-        (*hessian)(i, i) = 2 / (scale * scale);
-      }
-    }
-    return true;
-  }
-  if (metric == FitMetric::riemannian) {
+  if (is_relative(block, metric) || metric == FitMetric::riemannian) {
     Eigen::VectorXd residual(residual_size(block, metric));
     Eigen::MatrixXd jacobian;
     if (!metric_residual(block, layout, metric, y, residual, gradient != nullptr ? &jacobian : nullptr)) return false;
@@ -165,7 +147,7 @@ bool metric_terms(const Block& block, const Layout& layout, FitMetric metric,
   value += inverse.cwiseProduct(block.metric(y)).sum() - n -
            2 * block.metric_root.diagonal().head(n).array().abs().log().sum();
   if (gradient != nullptr) {
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < block.fitted(); ++i)
       (*gradient)(i) += inverse.cwiseProduct(block.metric.basis[static_cast<std::size_t>(i)]).sum();
   }
   return true;

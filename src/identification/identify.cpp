@@ -4,13 +4,16 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 
 #include "encoder_uncertainty.hpp"
+#include "least_squares.hpp"
 #include "noise_bias.hpp"
-#include "residual_noise.hpp"
 #include "ripple_search.hpp"
 #include "seconds_since.hpp"
 
@@ -27,35 +30,19 @@ constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (H
 // Of the best known parameter's standard deviation: a smaller bias is no matter
 constexpr double kFeltNoise = 0.1;
 
-DataFold fold_all(const Robot& robot, const std::vector<PreparedLog>& logs, int threads,
-                  const Eigen::VectorXd* p = nullptr, const RowWeight& weight = {}) {
-  DataFold fold;
-  for (const PreparedLog& log : logs) fold.add(fold_log(robot, log, threads, p, weight));
-  return fold;
-}
-
-/// Regular rows that are fewer than those near reversals show little of the motion: reversals are then judged beside a
-/// fit of both.
-bool needs_reversals(const DriveFold& regular, const DriveFold& reversal) {
-  return regular.rows < reversal.rows;
-}
-
 /// Which drives keep their rows near reversals.
 std::vector<bool> keep_reversals(const BaseParameters& base, const DataFold& fold, Reversals choice,
                                  std::vector<DriveReport>& drives) {
   std::vector<bool> keep(drives.size(), choice == Reversals::keep);
   if (choice == Reversals::keep) return keep;
-  std::vector<DriveFold> folds = fold.regular;
-  for (std::size_t j = 0; j < folds.size() && choice == Reversals::automatic; ++j) {
-    keep[j] = fold.regular[j].rows < kFewestReversalRows;
-    if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
-  }
-  const BaseEstimate estimate = estimate_base_parameters(base, folds);
+  const bool automatic = choice == Reversals::automatic;
+  for (std::size_t j = 0; j < keep.size(); ++j) keep[j] = automatic && fold.regular[j].rows < kFewestReversalRows;
+  const BaseEstimate estimate = estimate_base_parameters(base, automatic ? fold.to_begin_with() : fold.regular);
   const Eigen::VectorXd p = any_parameters(base, estimate.value, fold.regular.front().R.cols());
   for (std::size_t j = 0; j < drives.size(); ++j) {
     if (fold.reversal[j].rows < kFewestReversalRows || fold.regular[j].rows < kFewestReversalRows) continue;
     drives[j].reversal_ratio = fold.reversal[j].rms(p) / std::max(fold.regular[j].rms(p), 1e-12);
-    keep[j] = keep[j] || (choice == Reversals::automatic && drives[j].reversal_ratio < kReversalRatio);
+    keep[j] = keep[j] || (automatic && drives[j].reversal_ratio < kReversalRatio);
   }
   return keep;
 }
@@ -64,12 +51,17 @@ bool averages_periods(const std::vector<PreparedLog>& logs) {
   return std::any_of(logs.begin(), logs.end(), [](const PreparedLog& log) { return log.period_s.has_value(); });
 }
 
-std::vector<DriveFold> select(const DataFold& fold, const std::vector<bool>& keep) {
-  std::vector<DriveFold> folds = fold.regular;
-  for (std::size_t j = 0; j < folds.size(); ++j) {
-    if (keep[j]) folds[j].add(fold.reversal[j]);
-  }
-  return folds;
+/// Least DriveNoise::correlation in units of that of white noise. What a fine encoder adds to the accelerations
+/// alternates, so that little of it is left in slow sums; the steps of a coarse one follow the motion about its turning
+/// points.
+double least_correlation(const Eigen::Ref<const Eigen::VectorXd>& q, double noise_std) {
+  // Of the usual rate: quantisation is white above (Widrow, Kollar 2008, chapter 4)
+  constexpr double kCountsPerSample = 3;
+  constexpr double kFine = 0.05, kCoarse = 0.25;
+  const double step = std::sqrt(12.0) * noise_std;
+  const Eigen::VectorXd moved = q.tail(q.size() - 1) - q.head(q.size() - 1);
+  const double usual = root_mean_square(moved);
+  return usual > kCountsPerSample * step ? kFine : kCoarse;
 }
 
 /// Bands of the positions' filters.
@@ -101,21 +93,13 @@ MotionHz motion_bands(const std::vector<Log>& logs, const Identification& found)
   }
 }
 
-std::vector<PreparedLog> prepare_all(const Robot& robot, const std::vector<Log>& logs,
-                                     const ProcessingOptions& options) {
-  std::vector<PreparedLog> prepared;
-  prepared.reserve(logs.size());
-  for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
-  return prepared;
-}
-
 /// The rows of one fit.
 struct Rows {
   std::vector<PreparedLog> prepared;
   DataFold fold;
   std::vector<bool> keep;  ///< one a drive: rows near reversals count
 
-  [[nodiscard]] std::vector<DriveFold> used() const { return select(fold, keep); }
+  [[nodiscard]] std::vector<DriveFold> used() const { return fold.with_reversals(keep); }
 };
 
 /// One identification at work.
@@ -185,11 +169,8 @@ class Identifier {
   /// short.
   [[nodiscard]] double unexplained(const ProcessingOptions& processing) const {
     try {
-      const DataFold fold = fold_all(robot_, prepare_all(robot_, logs_, processing), options_.threads);
-      std::vector<DriveFold> folds = fold.regular;
-      for (std::size_t j = 0; j < folds.size(); ++j) {
-        if (needs_reversals(fold.regular[j], fold.reversal[j])) folds[j].add(fold.reversal[j]);
-      }
+      const std::vector<DriveFold> folds =
+          fold_logs(robot_, prepare_logs(robot_, logs_, processing), options_.threads).to_begin_with();
       const BaseEstimate estimate = estimate_base_parameters(out_.base, folds);
       const Eigen::VectorXd p = any_parameters(out_.base, estimate.value, robot_.parameters());
       double sum = 0;
@@ -201,8 +182,8 @@ class Identifier {
   }
 
   void make_rows() {
-    rows_.prepared = prepare_all(robot_, logs_, out_.processing);
-    rows_.fold = fold_all(robot_, rows_.prepared, options_.threads);
+    rows_.prepared = prepare_logs(robot_, logs_, out_.processing);
+    rows_.fold = fold_logs(robot_, rows_.prepared, options_.threads);
     rows_.keep = keep_reversals(out_.base, rows_.fold, options_.reversals, out_.drives);
   }
 
@@ -238,7 +219,7 @@ class Identifier {
     if (options_.robust) {
       folds = reweighted();
     } else if (options_.processing.filter && !averages_periods(rows_.prepared)) {
-      out_.noise_share = acceleration_noise_share(logs_, rows_.prepared, out_.processing);
+      out_.noise_share = acceleration_noise_share();
       // By about this share noise pulls an inertia down.
       const double best_known = (out_.base_estimate.std().array() / out_.base_estimate.value.array().abs()).minCoeff();
       if (out_.noise_share > kFeltNoise * best_known) {
@@ -246,11 +227,71 @@ class Identifier {
         out_.base_estimate = estimate_base_parameters(out_.base, folds, {}, &*bias_);
       }
     }
-    const std::vector<double> correlation =
-        correlations(robot_, logs_, rows_.prepared, any(), rows_.keep, options_.threads);
+    const std::vector<double> correlation = correlations();
     out_.base_estimate = estimate_base_parameters(out_.base, folds, correlation, bias_ ? &*bias_ : nullptr);
     if (!options_.robust && options_.processing.filter && !averages_periods(rows_.prepared))
       add_encoder_steps(correlation);
+  }
+
+  /// DriveNoise::correlation of each drive: mean over the logs, weighted by their rows.
+  [[nodiscard]] std::vector<double> correlations() const {
+    const Eigen::VectorXd p = any();
+    std::vector<double> sum(rows_.keep.size(), 0.0), rows(sum.size(), 0.0);
+    for (std::size_t l = 0; l < logs_.size(); ++l) {
+      const PreparedLog& log = rows_.prepared[l];
+      const Eigen::VectorXd position_noise = position_noise_std(logs_[l]);
+      const Prediction prediction = predict(robot_, log, p, options_.threads);
+      const double white = log.low_pass ? log.low_pass->white_correlation() : 1.0;
+      for (std::size_t j = 0; j < sum.size(); ++j) {
+        const auto drive = static_cast<int>(j);
+        const auto usable = prediction.usable(drive, rows_.keep[j]);
+        const auto count = static_cast<double>(usable.count());
+        const Eigen::VectorXd residual = prediction.residual().col(drive);
+        const double least = white * least_correlation(logs_[l].q.col(drive), position_noise(drive));
+        sum[j] += count * std::max(least, residual_memory(residual, usable, log.row_rate_hz(), white));
+        rows[j] += count;
+      }
+    }
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] = rows[j] > 0 ? sum[j] / rows[j] : 1.0;
+    return sum;
+  }
+
+  /// Standard deviation of each drive's residual from its median size, which outliers hardly move.
+  [[nodiscard]] std::vector<double> robust_scales(const Eigen::VectorXd& p) const {
+    std::vector<std::vector<double>> sizes(rows_.keep.size());
+    for (const PreparedLog& log : rows_.prepared) {
+      const Prediction prediction = predict(robot_, log, p, options_.threads);
+      const Eigen::MatrixXd size = prediction.residual().cwiseAbs();
+      for (std::size_t j = 0; j < sizes.size(); ++j) {
+        const auto drive = static_cast<int>(j);
+        const auto usable = prediction.usable(drive, rows_.keep[j]);
+        for (Index k = 0; k < usable.size(); ++k) {
+          if (usable(k)) sizes[j].push_back(size(k, drive));
+        }
+      }
+    }
+    std::vector<double> scales;
+    for (std::vector<double>& size : sizes)
+      scales.push_back(std::max(kMedianToSigma * upper_median(std::move(size)), 1e-12));
+    return scales;
+  }
+
+  /// Largest share, over logs and drives, of the power of the accelerations that is encoder noise. White up to the
+  /// positions' cut-off f, of density D, encoder noise has the power (2 pi)^4 D f^5 / 5 in the acceleration.
+  [[nodiscard]] double acceleration_noise_share() const {
+    const double f = out_.processing.motion_over_pass * out_.processing.cutoff_hz;
+    double share = 0;
+    for (std::size_t l = 0; l < logs_.size(); ++l) {
+      const PreparedLog& log = rows_.prepared[l];
+      const Eigen::VectorXd std = position_noise_std(logs_[l]);
+      for (Index j = 0; j < std.size(); ++j) {
+        const double density = 2 * std(j) * std(j) / log.rate_hz;
+        const double noise = std::pow(2 * std::numbers::pi, 4) * density * std::pow(f, 5) / 5;
+        const double power = log.qdd.col(j).squaredNorm() / static_cast<double>(log.qdd.rows());
+        if (power > 0) share = std::max(share, noise / power);
+      }
+    }
+    return share;
   }
 
   /// Huber's weights, a few passes of them.
@@ -258,12 +299,12 @@ class Identifier {
     std::vector<DriveFold> folds;
     for (int pass = 0; pass < 5; ++pass) {
       const Eigen::VectorXd p = any();
-      const std::vector<double> scale = robust_scales(robot_, rows_.prepared, p, rows_.keep, options_.threads);
+      const std::vector<double> scale = robust_scales(p);
       const RowWeight weight = [&scale](int drive, double residual) {
         const double limit = kHuber * scale[static_cast<std::size_t>(drive)];
         return std::abs(residual) <= limit ? 1.0 : limit / std::abs(residual);
       };
-      folds = select(fold_all(robot_, rows_.prepared, options_.threads, &p, weight), rows_.keep);
+      folds = fold_logs(robot_, rows_.prepared, options_.threads, &p, weight).with_reversals(rows_.keep);
       out_.base_estimate = estimate_base_parameters(out_.base, folds);
     }
     return folds;
@@ -273,7 +314,7 @@ class Identifier {
   void add_encoder_steps(const std::vector<double>& correlation) {
     const auto estimate = [&](const std::vector<Log>& logs) -> Eigen::VectorXd {
       const std::vector<DriveFold> folds =
-          select(fold_all(robot_, prepare_all(robot_, logs, out_.processing), options_.threads), rows_.keep);
+          fold_logs(robot_, prepare_logs(robot_, logs, out_.processing), options_.threads).with_reversals(rows_.keep);
       std::optional<NoiseBias> bias;
       if (bias_) bias = noise_bias(robot_, out_.base, logs, out_.processing, rows_.keep, motion_.instrument);
       return estimate_base_parameters(out_.base, folds, correlation, bias ? &*bias : nullptr).value;

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSilent = 1e-9;  // a column or direction this much weaker than the strongest one is rounding
+constexpr double kMemory_s = 0.2;  // time over which residual correlation is looked for
+constexpr double kSilent = 1e-9;   // a column or direction this much weaker than the strongest one is rounding
 
 /// Weighted factors of all drives, triangular again: A^T A = sum over the drives of w^2 R^T R.
 void stack(const std::vector<DriveFold>& folds, const Eigen::VectorXd& weight, Eigen::MatrixXd& A, Eigen::VectorXd& b) {
@@ -147,6 +148,13 @@ double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
   }
   // White noise gives `white` give or take the square root of `uncertainty`: then it is taken as white.
   return std::abs(sum - white) < 3 * white * std::sqrt(uncertainty) ? white : std::max(sum, 0.05);
+}
+
+double residual_memory(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                       const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable, double row_rate_hz,
+                       double white) {
+  const auto lags = static_cast<Index>(std::ceil(kMemory_s * row_rate_hz));
+  return noise_correlation(residual, usable, std::clamp<Index>(lags, 1, 50), white);
 }
 
 }  // namespace deltadyn

@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deltadyn/identification/base_estimate.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
 
 #include "data_fold.hpp"
@@ -40,5 +39,10 @@ void add_uncertainty(const BaseParameters& base, const Eigen::MatrixXd& covarian
 [[nodiscard]] double noise_correlation(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                        const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable,
                                        Eigen::Index lags, double white = 1);
+
+/// noise_correlation() over the time that the residual of a torque remembers.
+[[nodiscard]] double residual_memory(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                     const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& usable,
+                                     double row_rate_hz, double white = 1);
 
 }  // namespace deltadyn

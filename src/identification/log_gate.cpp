@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numbers>
 #include <optional>
+#include <string_view>
+#include <tuple>
 
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/model_band.hpp"
@@ -18,7 +19,6 @@
 #include "gate/mirror.hpp"
 #include "gate/outside_torque.hpp"
 #include "gate/plausibility.hpp"
-#include "gate/torque_noise.hpp"
 #include "gate/torque_offset.hpp"
 #include "gate/torque_timing.hpp"
 
@@ -135,27 +135,23 @@ class Gate {
     if (!judgement.winners.empty())
       std::erase_if(limits, [](const LogFinding& l) { return l.key == "position_range" || l.key == "position_rate"; });
     residual_ = judgement.sound ? 0.0 : judgement.as_given.residual;
-    LogFinding f;
-    f.level = FindingLevel::fault;
-    f.value = judgement.as_given.residual;
     if (judgement.winners.empty()) {
       add(std::move(limits));
       tell_unexplained(judgement);
       return;
     }
     const Explanation& first = judgement.winners.front();
-    f.key = first.key;
-    f.drive = first.drive;
-    if (first.value != 0) {
-      f.value = first.value;
-      f.std = first.std;
-    }
-    f.text = fmt::format("{}: residual {} as given, {:.2g} % so", first.words, as_given_in_words(judgement),
-                         100 * first.residual);
+    LogFinding f{.level = FindingLevel::fault,
+                 .key = first.key,
+                 .drive = first.drive,
+                 .value = judgement.as_given.residual,
+                 .text = fmt::format("{}: residual {} as given, {:.2g} % so", first.words, as_given_in_words(judgement),
+                                     100 * first.residual),
+                 .mend = first.mend};
+    if (first.value != 0) std::tie(f.value, f.std) = std::pair(first.value, first.std);
     for (std::size_t k = 1; k < std::min<std::size_t>(3, judgement.winners.size()); ++k) {
       f.text += fmt::format("{}{}", k == 1 ? "; as well explained: " : "; or: ", judgement.winners[k].words);
     }
-    f.mend = first.mend;
     if (is_turned_yaw(robot_.description(), first)) {
       f.text += "; as well explained: the limbs are numbered clockwise";
       f.mend +=
@@ -174,31 +170,28 @@ class Gate {
 
   /// No hypothesis of the list explains the log, but it is not that of this robot either.
   void tell_unexplained(const Judgement& judgement) {
-    LogFinding f;
-    f.value = judgement.as_given.residual;
-    if (judgement.as_given.unreachable > kOutOfReach) {
+    const double unreachable = judgement.as_given.unreachable, residual = judgement.as_given.residual;
+    if (unreachable > kOutOfReach) {
       // What reads the rows refuses them with file and line; here is what is known beyond that.
-      f.level = FindingLevel::fault;
-      f.key = "pose";
-      f.value = judgement.as_given.unreachable;
-      f.text = fmt::format(
-          "{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero of the drives "
-          "explains it",
-          100 * judgement.as_given.unreachable);
-      f.mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is";
-    } else if (judgement.as_given.residual > kUnexplained &&
-               judgement.with_springs > kHalf * judgement.as_given.residual && !coarse_) {
-      f.level = judgement.as_given.residual > kNoiseOnly * torque_noise_ ? FindingLevel::fault : FindingLevel::warning;
-      f.key = "unexplained";
-      f.text = fmt::format(
-          "{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, order, unit or zero of "
-          "the drives",
-          100 * judgement.as_given.residual);
-      f.mend = "check that the robot file belongs to this machine, and look at the raw signals";
-    } else {
-      return;
+      out_.findings.push_back(
+          {.level = FindingLevel::fault,
+           .key = "pose",
+           .value = unreachable,
+           .text =
+               fmt::format("{:.3g} % of the poses cannot be reached by this robot, and no sign, order, unit or zero "
+                           "of the drives explains it",
+                           100 * unreachable),
+           .mend = "check that the robot file belongs to this machine: its lengths, and where the drives' zero is"});
+    } else if (residual > kUnexplained && judgement.with_springs > kHalf * residual && !coarse_) {
+      out_.findings.push_back(
+          {.level = residual > kNoiseOnly * torque_noise_ ? FindingLevel::fault : FindingLevel::warning,
+           .key = "unexplained",
+           .value = residual,
+           .text = fmt::format("{:.2g} % of the torque is explained by no parameters of this robot, and by no sign, "
+                               "order, unit or zero of the drives",
+                               100 * residual),
+           .mend = "check that the robot file belongs to this machine, and look at the raw signals"});
     }
-    out_.findings.push_back(std::move(f));
   }
 
   [[nodiscard]] Timing timing_of(const Sample& sample) const {
@@ -220,9 +213,7 @@ class Gate {
       const ModelCutoff choice = choose_model_cutoff(robot_, base_, out_.logs, processing);
       const double band_hz = processing.torque_cutoff_ratio * choice.model.limit_hz;
       if (choice.model.limit_hz == 0 || band_hz >= sample.band_hz) return std::nullopt;
-      SampleOptions options;
-      options.highest_band_hz = options.lowest_band_hz = band_hz;
-      Sample narrow = take_sample(out_.logs, options);
+      Sample narrow = take_sample(out_.logs, SampleOptions::in_band(band_hz));
       if (!narrow.stretches.empty()) return narrow;
     } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
       // Logs too short for a cut-off, or poses out of reach: others say so.
@@ -232,8 +223,8 @@ class Gate {
 
   /// Sum of delay and lag of each log and drive, and its standard deviation.
   static std::pair<Eigen::MatrixXd, Eigen::MatrixXd> lateness(const Timing& timing) {
-    return {timing.delay_s + timing.lag_s,
-            (timing.delay_std.array().square() + timing.lag_std.array().square()).sqrt()};
+    return {timing.shift.delay + timing.shift.lag,
+            (timing.std.delay.array().square() + timing.std.lag.array().square()).sqrt()};
   }
 
   /// Is a timing the same in a lower band, as far as that band tells it?
@@ -251,9 +242,7 @@ class Gate {
   [[nodiscard]] Timing steady_timing(Sample sample) const {
     Timing timing = timing_of(sample);
     while (timing.significant && sample.band_hz > kLowestTiming_hz) {
-      SampleOptions options;
-      options.highest_band_hz = options.lowest_band_hz = sample.band_hz / std::numbers::sqrt2;
-      Sample lower = take_sample(out_.logs, options);
+      Sample lower = take_sample(out_.logs, SampleOptions::in_band(sample.band_hz / std::numbers::sqrt2));
       if (lower.stretches.empty()) return timing;
       Timing there = timing_of(lower);
       if (holds(timing, there)) return timing;
@@ -271,21 +260,20 @@ class Gate {
     for (std::size_t file = 0; file < drifts->files.size(); ++file) {
       const ClockDrift& drift = drifts->files[file];
       if (drift.rate == 0) continue;
-      LogFinding f;
-      f.level = options_.keep_delay ? FindingLevel::warning : FindingLevel::mended;
-      f.key = "drift";
-      f.file = name_of_file(static_cast<int>(file));
-      f.value = drift.rate;
-      f.std = drift.rate_std;
-      f.text = fmt::format(
-          "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} ms "
-          "(+- {:.2g}) "
-          "over the log: {} (residual {:.2g} % with one delay, {:.2g} % so)",
-          f.file, 1e3 * drift.first_s, 1e3 * drift.last_s,
-          1e3 * std::abs(drift.rate_std / drift.rate * (drift.last_s - drift.first_s)) / 2,
-          options_.keep_delay ? "left in place" : "removed", 100 * drifts->rms_before, 100 * drifts->rms_after);
-      f.mend = "record torque and position with one clock";
-      out_.findings.push_back(std::move(f));
+      const std::string name = name_of_file(static_cast<int>(file));
+      out_.findings.push_back(
+          {.level = options_.keep_delay ? FindingLevel::warning : FindingLevel::mended,
+           .key = "drift",
+           .file = name,
+           .value = drift.rate,
+           .std = drift.rate_std,
+           .text = fmt::format(
+               "{}: torque and position have clocks of their own: the delay of the torque runs from {:+.2f} to {:+.2f} "
+               "ms (+- {:.2g}) over the log: {} (residual {:.2g} % with one delay, {:.2g} % so)",
+               name, 1e3 * drift.first_s, 1e3 * drift.last_s,
+               1e3 * std::abs(drift.rate_std / drift.rate * (drift.last_s - drift.first_s)) / 2,
+               options_.keep_delay ? "left in place" : "removed", 100 * drifts->rms_before, 100 * drifts->rms_after),
+           .mend = "record torque and position with one clock"});
       for (std::size_t l = 0; l < out_.logs.size() && !options_.keep_delay; ++l) {
         if (files[l] == static_cast<int>(file)) take_drift_out(drift, out_.logs[l]);
       }
@@ -317,22 +305,22 @@ class Gate {
       timing = steady_timing(*narrow);
       noise = relative_torque_noise(out_.logs, *narrow);
     }
+    const auto& [delay, lag] = timing.shift;
     if (!timing.significant) {
-      LogFinding f;
-      f.key = "delay";
-      f.value = 0;
-      f.std = timing.delay_std.maxCoeff();
-      f.unit = "s";
-      f.text = fmt::format("no delay between torque and position{}: 0 +- {:.2g} ms",
-                           f.std < kSharp_s ? "" : " that this log could tell", 1e3 * f.std);
-      if (f.std > 0) out_.findings.push_back(std::move(f));
+      const double std = timing.std.delay.maxCoeff();
+      if (!(std > 0)) return;
+      out_.findings.push_back({.key = "delay",
+                               .value = 0,
+                               .std = std,
+                               .unit = "s",
+                               .text = fmt::format("no delay between torque and position{}: 0 +- {:.2g} ms",
+                                                   std < kSharp_s ? "" : " that this log could tell", 1e3 * std)});
       return;
     }
-    const bool simple =
-        timing.lag_s.cwiseAbs().maxCoeff() == 0 && timing.delay_s.maxCoeff() - timing.delay_s.minCoeff() == 0;
-    const double longest = std::max(timing.delay_s.cwiseAbs().maxCoeff(), timing.lag_s.cwiseAbs().maxCoeff());
+    const bool simple = lag.isZero(0) && delay.maxCoeff() == delay.minCoeff();
+    const double longest = std::max(delay.cwiseAbs().maxCoeff(), lag.cwiseAbs().maxCoeff());
     const bool sharp =
-        longest < kLongest_s && std::max(timing.delay_std.maxCoeff(), timing.lag_std.maxCoeff()) < kSharp_s;
+        longest < kLongest_s && std::max(timing.std.delay.maxCoeff(), timing.std.lag.maxCoeff()) < kSharp_s;
     const bool sound = timing.rms_after < clean(noise) || timing.rms_after < kHalf * timing.rms_before;
     if (!sharp) {
       tell_vague(timing);
@@ -344,43 +332,43 @@ class Gate {
       return;
     }
     const bool remove = !options_.keep_delay;
-    tell_timing(timing.delay_s, timing.delay_std, timing, "delay", remove);
-    tell_timing(timing.lag_s, timing.lag_std, timing, "lag", remove);
-    if (remove) mend(timing);
+    tell_timing(delay, timing.std.delay, timing, "delay", remove);
+    tell_timing(lag, timing.std.lag, timing, "lag", remove);
+    if (remove) mend(timing.shift);
+  }
+
+  /// The largest delay, or without any the largest lag, as a finding whose text says that of the torque.
+  static LogFinding largest_of(const Timing& timing) {
+    Index row = 0, column = 0;
+    const bool lag = timing.shift.delay.isZero(0);
+    const Eigen::MatrixXd& shift = lag ? timing.shift.lag : timing.shift.delay;
+    shift.cwiseAbs().maxCoeff(&row, &column);
+    LogFinding f{.key = lag ? "lag" : "delay",
+                 .value = shift(row, column),
+                 .std = (lag ? timing.std.lag : timing.std.delay)(row, column),
+                 .unit = "s"};
+    f.text = words_of_timing(f.key, "torque", f.value, f.std);
+    return f;
   }
 
   /// A delay that the log does not tell well enough to be worth a warning: a figure for who asks.
   void tell_vague(const Timing& timing) {
-    Index row = 0, column = 0;
-    const bool lag = timing.delay_s.cwiseAbs().maxCoeff(&row, &column) == 0;
-    if (lag) timing.lag_s.cwiseAbs().maxCoeff(&row, &column);
-    LogFinding f;
-    f.key = lag ? "lag" : "delay";
-    f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
-    f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
-    f.unit = "s";
+    LogFinding f = largest_of(timing);
     f.text = fmt::format(
-        "this log does not tell a delay: at best {}, residual {:.2g} % as recorded, {:.2g} % with that removed",
-        words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
+        "this log does not tell a delay: at best {}, residual {:.2g} % as recorded, {:.2g} % with that removed", f.text,
+        100 * timing.rms_before, 100 * timing.rms_after);
     out_.findings.push_back(std::move(f));
   }
 
   /// A delay that explains part of the residual, but where much is left, stays where it is.
   void tell_doubtful(const Timing& timing) {
     if (timing.rms_after > kWorthSaying * timing.rms_before) return;
-    Index row = 0, column = 0;
-    const bool lag = timing.delay_s.cwiseAbs().maxCoeff(&row, &column) == 0;
-    if (lag) timing.lag_s.cwiseAbs().maxCoeff(&row, &column);
-    LogFinding f;
+    LogFinding f = largest_of(timing);
     f.level = FindingLevel::warning;
-    f.key = lag ? "lag" : "delay";
-    f.value = lag ? timing.lag_s(row, column) : timing.delay_s(row, column);
-    f.std = lag ? timing.lag_std(row, column) : timing.delay_std(row, column);
-    f.unit = "s";
-    f.text = fmt::format(
-        "{} as it seems, but that is not certain enough to remove it: residual {:.2g} % as recorded, {:.2g} % with it "
+    f.text += fmt::format(
+        " as it seems, but that is not certain enough to remove it: residual {:.2g} % as recorded, {:.2g} % with it "
         "removed",
-        words_of_timing(f.key, "torque", f.value, f.std), 100 * timing.rms_before, 100 * timing.rms_after);
+        100 * timing.rms_before, 100 * timing.rms_after);
     f.mend = "record a faster motion, or mend the delay where the log is made (delta-log import: delay in the map)";
     out_.findings.push_back(std::move(f));
   }
@@ -394,20 +382,20 @@ class Gate {
     for (Index l = 0; l < L; ++l) {
       for (Index j = 0; j < n; ++j) {
         if (value(l, j) == 0) continue;
-        LogFinding f;
-        f.level = removed ? FindingLevel::mended : FindingLevel::warning;
-        f.key = key;
-        if (!same_logs) f.file = name_of_file(static_cast<int>(l));
-        if (!same_drives) f.drive = static_cast<int>(j);
-        f.value = value(l, j);
-        f.std = std(l, j);
-        f.unit = "s";
         const std::string who = same_drives ? "torque" : fmt::format("torque of drive {}", j + 1);
-        f.text = fmt::format("{}: {} (residual {:.2g} % as recorded, {:.2g} % with it removed)",
+        out_.findings.push_back(
+            {.level = removed ? FindingLevel::mended : FindingLevel::warning,
+             .key = key,
+             .file = same_logs ? "" : name_of_file(static_cast<int>(l)),
+             .drive = same_drives ? -1 : static_cast<int>(j),
+             .value = value(l, j),
+             .std = std(l, j),
+             .unit = "s",
+             .text =
+                 fmt::format("{}: {} (residual {:.2g} % as recorded, {:.2g} % with it removed)",
                              words_of_timing(key, who, value(l, j), std(l, j)), removed ? "removed" : "left in place",
-                             100 * timing.rms_before, 100 * timing.rms_after);
-        if (!removed) f.mend = "leave out --keep-delay, or mend the delay where the log is made";
-        out_.findings.push_back(std::move(f));
+                             100 * timing.rms_before, 100 * timing.rms_after),
+             .mend = removed ? "" : "leave out --keep-delay, or mend the delay where the log is made"});
       }
     }
   }
@@ -424,7 +412,7 @@ class Gate {
     return out_.logs[static_cast<std::size_t>(std::find(files.begin(), files.end(), number) - files.begin())].file;
   }
 
-  void mend(const Timing& timing) {
+  void mend(const Shifts& shifts) {
     const std::vector<int> files = file_numbers(out_.logs);
     for (std::size_t l = 0; l < out_.logs.size(); ++l) {
       Log& log = out_.logs[l];
@@ -432,20 +420,15 @@ class Gate {
       const auto row = static_cast<Index>(files[l]);
       double farthest = 0;
       for (Index j = 0; j < log.drives(); ++j) {
-        const double delay = timing.delay_s(row, j), lag = timing.lag_s(row, j);
+        const double delay = shifts.delay(row, j), lag = shifts.lag(row, j);
         if (delay == 0 && lag == 0) continue;
         log.tau.col(j) = mend_timing(log.tau.col(j), step, delay, lag);
         farthest = std::abs(delay) > std::abs(farthest) ? delay : farthest;
       }
       // Where the moved torque reaches beyond the record, there is none.
       const auto lost = std::min<Index>(log.samples(), static_cast<Index>(std::ceil(std::abs(farthest) / step)));
-      if (lost == 0) continue;
-      if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(log.samples()), Log::kMeasured);
-      if (farthest > 0) {
-        std::fill(log.filled.end() - lost, log.filled.end(), Log::kLeftOut);
-      } else {
-        std::fill(log.filled.begin(), log.filled.begin() + lost, Log::kLeftOut);
-      }
+      const Index begin = farthest > 0 ? log.samples() - lost : 0;
+      if (lost > 0) log.leave_out(begin, begin + lost);
     }
   }
 
@@ -472,14 +455,13 @@ class Gate {
 }  // namespace
 
 bool GateResult::fault() const {
-  return std::any_of(findings.begin(), findings.end(),
-                     [](const LogFinding& f) { return f.level == FindingLevel::fault; });
+  return std::ranges::count(findings, FindingLevel::fault, &LogFinding::level) > 0;
 }
 
 bool GateResult::stop() const {
-  return std::any_of(findings.begin(), findings.end(), [](const LogFinding& f) {
-    return f.level == FindingLevel::fault && f.key != "scale" && f.key != "torque_scale" && f.key != "effort" &&
-           f.key != "pose" && f.key != "unexplained";
+  constexpr std::string_view kNoReasonToStop[] = {"scale", "torque_scale", "effort", "pose", "unexplained"};
+  return std::ranges::any_of(findings, [&](const LogFinding& f) {
+    return f.level == FindingLevel::fault && std::ranges::count(kNoReasonToStop, f.key) == 0;
   });
 }
 

@@ -20,6 +20,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 20;
+constexpr double kReversalSigmas = 4;   // a rate below this many standard deviations of its noise has no certain sign
 constexpr double kMostOverPass = 10;    // of the positions' filter, in units of the rows' cut-off
 constexpr double kLeastCoverage = 0.9;  // of the log by whole periods; below, averaging throws too much away
 constexpr double kMostHarmonics = 300;  // of the Fourier fit, whose time grows with the square
@@ -126,7 +127,7 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
   std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
-    const double noise = j < sigma_qd.size() ? options.reversal_sigmas * sigma_qd(j) : 0.0;
+    const double noise = j < sigma_qd.size() ? kReversalSigmas * sigma_qd(j) : 0.0;
     mask.push_back(
         reversal_mask(rates.col(j), std::max(noise, options.reversal_floor * rates.col(j).cwiseAbs().maxCoeff()), 0));
     rest.push_back(rest_of(mask.back(), log.rate_hz));
@@ -164,43 +165,12 @@ PreparedLog copy_log(const Robot& robot, const Log& log) {
                 log.file, "use the robot file of the machine that the log was recorded on");
   }
   PreparedLog out;
-  out.file = log.file;
+  static_cast<Log&>(out) = log;
+  out.notes.clear();
+  out.findings.clear();
   out.rate_hz = 1.0 / log.sample_time_s();
-  out.t_s = log.t_s;
-  out.tau = log.tau;
-  out.line = log.line;
-  out.filled = log.filled;
-  out.torque_out = log.torque_out;
   return out;
 }
-
-}  // namespace
-
-void ProcessingOptions::keep_motion(double motion_hz) {
-  motion_over_pass = std::clamp(motion_hz / cutoff_hz, motion_over_pass, std::max(motion_over_pass, kMostOverPass));
-}
-
-void ProcessingOptions::validate() const {
-  const auto refuse = [](const char* field, const char* range) {
-    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
-                ExitCode::usage);
-  };
-  if (!(cutoff_hz > 0 && std::isfinite(cutoff_hz))) refuse("cutoff_hz", "it must be above 0 Hz");
-  if (!(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass))
-    refuse("motion_over_pass", "it must be 0.02 to 10");
-  if (!(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10))
-    refuse("torque_cutoff_ratio", "it must be above 0 and at most 10");
-  if (periods == Periods::given && !(period_s > 0)) refuse("period_s", "it must be above 0 s");
-  if (!(reversal_sigmas >= 0)) refuse("reversal_sigmas", "it must be at least 0");
-  if (!(reversal_floor >= 0 && reversal_floor < 1)) refuse("reversal_floor", "it must be at least 0 and below 1");
-  if (stride < 0) refuse("stride", "it must be at least 0");
-  if (!((presliding.array() >= 0).all() && presliding.allFinite()))
-    refuse("presliding", "displacements must be at least 0");
-  if (!((presliding_damping_s.array() >= 0).all() && presliding_damping_s.allFinite()))
-    refuse("presliding_damping_s", "dampings must be at least 0 s");
-}
-
-namespace {
 
 double motion_cutoff_hz(const ProcessingOptions& options) {
   return options.motion_over_pass * options.cutoff_hz;
@@ -209,8 +179,8 @@ double motion_cutoff_hz(const ProcessingOptions& options) {
 /// Low pass of regressor and torque.
 std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
   const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
-  const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
-  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz, factor);
+  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz,
+                                        std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz)));
 }
 
 /// The period to average over, if the log has one and the series stays small.
@@ -273,6 +243,27 @@ PreparedLog prepare_periodic(const Robot& robot, const Log& log, double period_s
 
 }  // namespace
 
+void ProcessingOptions::keep_motion(double motion_hz) {
+  motion_over_pass = std::clamp(motion_hz / cutoff_hz, motion_over_pass, std::max(motion_over_pass, kMostOverPass));
+}
+
+void ProcessingOptions::validate() const {
+  const auto demand = [](bool fine, const char* field, const char* range) {
+    if (fine) return;
+    throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
+                ExitCode::usage);
+  };
+  const auto not_negative = [](const Eigen::VectorXd& v) { return (v.array() >= 0).all() && v.allFinite(); };
+  demand(cutoff_hz > 0 && std::isfinite(cutoff_hz), "cutoff_hz", "it must be above 0 Hz");
+  demand(motion_over_pass >= 0.02 && motion_over_pass <= kMostOverPass, "motion_over_pass", "it must be 0.02 to 10");
+  demand(torque_cutoff_ratio > 0 && torque_cutoff_ratio <= 10, "torque_cutoff_ratio",
+         "it must be above 0 and at most 10");
+  demand(periods != Periods::given || period_s > 0, "period_s", "it must be above 0 s");
+  demand(reversal_floor >= 0 && reversal_floor < 1, "reversal_floor", "it must be at least 0 and below 1");
+  demand(not_negative(presliding), "presliding", "displacements must be at least 0");
+  demand(not_negative(presliding_damping_s), "presliding_damping_s", "dampings must be at least 0 s");
+}
+
 PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options) {
   options.validate();
   PreparedLog out = copy_log(robot, log);
@@ -282,11 +273,7 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
       throw Error("without filtering, the log must hold velocities and accelerations", log.file,
                   "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
     }
-    out.q = log.q;
-    out.qd = log.qd;
-    out.qdd = log.qdd;
-    out.stride = std::max(1, options.stride);
-    out.rows = (samples + out.stride - 1) / out.stride;
+    out.rows = samples;
     out.reversal.setConstant(samples, robot.drives(), false);
     add_ripples(options, out);
     (void)joint_rates(robot, out);  // refuses poses out of reach
@@ -316,10 +303,21 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
   return out;
 }
 
+std::vector<PreparedLog> prepare_logs(const Robot& robot, const std::vector<Log>& logs,
+                                      const ProcessingOptions& options) {
+  std::vector<PreparedLog> prepared;
+  for (const Log& log : logs) prepared.push_back(prepare_log(robot, log, options));
+  return prepared;
+}
+
+Eigen::Array<bool, Eigen::Dynamic, 1> usable_rows(const RowUses& use, Index drive, bool with_reversals) {
+  if (with_reversals) return use.col(drive) != RowUse::unusable;
+  return use.col(drive) == RowUse::regular;
+}
+
 bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
-  const auto begin = log.filled.begin() + (log.filled.empty() ? 0 : first);
-  if (!log.filled.empty() && std::find(begin, begin + count, Log::kLeftOut) != begin + count) return true;
-  return log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
+  return log.any_left_out(first, count) ||
+         (log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
 }
 
 void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
@@ -349,7 +347,7 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   Eigen::MatrixXd rows;
   if (log.low_pass) {
     rows.resize(count, raw.cols());
-    log.low_pass->apply(raw, 0, count, rows);
+    log.low_pass->apply(raw, rows);
   } else {
     rows.swap(raw);
   }
@@ -364,14 +362,11 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
   }
   block.use.setConstant(count, n, RowUse::regular);
   for (Index k = 0; k < count; ++k) {
-    const Index centre = sample_of_row(log, first_row + k);
+    const Index from = sample_of_row(log, first_row + k) - reach, length = 2 * reach + 1;
     for (int j = 0; j < n; ++j) {
-      if (log.reversal.col(j).segment(centre - reach, 2 * reach + 1).any()) block.use(k, j) = RowUse::reversal;
-      if (log.rest.size() > 0 && log.rest.col(j).segment(centre - reach, 2 * reach + 1).any())
+      if (log.reversal.col(j).segment(from, length).any()) block.use(k, j) = RowUse::reversal;
+      if ((log.rest.size() > 0 && log.rest.col(j).segment(from, length).any()) || left_out(log, j, from, length))
         block.use(k, j) = RowUse::unusable;
-    }
-    for (int j = 0; j < n; ++j) {
-      if (left_out(log, j, centre - reach, 2 * reach + 1)) block.use(k, j) = RowUse::unusable;
     }
   }
 }

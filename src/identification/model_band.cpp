@@ -37,21 +37,15 @@ constexpr Index kFewestRowsOfPart = 20;  // of all drives in a part
 ProcessingOptions at_cutoff(ProcessingOptions options, double cutoff_hz) {
   options.cutoff_hz = cutoff_hz;
   options.periods = Periods::ignore;
-  options.stride = 0;
   return options;
 }
 
 /// Base parameters from the motion below a cut-off, if it shows them.
 std::optional<BaseEstimate> fit_below(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                                       const ProcessingOptions& options, int threads) {
-  DataFold fold;
-  for (const Log& log : logs) fold.add(fold_log(robot, prepare_log(robot, log, options), threads));
-  std::vector<DriveFold> folds = fold.regular;
-  for (std::size_t j = 0; j < folds.size(); ++j) {
-    if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);
-  }
+  const DataFold fold = fold_logs(robot, prepare_logs(robot, logs, options), threads);
   try {
-    return estimate_base_parameters(base, folds);
+    return estimate_base_parameters(base, fold.to_begin_with());
   } catch (const Error&) {
     return std::nullopt;  // too few rows, or a motion that does not show every parameter
   }
@@ -90,7 +84,7 @@ void narrow_down(PreparedLog& wide, PreparedLog& narrow, double cutoff_hz) {
 struct BandRows {
   std::vector<MatrixXd> Y;  ///< of each drive: rows x base parameters
   MatrixXd tau, all;        ///< rows x drives; all: with what is below the part
-  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
+  RowUses use;
 
   BandRows(const Robot& robot, const BaseParameters& base, const Log& log, const ProcessingOptions& options,
            double low_hz) {
@@ -122,8 +116,7 @@ Log noisier(const Log& log, std::mt19937_64& random) {
 VectorXd without_coulomb(const Robot& robot, const BaseParameters& base) {
   VectorXd out = VectorXd::Ones(base.count());
   for (const Index column : coulomb_columns(robot)) {
-    const auto at = std::find(base.independent.begin(), base.independent.end(), static_cast<int>(column));
-    if (at != base.independent.end()) out(at - base.independent.begin()) = 0;
+    if (const Index place = base.place_of(column); place >= 0) out(place) = 0;
   }
   return out;
 }
@@ -181,8 +174,7 @@ bool fails(const ModelBandPart& part) {
 }  // namespace
 
 const ModelBandPart* ModelBand::beyond() const {
-  const auto part =
-      std::find_if(parts.begin(), parts.end(), [&](const ModelBandPart& p) { return p.low_hz == limit_hz; });
+  const auto part = std::ranges::find(parts, limit_hz, &ModelBandPart::low_hz);
   return part != parts.end() ? &*part : nullptr;
 }
 

@@ -51,34 +51,30 @@ void share_rows(PreparedLog& a, PreparedLog& b) {
 std::vector<Products> products_of(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
                                   const PreparedLog& narrow, const std::vector<bool>& keep) {
   const Index blocks = (log.rows + kBiasBlockRows - 1) / kBiasBlockRows;
-  const std::vector<Products> none(keep.size(), Products(base.count()));
-  std::vector<std::vector<Products>> parts(static_cast<std::size_t>(blocks), none);
-  in_parallel(blocks, [&](Index b) {
+  std::vector<Products> sum(keep.size(), Products(base.count()));
+  const auto products_of_block = [&](Index b) {
     const Index first = b * kBiasBlockRows, count = std::min(kBiasBlockRows, log.rows - first);
     RowBlock wide, instruments;
     read_rows(robot, log, first, count, wide);
     read_rows(robot, narrow, first, count, instruments);
+    std::vector<Products> products(keep.size());
     for (std::size_t j = 0; j < keep.size(); ++j) {
       const auto drive = static_cast<Index>(j);
-      VectorXd used(count);
-      for (Index k = 0; k < count; ++k) {
-        const RowUse use = wide.use(k, drive);
-        used(k) = use == RowUse::regular || (use == RowUse::reversal && keep[j]) ? 1 : 0;
-      }
+      const VectorXd used = usable_rows(wide.use, drive, keep[j]).cast<double>();
       const MatrixXd Y = base_rows(base, wide, j, used), Z = base_rows(base, instruments, j, used);
       const VectorXd tau = wide.tau.col(drive);
-      Products& part = parts[static_cast<std::size_t>(b)][j];
+      Products& part = products[j];
       part.YtY = Y.transpose() * Y;
       part.ZtY = Z.transpose() * Y;
       part.ZtZ = Z.transpose() * Z;
       part.Yt_tau = Y.transpose() * tau;
       part.Zt_tau = Z.transpose() * tau;
     }
+    return products;
+  };
+  in_parallel_in_order(blocks, products_of_block, [&](Index, const std::vector<Products>& products) {
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j].add(products[j]);
   });
-  std::vector<Products> sum = none;
-  for (const std::vector<Products>& part : parts) {
-    for (std::size_t j = 0; j < sum.size(); ++j) sum[j].add(part[j]);
-  }
   return sum;
 }
 

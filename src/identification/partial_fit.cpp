@@ -1,8 +1,11 @@
 #include "partial_fit.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "deltadyn/runtime/dense.hpp"
+
+#include "least_squares.hpp"
 
 namespace deltadyn {
 
@@ -10,15 +13,37 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-BaseRows base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
-                   Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic>& use) {
+BaseRows base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log, RowUses& use) {
   RowBlock block;
   read_rows(robot, log, 0, log.rows, block);
   BaseRows out;
   for (const MatrixXd& Y : block.Y) out.X.emplace_back(Y(Eigen::all, base.independent));
   out.tau = std::move(block.tau);
   use = std::move(block.use);
+  out.rate_hz = log.row_rate_hz();
   return out;
+}
+
+VectorXd weigh_by_residual(std::vector<BaseRows>& rows, int passes) {
+  VectorXd mean_square = VectorXd::Zero(rows.front().tau.cols());
+  for (int pass = 0; pass < passes; ++pass) {
+    const PartialFit fit(rows);
+    for (Index j = 0; j < mean_square.size(); ++j) {
+      double square = 0, count = 0, memory = 1;
+      for (std::size_t l = 0; l < rows.size(); ++l) {
+        const VectorXd e = fit.residual(l).col(j);
+        const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows[l].weight.col(j).array() > 0;
+        square += usable.select(e.array(), 0.0).square().sum();
+        count += static_cast<double>(usable.count());
+        memory = std::max(memory, residual_memory(e, usable, rows[l].rate_hz));
+      }
+      const double weight = count > 0 ? count / std::max(square * memory, 1e-300) : 0.0;
+      for (BaseRows& log : rows)
+        log.weight.col(j) = (log.weight.col(j).array() > 0).select(weight, VectorXd::Zero(log.weight.rows()));
+      mean_square(j) = count > 0 ? square / count : 0.0;
+    }
+  }
+  return mean_square;
 }
 
 PartialFit::PartialFit(std::vector<BaseRows> rows, Index leave_out) : rows_(std::move(rows)), leave_out_(leave_out) {

@@ -6,7 +6,6 @@
 /// fits best without the column.
 
 #include <Eigen/Core>
-#include <cmath>
 #include <vector>
 
 #include "deltadyn/identification/base_parameters.hpp"
@@ -19,11 +18,15 @@ struct BaseRows {
   std::vector<Eigen::MatrixXd> X;  ///< of each drive rows x base parameters
   Eigen::MatrixXd tau;             ///< rows x drives
   Eigen::MatrixXd weight;          ///< rows x drives: 1 / variance, or 0 for rows that do not count
+  double rate_hz = 0;              ///< of the rows
 };
 
 /// \param use  what each row may be used for; the weights are left empty
-[[nodiscard]] BaseRows base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log,
-                                 Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic>& use);
+[[nodiscard]] BaseRows base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log, RowUses& use);
+
+/// Weighs the rows whose weight is above 0 anew, by the residual of each drive and its memory.
+/// \returns  mean square of each drive's residual before the last pass
+Eigen::VectorXd weigh_by_residual(std::vector<BaseRows>& rows, int passes);
 
 /// Columns of one log: one a amplitude, rows x drives.
 using Columns = std::vector<Eigen::MatrixXd>;

@@ -27,17 +27,19 @@ constexpr int kPasses = 4;                    // displacements and base paramete
 constexpr double kSmallest = 2e-5;            // of the joint's range: no filter shows less
 // Of the position's noise: what jitters within it rounds a reversal like a bristle
 constexpr double kOverNoise = 1;
-constexpr double kLargest =
-    // Of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
-    0.02;
+// Of the joint's range: what builds up over more is no bristle but a spring or Stribeck's curve
+constexpr double kLargest = 0.02;
 constexpr int kGrid = 13;  // displacements tried from the smallest to the largest, refined afterwards
 // Of the squared residual in units of its noise: five standard deviations for one parameter
 constexpr double kClearGain = 25;
 // Of a displacement: the filter rounds the reversals of the positions, and no bristle is quite Dahl's
 constexpr double kForm = 0.02;
-constexpr double kPreslidingMemory_s = 0.2;  // of the residual, as in identify()
-constexpr double kWider = 3;                 // displacements on either side that are tried with damping
-constexpr double kLongestDamping_s = 0.02;   // what lasts longer is no bristle
+constexpr double kWider = 3;                // displacements on either side that are tried with damping
+constexpr double kLongestDamping_s = 0.02;  // what lasts longer is no bristle
+
+VectorXd all_of(const std::vector<PreslidingJoint>& joints, double PreslidingJoint::*value) {
+  return VectorXd::NullaryExpr(std::ssize(joints), [&](Index k) { return joints[static_cast<std::size_t>(k)].*value; });
+}
 
 /// One log with what the search needs of it.
 struct SearchLog {
@@ -45,7 +47,7 @@ struct SearchLog {
   MatrixXd rates;                   ///< N x joints with friction
   std::vector<MatrixXd> direction;  ///< of each joint N x drives: torque of unit friction of positive sign
   BaseRows rows;                    ///< with the presliding of the present pass
-  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
+  RowUses use;
 };
 
 class Search {
@@ -84,31 +86,19 @@ class Search {
  private:
   /// Base parameters with the present displacements, the noise that they leave, and the rows.
   void fit() {
-    DataFold fold;
-    std::vector<PreparedLog> prepared;
-    for (const Log& log : logs_) {
-      prepared.push_back(prepare_log(robot_, log, processing_));
-      fold.add(fold_log(robot_, prepared.back(), threads_));
-    }
-    std::vector<DriveFold> folds = fold.regular;
-    for (std::size_t j = 0; j < folds.size(); ++j) {
-      // Else too little is left to start from
-      if (folds[j].rows < fold.reversal[j].rows) folds[j].add(fold.reversal[j]);
-    }
-    const BaseEstimate estimate = estimate_base_parameters(base_, folds);
-    const VectorXd p = any_parameters(base_, estimate.value, robot_.parameters());
-    if (searched_.empty()) searched_.resize(logs_.size());
+    std::vector<PreparedLog> prepared = prepare_logs(robot_, logs_, processing_);
+    const BaseEstimate estimate =
+        estimate_base_parameters(base_, fold_logs(robot_, prepared, threads_).to_begin_with());
+    searched_.resize(logs_.size());
     for (Index j = 0; j < robot_.drives(); ++j) noise_(j) = estimate.noise[static_cast<std::size_t>(j)].std;
     for (std::size_t l = 0; l < logs_.size(); ++l) {
       SearchLog& log = searched_[l];
       log.prepared = std::move(prepared[l]);
       log.rows = base_rows(robot_, base_, log.prepared, log.use);
-      const auto lags = static_cast<Index>(
-          std::ceil(kPreslidingMemory_s * log.prepared.rate_hz / static_cast<double>(log.prepared.stride)));
       for (Index j = 0; j < robot_.drives(); ++j) {
         const double memory =
-            noise_correlation(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
-                              log.use.col(j) == RowUse::regular, std::min<Index>(lags, 50));
+            residual_memory(log.rows.tau.col(j) - log.rows.X[static_cast<std::size_t>(j)] * estimate.value,
+                            usable_rows(log.use, j, false), log.prepared.row_rate_hz());
         noise_(j) = std::max(noise_(j), estimate.noise[static_cast<std::size_t>(j)].std * std::sqrt(memory));
       }
     }
@@ -176,28 +166,19 @@ class Search {
 
   /// Rows near reversals count where the friction of this joint is felt; elsewhere that of another joint spoils them.
   [[nodiscard]] MatrixXd weights(const SearchLog& log, Index joint) const {
-    MatrixXd weight = MatrixXd::Zero(log.rows.tau.rows(), log.rows.tau.cols());
+    MatrixXd weight(log.rows.tau.rows(), log.rows.tau.cols());
     const MatrixXd& felt = log.direction[static_cast<std::size_t>(joint)];
     for (Index j = 0; j < weight.cols(); ++j) {
       const bool feels = (felt.col(j).array() != 0).any();
-      for (Index k = 0; k < weight.rows(); ++k) {
-        const RowUse use = log.use(k, j);
-        if (use == RowUse::regular || (use == RowUse::reversal && feels)) weight(k, j) = 1 / (noise_(j) * noise_(j));
-      }
+      weight.col(j) = usable_rows(log.use, j, feels).cast<double>() / (noise_(j) * noise_(j));
     }
     return weight;
   }
 
-  /// The joint's Coulomb friction among the base parameters; -1 if the motion does not show it.
-  [[nodiscard]] Index base_index(Index joint) const {
-    const auto at =
-        std::find(base_.independent.begin(), base_.independent.end(), coulomb_[static_cast<std::size_t>(joint)]);
-    return at == base_.independent.end() ? -1 : at - base_.independent.begin();
-  }
-
   [[nodiscard]] PreslidingJoint best(Index joint) const {
     PreslidingJoint out;
-    const Index own = base_index(joint);
+    // The joint's Coulomb friction among the base parameters, if the motion shows it
+    const Index own = base_.place_of(coulomb_[static_cast<std::size_t>(joint)]);
     if (!(range_(joint) > 0) || own < 0) return out;
     std::vector<BaseRows> rows;
     for (const SearchLog& log : searched_) {
@@ -209,17 +190,13 @@ class Search {
     const double smallest = std::max(kSmallest * range_(joint), kOverNoise * jitter_(joint));
     if (smallest >= kLargest * range_(joint)) return out;
     const double ratio = std::pow(kLargest * range_(joint) / smallest, 1.0 / (kGrid - 1));
-    std::vector<double> tried, costs;
-    for (int k = 0; k < kGrid; ++k) {
-      tried.push_back(smallest * std::pow(ratio, k));
-      costs.push_back(cost(tried.back()));
-    }
-    const auto at = std::min_element(costs.begin(), costs.end()) - costs.begin();
+    const auto tried = [&](Index k) { return smallest * std::pow(ratio, k); };
+    Index at = 0;
+    const VectorXd costs = VectorXd::NullaryExpr(kGrid, [&](Index k) { return cost(tried(k)); });
+    const double least = costs.minCoeff(&at);
     const double without = cost(0);
-    if (at == 0 || without - costs[static_cast<std::size_t>(at)] < kClearGain) return out;
-    out.displacement =
-        golden_section_in_logarithm(cost, tried[static_cast<std::size_t>(at - 1)],
-                                    tried[static_cast<std::size_t>(std::min<std::ptrdiff_t>(at + 1, kGrid - 1))]);
+    if (at == 0 || without - least < kClearGain) return out;
+    out.displacement = golden_section_in_logarithm(cost, tried(at - 1), tried(std::min<Index>(at + 1, kGrid - 1)));
     const double found = cost(out.displacement);
     out.gain = without - found;
     out.std = deviation(cost, out.displacement);
@@ -270,15 +247,11 @@ std::vector<PreslidingJoint> find_presliding(const Robot& robot, const BaseParam
 }
 
 VectorXd displacements(const std::vector<PreslidingJoint>& joints) {
-  VectorXd out(static_cast<Index>(joints.size()));
-  for (std::size_t k = 0; k < joints.size(); ++k) out(static_cast<Index>(k)) = joints[k].displacement;
-  return out;
+  return all_of(joints, &PreslidingJoint::displacement);
 }
 
 VectorXd bristle_dampings(const std::vector<PreslidingJoint>& joints) {
-  VectorXd out(static_cast<Index>(joints.size()));
-  for (std::size_t k = 0; k < joints.size(); ++k) out(static_cast<Index>(k)) = joints[k].damping_s;
-  return out;
+  return all_of(joints, &PreslidingJoint::damping_s);
 }
 
 }  // namespace deltadyn

@@ -1,7 +1,6 @@
 #include "deltadyn/identification/residual_structure.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "least_squares.hpp"
@@ -11,10 +10,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kIntervals = 24;            // fine enough for the shape of a friction curve on both sides of zero
-constexpr Index kShifts = 199;              // the smallest p-value is 1/200
-constexpr Index kRowsPerInterval = 4;       // below that the means are noise
-constexpr double kStructureMemory_s = 0.2;  // time over which residual correlation is looked for, as in identify()
+constexpr Index kIntervals = 24;       // fine enough for the shape of a friction curve on both sides of zero
+constexpr Index kShifts = 199;         // the smallest p-value is 1/200
+constexpr Index kRowsPerInterval = 4;  // below that the means are noise
 
 /// Interval of each row; all intervals hold the same number of rows, so that rare speeds count as little as they occur.
 std::vector<Index> intervals_of(const Eigen::VectorXd& coordinate) {
@@ -76,18 +74,17 @@ std::vector<ResidualStructure> residual_structure(const Validation& validation) 
         qd.push_back(rows.qd(k, drive));
         qdd.push_back(rows.qdd(k, drive));
       }
-      const auto lags = static_cast<Index>(std::ceil(kStructureMemory_s * log.row_rate_hz));
       if (rows.rows() > 1) {
-        weighted += static_cast<double>(usable.count()) * noise_correlation(rows.tau.col(drive) - rows.model.col(drive),
-                                                                            usable, std::clamp<Index>(lags, 1, 50));
+        weighted += static_cast<double>(usable.count()) *
+                    residual_memory(rows.tau.col(drive) - rows.model.col(drive), usable, log.row_rate_hz);
       }
     }
     ResidualStructure& out = result[j];
     out.rows = static_cast<Index>(residual.size());
     if (out.rows == 0) continue;
     out.correlation = weighted / static_cast<double>(out.rows);
-    const auto vector = [](const std::vector<double>& values) {
-      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size())));
+    const auto vector = [](const std::vector<double>& values) -> Eigen::VectorXd {
+      return Eigen::VectorXd::Map(values.data(), std::ssize(values));
     };
     const Eigen::VectorXd e = vector(residual);
     out.on_velocity = dependence_on(vector(qd), e);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 #include <utility>
@@ -36,28 +35,25 @@ constexpr double kHalfShare = 0.3;     // of a half's own gain that the amplitud
 constexpr Index kPieces = 16;          // of each log, taken in turn by the halves
 // Of what is left, as where structure is told: what else the model lacks can pass for a wave
 constexpr double kMostMemory = 3;
-constexpr double kRippleMemory_s = 0.2;  // of the residual, as in identify()
-
-struct RippleLog {
-  PreparedLog prepared;
-  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
-};
 
 class RippleSearch {
  public:
   RippleSearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
                const ProcessingOptions& processing, const std::vector<bool>& keep)
-      : robot_(robot), keep_(keep), pass_hz_(processing.torque_cutoff_ratio * processing.cutoff_hz) {
+      : robot_(robot), pass_hz_(processing.torque_cutoff_ratio * processing.cutoff_hz) {
     ProcessingOptions options = processing;
     options.ripples.clear();
     options.periods = Periods::ignore;  // each sample at its own position
     for (const Log& log : logs) {
-      RippleLog one;
-      one.prepared = prepare_log(robot, middle_of(log, kRippleSamples), options);
-      rows_.push_back(base_rows(robot, base, one.prepared, one.use));
+      PreparedLog one = prepare_log(robot, middle_of(log, kRippleSamples), options);
+      RowUses use;
+      rows_.push_back(base_rows(robot, base, one, use));
+      rows_.back().weight.resize(one.rows, robot.drives());
+      for (Index j = 0; j < robot.drives(); ++j)
+        rows_.back().weight.col(j) = usable_rows(use, j, keep[static_cast<std::size_t>(j)]).cast<double>();
       logs_.push_back(std::move(one));
     }
-    weigh();
+    weigh_by_residual(rows_, 3);
   }
 
   std::vector<Ripple> run() {
@@ -102,63 +98,24 @@ class RippleSearch {
     const PartialFit fit(rows_);
     double sum = 0, rows = 0;
     for (std::size_t l = 0; l < logs_.size(); ++l) {
-      const auto [memory, count] = memory_of(fit.residual(l).col(drive), l, drive);
-      sum += memory * count;
+      const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows_[l].weight.col(drive).array() > 0;
+      const auto count = static_cast<double>(usable.count());
+      sum += residual_memory(fit.residual(l).col(drive), usable, rows_[l].rate_hz) * count;
       rows += count;
     }
     return rows > 0 ? sum / rows : 1.0;
   }
 
-  /// Memory of a residual over the rows that count, and their number.
-  [[nodiscard]] std::pair<double, double> memory_of(const VectorXd& residual, std::size_t l, Index drive) const {
-    const PreparedLog& log = logs_[l].prepared;
-    const Eigen::Array<bool, Eigen::Dynamic, 1> usable = rows_[l].weight.col(drive).array() > 0;
-    const auto lags = static_cast<Index>(std::ceil(kRippleMemory_s * log.rate_hz / static_cast<double>(log.stride)));
-    return {noise_correlation(residual, usable, std::min<Index>(lags, 50)), static_cast<double>(usable.count())};
-  }
-
-  [[nodiscard]] bool counts(const RippleLog& log, Index row, Index drive) const {
-    const RowUse use = log.use(row, drive);
-    return use == RowUse::regular || (use == RowUse::reversal && keep_[static_cast<std::size_t>(drive)]);
-  }
-
-  /// Weights of the rows by the residual of each drive and its memory.
-  void weigh() {
-    for (std::size_t l = 0; l < logs_.size(); ++l) {
-      MatrixXd& weight = rows_[l].weight;
-      weight.setZero(rows_[l].tau.rows(), rows_[l].tau.cols());
-      for (Index j = 0; j < weight.cols(); ++j) {
-        for (Index k = 0; k < weight.rows(); ++k) weight(k, j) = counts(logs_[l], k, j) ? 1.0 : 0.0;
-      }
-    }
-    for (int pass = 0; pass < 3; ++pass) {
-      const PartialFit fit(rows_);
-      for (Index j = 0; j < robot_.drives(); ++j) {
-        double square = 0, count = 0, memory = 1;
-        for (std::size_t l = 0; l < logs_.size(); ++l) {
-          const VectorXd e = fit.residual(l).col(j);
-          const auto [of_log, rows] = memory_of(e, l, j);
-          square += (rows_[l].weight.col(j).array() > 0).select(e.array(), 0.0).square().sum();
-          count += rows;
-          memory = std::max(memory, of_log);
-        }
-        const double weight = count > 0 ? count / std::max(square * memory, 1e-300) : 0.0;
-        for (BaseRows& log : rows_)
-          log.weight.col(j) = (log.weight.col(j).array() > 0).select(weight, VectorXd::Zero(log.weight.rows()));
-      }
-    }
-  }
-
   /// Cosine and sine under the low pass of the rows.
   [[nodiscard]] std::vector<Columns> columns(int drive, double n) const {
     std::vector<Columns> out;
-    for (const RippleLog& log : logs_) {
-      MatrixXd raw(log.prepared.q.rows(), 2);
+    for (const PreparedLog& log : logs_) {
+      MatrixXd raw(log.q.rows(), 2);
       for (Index k = 0; k < raw.rows(); ++k) {
-        const Wave<double> pair = wave(log.prepared.q(k, drive), n);
+        const Wave<double> pair = wave(log.q(k, drive), n);
         raw.row(k) << pair.cosine, pair.sine;
       }
-      const MatrixXd low = low_passed_rows(log.prepared, raw);
+      const MatrixXd low = low_passed_rows(log, raw);
       Columns both(2, MatrixXd::Zero(low.rows(), robot_.drives()));
       for (std::size_t c = 0; c < 2; ++c) both[c].col(drive) = low.col(static_cast<Index>(c));
       out.push_back(std::move(both));
@@ -169,7 +126,7 @@ class RippleSearch {
   /// The residual of a drive with its weights, back through the low pass to the samples, so that its product with a
   /// wave at the samples is that of the rows with the wave behind the low pass.
   [[nodiscard]] VectorXd at_samples(const PartialFit& fit, std::size_t l, int drive) const {
-    const PreparedLog& log = logs_[l].prepared;
+    const PreparedLog& log = logs_[l];
     const VectorXd e = rows_[l].weight.col(drive).cwiseProduct(fit.residual(l).col(drive));
     VectorXd out = VectorXd::Zero(log.q.rows());
     for (Index row = 0; row < e.size(); ++row) {
@@ -189,7 +146,7 @@ class RippleSearch {
     double low = 1e300, high = -1e300;
     std::vector<std::pair<double, double>> speeds;  // of the rows, with their weights
     for (std::size_t l = 0; l < logs_.size(); ++l) {
-      const PreparedLog& log = logs_[l].prepared;
+      const PreparedLog& log = logs_[l];
       for (Index row = 0; row < log.rows; ++row) {
         const double weight = rows_[l].weight(row, drive);
         if (!(weight > 0)) continue;
@@ -219,7 +176,7 @@ class RippleSearch {
     VectorXd over_position = VectorXd::Zero(kPadding * bins);
     for (std::size_t l = 0; l < logs_.size(); ++l) {
       const VectorXd e = at_samples(fit, l, drive);
-      const VectorXd q = logs_[l].prepared.q.col(drive);
+      const VectorXd q = logs_[l].q.col(drive);
       for (Index k = 0; k < e.size(); ++k) {
         const double at = (q(k) - low) / range * static_cast<double>(bins);
         if (at >= 0 && at < static_cast<double>(bins)) over_position(static_cast<Index>(at)) += e(k);
@@ -244,9 +201,9 @@ class RippleSearch {
   /// Distance of the points of the spectrum.
   [[nodiscard]] double peak_width(int drive) const {
     double low = 1e300, high = -1e300;
-    for (const RippleLog& log : logs_) {
-      low = std::min(low, log.prepared.q.col(drive).minCoeff());
-      high = std::max(high, log.prepared.q.col(drive).maxCoeff());
+    for (const PreparedLog& log : logs_) {
+      low = std::min(low, log.q.col(drive).minCoeff());
+      high = std::max(high, log.q.col(drive).maxCoeff());
     }
     return 2 * kPi / (static_cast<double>(kPadding) * (high - low));
   }
@@ -327,9 +284,8 @@ class RippleSearch {
   }
 
   const Robot& robot_;
-  const std::vector<bool>& keep_;
   double pass_hz_;
-  std::vector<RippleLog> logs_;
+  std::vector<PreparedLog> logs_;
   std::vector<BaseRows> rows_;
 };
 

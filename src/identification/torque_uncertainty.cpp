@@ -1,7 +1,6 @@
 #include "deltadyn/identification/torque_uncertainty.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "deltadyn/runtime/error.hpp"

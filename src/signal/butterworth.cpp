@@ -15,15 +15,15 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 12;
 
+void demand(bool fine, const char* rule, const char* mend) {
+  if (!fine) throw Error(rule, "low pass", mend, ExitCode::usage);
+}
+
 void check(double sample_rate_hz, double cutoff_hz, int order) {
-  if (!(sample_rate_hz > 0) || !std::isfinite(sample_rate_hz)) {
-    throw Error("the sample rate must be positive", "low pass", "give a positive rate in Hz", ExitCode::usage);
-  }
-  if (!(cutoff_hz > 0))
-    throw Error("the cut-off must be positive", "low pass", "give a positive frequency in Hz", ExitCode::usage);
-  if (order < 1 || order > kLargestOrder) {
-    throw Error("the order of the filter must be 1 to 12", "low pass", "4 serves most logs", ExitCode::usage);
-  }
+  demand(sample_rate_hz > 0 && std::isfinite(sample_rate_hz), "the sample rate must be positive",
+         "give a positive rate in Hz");
+  demand(cutoff_hz > 0, "the cut-off must be positive", "give a positive frequency in Hz");
+  demand(order >= 1 && order <= kLargestOrder, "the order of the filter must be 1 to 12", "4 serves most logs");
 }
 
 /// Transposed direct form II.
@@ -46,10 +46,7 @@ void pass(const std::vector<SecondOrderSection>& sections, Eigen::Ref<Eigen::Vec
 
 std::vector<SecondOrderSection> butterworth_low_pass(double sample_rate_hz, double cutoff_hz, int order) {
   check(sample_rate_hz, cutoff_hz, order);
-  if (!(cutoff_hz < 0.5 * sample_rate_hz)) {
-    throw Error("the cut-off must be below half the sample rate", "low pass", "choose a lower cut-off",
-                ExitCode::usage);
-  }
+  demand(cutoff_hz < 0.5 * sample_rate_hz, "the cut-off must be below half the sample rate", "choose a lower cut-off");
   const double w = std::tan(pi * cutoff_hz / sample_rate_hz);  // pre-warped, s = (z - 1)/(z + 1)
   std::vector<SecondOrderSection> sections;
   for (int k = 0; k < order / 2; ++k) {

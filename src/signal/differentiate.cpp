@@ -11,12 +11,13 @@ namespace deltadyn {
 
 using Eigen::Index;
 
-Eigen::VectorXd derivative_weights(int points, int degree, int derivative, double at) {
-  if (points < 2 || points > 4001 || degree < 0 || degree >= points || degree > 20 || derivative < 0 ||
-      derivative > degree) {
-    throw Error("points, degree and derivative of the polynomial do not fit together", "differentiation",
-                "0 <= derivative <= degree < points, degree at most 20", ExitCode::usage);
-  }
+namespace {
+
+/// Weights w of the polynomial through all points: its `derivative`-th derivative at the point `at` is sum_k w(k) x(k) /
+/// h^derivative, for samples at 0 .. points-1 in units of the sample time h.
+/// \param at  in samples, e.g. (points - 1)/2 for the centre
+Eigen::VectorXd derivative_weights(int points, int derivative, double at) {
+  const int degree = points - 1;
   // Scaled to [-1, 1] around the point, the powers stay well conditioned.
   const double scale = std::max(at, points - 1 - at);
   Eigen::MatrixXd powers(points, degree + 1);
@@ -35,17 +36,22 @@ Eigen::VectorXd derivative_weights(int points, int degree, int derivative, doubl
   return dense::least_norm(powers.transpose(), unit);
 }
 
-Eigen::MatrixXd savitzky_golay(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_time_s, int derivative,
-                               int half_width, int degree) {
+}  // namespace
+
+Eigen::MatrixXd differentiate(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_time_s, int derivative,
+                              int half_width) {
+  if (derivative < 1 || derivative > 2 || half_width < 1 || half_width > 8) {
+    throw Error("the derivative must be 1 or 2, the half width 1 to 8", "differentiation", "", ExitCode::usage);
+  }
   const int points = 2 * half_width + 1;
   const Index n = columns.rows();
-  if (!(sample_time_s > 0) || half_width < 1 || n < points) {
+  if (!(sample_time_s > 0) || n < points) {
     throw Error("too few samples, or no positive sample time", "differentiation",
                 "give at least " + std::to_string(points) + " samples", ExitCode::usage);
   }
   const double scale = std::pow(sample_time_s, -derivative);
   const auto at = [&](int position) {
-    return Eigen::VectorXd(scale * derivative_weights(points, degree, derivative, position));
+    return Eigen::VectorXd(scale * derivative_weights(points, derivative, position));
   };
   const Eigen::VectorXd centre = at(half_width);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, columns.cols());
@@ -59,14 +65,6 @@ Eigen::MatrixXd savitzky_golay(const Eigen::Ref<const Eigen::MatrixXd>& columns,
     result.row(n - 1 - i) = at(points - 1 - i).transpose() * columns.bottomRows(points);
   }
   return result;
-}
-
-Eigen::MatrixXd differentiate(const Eigen::Ref<const Eigen::MatrixXd>& columns, double sample_time_s, int derivative,
-                              int half_width) {
-  if (derivative < 1 || derivative > 2 || half_width < 1 || half_width > 8) {
-    throw Error("the derivative must be 1 or 2, the half width 1 to 8", "differentiation", "", ExitCode::usage);
-  }
-  return savitzky_golay(columns, sample_time_s, derivative, half_width, 2 * half_width);
 }
 
 }  // namespace deltadyn

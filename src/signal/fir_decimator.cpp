@@ -72,16 +72,14 @@ double FirDecimator::gain(double frequency_hz) const {
   return sum;
 }
 
-void FirDecimator::apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Index first_output, Index n_outputs,
-                         Eigen::Ref<Eigen::MatrixXd> out, Index input_offset) const {
-  const Index begin = first_input(first_output) - input_offset;
-  if (begin < 0 || begin + inputs(n_outputs) > in.rows() || out.rows() != n_outputs || out.cols() != in.cols()) {
+void FirDecimator::apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (inputs(out.rows()) > in.rows() || out.cols() != in.cols()) {
     throw Error("the block does not hold the samples that the outputs need", "decimation",
-                "pass inputs(n_outputs) samples from first_input(first_output) on", ExitCode::usage);
+                "pass inputs(n_outputs) samples for n_outputs outputs", ExitCode::usage);
   }
   for (Index channel = 0; channel < in.cols(); ++channel) {
-    for (Index k = 0; k < n_outputs; ++k) {
-      out(k, channel) = taps_.dot(in.col(channel).segment(begin + k * factor_, taps_.size()));
+    for (Index k = 0; k < out.rows(); ++k) {
+      out(k, channel) = taps_.dot(in.col(channel).segment(k * factor_, taps_.size()));
     }
   }
 }

@@ -44,24 +44,7 @@ void add_figures(std::vector<Log>& parts, double largest_jitter, double recorded
 
 }  // namespace
 
-void LogCheckOptions::validate() const {
-  const auto demand = [](bool fine, const char* what) {
-    if (!fine) throw Error(what, "log check options", "", ExitCode::usage);
-  };
-  demand(max_filled_gap >= 0 && max_filled_gap <= 100, "max_filled_gap must be 0 to 100 samples");
-  demand(max_filled_gap_s >= 0 && max_filled_gap_s <= 0.1, "max_filled_gap_s must be 0 to 0.1 s");
-  demand(max_filled_share >= 0 && max_filled_share <= 1, "max_filled_share must be 0 to 1");
-  demand(max_stamp_jitter >= 0 && max_stamp_jitter <= max_resampled_jitter && max_resampled_jitter < 0.5,
-         "the jitter limits must be 0 <= max_stamp_jitter <= max_resampled_jitter < 0.5");
-  demand(min_samples >= 12, "min_samples must be at least 12");
-  demand(min_duration_s >= 0, "min_duration_s must not be negative");
-  demand(max_saturated_share >= 0 && max_saturated_share <= 1, "max_saturated_share must be 0 to 1");
-  demand(stuck_time_s > 0, "stuck_time_s must be positive");
-  demand(outlier_ratio >= 5, "outlier_ratio must be at least 5");
-}
-
 std::vector<Log> check_and_split(Log log, const RobotDescription& robot, const LogCheckOptions& options) {
-  options.validate();
   double largest_jitter = 0;
   CheckRoom room{log, robot, options, largest_jitter};
   checks::check_counts(room);

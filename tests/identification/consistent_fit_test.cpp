@@ -17,6 +17,7 @@
 namespace deltadyn {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing_support::body_of;
 using testing_support::random_problem;
@@ -61,21 +62,21 @@ TEST_P(ConsistentFitCases, DataDecideWhatTheySeeWhateverThePrior) {
     const ConsistentFitSummary from_low = fit_consistent_parameters(low, options);
     const ConsistentFitSummary from_high = fit_consistent_parameters(high, options);
     EXPECT_LT((low.A * (from_low.p - from_high.p)).squaredNorm(),
-              4 * (options.data_misfit_rise + options.certificate_gap));
+              4 * (options.kDataMisfitRise + options.kCertificateGap));
     // the smallest chi^2 on the consistent set is a property of the data: it is the reference of the choice of lambda
     const ConsistentFitOptions convex = make_options(set, FitMetric::relative);
     const double minimum = fit_consistent_parameters(low, convex).data_cost_min;
-    EXPECT_NEAR(from_low.data_cost_min, minimum, options.certificate_gap);
-    EXPECT_NEAR(from_high.data_cost_min, minimum, options.certificate_gap);
+    EXPECT_NEAR(from_low.data_cost_min, minimum, options.kCertificateGap);
+    EXPECT_NEAR(from_high.data_cost_min, minimum, options.kCertificateGap);
     for (const ConsistentFitSummary* summary : {&from_low, &from_high}) {
-      EXPECT_TRUE(summary->converged) << summary->full_report();
+      EXPECT_TRUE(summary->converged) << summary->brief_report();
       expect_consistent(*summary);
       // chi^2 with at most kRank degrees of freedom, six standard deviations
       EXPECT_LT((low.A * (summary->p - truth)).squaredNorm(), kRank + 6 * std::sqrt(2.0 * kRank));
       EXPECT_NEAR(summary->data_cost, (low.A * summary->p - low.b).squaredNorm(), 1e-6 * summary->data_cost);
       EXPECT_LT(summary->data_cost, summary->initial_data_cost);
-      EXPECT_LE(summary->data_cost, summary->data_cost_min + options.data_misfit_rise + options.certificate_gap);
-      EXPECT_EQ(summary->certificate.passed, metric != FitMetric::riemannian) << summary->full_report();
+      EXPECT_LE(summary->data_cost, summary->data_cost_min + options.kDataMisfitRise + options.kCertificateGap);
+      EXPECT_EQ(summary->certificate.passed, metric != FitMetric::riemannian) << summary->brief_report();
     }
   }
 }
@@ -92,7 +93,7 @@ TEST_P(ConsistentFitCases, StaysConsistentWherePlainLeastSquaresDoesNot) {
     for (int body = 0; body < kBodies; ++body) inconsistent += is_physically_consistent(body_of(plain, body)) ? 0 : 1;
     const ConsistentFitSummary summary = fit_consistent_parameters(problem, make_options(set, metric));
     expect_consistent(summary);
-    EXPECT_EQ(summary.certificate.passed, metric != FitMetric::riemannian) << summary.full_report();
+    EXPECT_EQ(summary.certificate.passed, metric != FitMetric::riemannian) << summary.brief_report();
   }
   EXPECT_GT(inconsistent, 6) << "the test must be a hard one";
 }
@@ -123,7 +124,7 @@ TEST(ConsistentFit, NoFeasiblePointIsLower) {
   ConsistentFitOptions options = make_options(ParameterSet::full, FitMetric::relative);
   options.regularization = 0.5;
   const ConsistentFitSummary summary = fit_consistent_parameters(problem, options);
-  ASSERT_TRUE(summary.certificate.passed) << summary.full_report();
+  ASSERT_TRUE(summary.certificate.passed) << summary.brief_report();
   Eigen::VectorXd scale(problem.prior.size());
   for (Eigen::Index i = 0; i < scale.size(); ++i) scale(i) = std::abs(problem.prior(i));
   for (int body = 0; body < kBodies; ++body) {
@@ -173,7 +174,7 @@ TEST(ConsistentFit, IsProvenHoweverSharpTheDataAndHoweverThinTheBodiesEnd) {
         const ConsistentFitSummary summary = fit_consistent_parameters(problem, make_options(set, FitMetric::relative));
         EXPECT_TRUE(summary.converged && summary.certificate.passed)
             << "precision " << precision << ", rank " << rank << "\n"
-            << summary.full_report();
+            << summary.brief_report();
       }
     }
   }
@@ -235,16 +236,16 @@ TEST(ConsistentFit, ZeroAndThinPriors) {
   for (const FitMetric metric : {FitMetric::relative, FitMetric::bregman, FitMetric::riemannian}) {
     const ConsistentFitSummary summary =
         fit_consistent_parameters(problem, make_options(ParameterSet::reduced, metric));
-    EXPECT_TRUE(summary.converged) << summary.full_report();
+    EXPECT_TRUE(summary.converged) << summary.brief_report();
     expect_consistent(summary);
     EXPECT_TRUE(summary.std.allFinite() && summary.data_share.allFinite() && summary.p.allFinite());
     EXPECT_LT((problem.A * (summary.p - truth)).squaredNorm(), kRank + 6 * std::sqrt(2.0 * kRank));
-    EXPECT_THAT(summary.full_report(), HasSubstr("the prior of strut was on the boundary"));
+    EXPECT_THAT(summary.notes, Contains(HasSubstr("the prior of strut was on the boundary")));
   }
   const ConsistentFitSummary full =
       fit_consistent_parameters(problem, make_options(ParameterSet::full, FitMetric::relative));
   expect_consistent(full);
-  EXPECT_TRUE(full.certificate.passed) << full.full_report();
+  EXPECT_TRUE(full.certificate.passed) << full.brief_report();
 }
 
 TEST(ConsistentFit, FrictionThatTheDataDenyGoesToZeroAndStaysPositive) {
@@ -262,7 +263,7 @@ TEST(ConsistentFit, FrictionThatTheDataDenyGoesToZeroAndStaysPositive) {
   const ConsistentFitSummary summary = fit_consistent_parameters(problem);
   EXPECT_GT(summary.p(viscous), 0.0);
   EXPECT_LT(summary.p(viscous), 1e-5);
-  EXPECT_TRUE(summary.certificate.passed) << summary.full_report();
+  EXPECT_TRUE(summary.certificate.passed) << summary.brief_report();
 }
 
 TEST(ConsistentFit, OffsetHasNoSignAndCarriageIsAMass) {
@@ -462,23 +463,13 @@ TEST(ConsistentFitRefuses, SizesAndParametersThatDoNotFit) {
 TEST(ConsistentFitRefuses, OptionsOutOfRange) {
   const std::pair<const char*, std::function<void(ConsistentFitOptions&)>> rows[] = {
       {"regularization", [](ConsistentFitOptions& o) { o.regularization = 0.0; }},
-      {"data_misfit_rise", [](ConsistentFitOptions& o) { o.data_misfit_rise = -1; }},
-      {"max_iterations", [](ConsistentFitOptions& o) { o.max_iterations = 0; }},
-      {"function_tolerance", [](ConsistentFitOptions& o) { o.function_tolerance = 0; }},
-      {"gradient_tolerance", [](ConsistentFitOptions& o) { o.gradient_tolerance = -1e-3; }},
-      {"parameter_tolerance", [](ConsistentFitOptions& o) { o.parameter_tolerance = 0; }},
       {"prior_relative_std",
        [](ConsistentFitOptions& o) { o.prior_relative_std = std::numeric_limits<double>::quiet_NaN(); }},
-      {"certificate_gap", [](ConsistentFitOptions& o) { o.certificate_gap = 0; }},
   };
   const ConsistentFitProblem problem = random_problem(52, kRank, 1e3, 1, true);
   for (const auto& [field, damage] : rows) {
     ConsistentFitOptions options;
-    EXPECT_TRUE(options.is_valid(nullptr));
     damage(options);
-    std::string error;
-    EXPECT_FALSE(options.is_valid(&error));
-    EXPECT_THAT(error, HasSubstr(field));
     EXPECT_THAT(message_of([&] { (void)fit_consistent_parameters(problem, options); }), HasSubstr(field));
   }
 }

@@ -36,7 +36,7 @@ TEST(FirDecimator, KnowsHowItCorrelatesWhiteNoise) {
     const FirDecimator filter(1000, 25.0, factor);
     const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(400000, 1, [&]() { return normal(random); });
     Eigen::MatrixXd out(filter.outputs(noise.rows()), 1);
-    filter.apply(noise, 0, out.rows(), out);
+    filter.apply(noise, out);
     const Eigen::Index block = 400, blocks = out.rows() / block;
     double of_sums = 0;
     for (Eigen::Index b = 0; b < blocks; ++b) of_sums += std::pow(out.col(0).segment(b * block, block).sum(), 2);
@@ -53,10 +53,10 @@ TEST(FirDecimator, HasNoLag) {
   const Eigen::VectorXd t = times(1000, 3000);
   const Eigen::MatrixXd in = ((2 * std::numbers::pi * 5.0) * t.array()).sin().matrix();
   Eigen::MatrixXd out(filter.outputs(3000), 1);
-  filter.apply(in, 0, out.rows(), out);
+  filter.apply(in, out);
   for (Eigen::Index k = 0; k < out.rows(); ++k) EXPECT_NEAR(out(k, 0), in(filter.centre(k), 0), 1e-3);
   Eigen::MatrixXd line = (3.0 - 2.0 * t.array()).matrix();
-  filter.apply(line, 0, out.rows(), out);
+  filter.apply(line, out);
   for (Eigen::Index k = 0; k < out.rows(); ++k) EXPECT_NEAR(out(k, 0), line(filter.centre(k), 0), 1e-12);
 }
 
@@ -69,13 +69,13 @@ TEST(FirDecimator, BlocksGiveTheSameAsTheWhole) {
   EXPECT_LE(filter.centre(n - 1) + filter.half_width(), 4999);
   EXPECT_GT(filter.centre(n) + filter.half_width(), 4999);
   Eigen::MatrixXd whole(n, 3);
-  filter.apply(in, 0, n, whole);
+  filter.apply(in, whole);
   for (const Eigen::Index block : {1, 17, 100}) {
     for (Eigen::Index first = 0; first < n; first += block) {
       const Eigen::Index count = std::min(block, n - first);
-      const Eigen::Index offset = filter.first_input(first);
+      const Eigen::Index offset = filter.centre(first) - filter.half_width();
       Eigen::MatrixXd out(count, 3);
-      filter.apply(in.middleRows(offset, filter.inputs(count)), first, count, out, offset);
+      filter.apply(in.middleRows(offset, filter.inputs(count)), out);
       ASSERT_EQ(out, whole.middleRows(first, count)) << "block " << block << " at " << first;
     }
   }
@@ -89,7 +89,7 @@ TEST(FirDecimator, RefusesAliasesAndBlocksThatAreTooShort) {
   EXPECT_EQ(filter.outputs(2 * filter.half_width()), 0);
   EXPECT_EQ(filter.outputs(2 * filter.half_width() + 1), 1);
   Eigen::MatrixXd out(2, 1);
-  EXPECT_THROW(filter.apply(Eigen::MatrixXd::Zero(2 * filter.half_width() + 10, 1), 0, 2, out), Error);
+  EXPECT_THROW(filter.apply(Eigen::MatrixXd::Zero(2 * filter.half_width() + 10, 1), out), Error);
 }
 
 }  // namespace

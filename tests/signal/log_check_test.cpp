@@ -547,12 +547,5 @@ TEST(LogCheck, SeesThatVelocitiesFarBeyondTheLimitAreAnotherUnit) {
   EXPECT_THROW(check_and_repair(log, axis), Error);
 }
 
-TEST(LogCheckOptions, RefusesNonsense) {
-  LogCheckOptions options;
-  options.max_resampled_jitter = 0.7;
-  Log log = good_log();
-  EXPECT_THROW(check_and_repair(log, delta3(), options), Error);
-}
-
 }  // namespace
 }  // namespace deltadyn

@@ -52,19 +52,13 @@ struct ConsistentFitOptions {
   FitMetric metric = FitMetric::relative;
   std::optional<double> regularization;  ///< lambda; chosen from the data when empty
   /// Chosen lambda: the largest one that raises chi^2 by no more than this over its minimum on the consistent set. The
-  /// bias of everything the data determine is then below sqrt(data_misfit_rise) standard deviations, all directions
+  /// bias of everything the data determine is then below sqrt(kDataMisfitRise) standard deviations, all directions
   /// together.
-  double data_misfit_rise = 0.001;
-  int max_iterations = 200;          ///< of Ceres
-  double function_tolerance = 1e-8;  ///< relative change of J at which Ceres stops
-  double gradient_tolerance = 1e-10;
-  double parameter_tolerance = 1e-12;
+  static constexpr double kDataMisfitRise = 0.001;
   /// Trust in the prior, for the uncertainties and as the upper end of the search for lambda
   double prior_relative_std = 0.3;
-  double certificate_gap = 0.01;  ///< largest proven distance to the global optimum, in units of chi^2, that passes
-
-  /// False if a field is out of its range; `error` then names the field and its range.
-  [[nodiscard]] bool is_valid(std::string* error) const;
+  /// Largest proven distance to the global optimum, in units of chi^2, that passes
+  static constexpr double kCertificateGap = 0.01;
 };
 
 /// One point of the L-curve.
@@ -79,11 +73,8 @@ struct OptimalityCertificate {
   /// Smallest eigenvalue of all scaled dual matrices; >= 0 up to rounding at an optimum [chi^2]
   double min_dual_eigenvalue = 0;
   std::string min_dual_name;  ///< the body or parameter it belongs to
-  /// Sum of <G, Mbar> over the bodies and g p over the scalars; 0 at an optimum [chi^2]
-  double complementarity = 0;
-  double gap = 0;           ///< proven upper bound of J(p) - min J [chi^2]
-  double relative_gap = 0;  ///< gap / max(J, 1)
-  bool passed = false;      ///< gap <= ConsistentFitOptions::certificate_gap
+  double gap = 0;             ///< proven upper bound of J(p) - min J [chi^2]
+  bool passed = false;        ///< gap <= ConsistentFitOptions::kCertificateGap
 };
 
 struct ConsistentFitSummary {
@@ -122,7 +113,6 @@ struct ConsistentFitSummary {
   [[nodiscard]] bool agrees_with_least_squares() const;
 
   [[nodiscard]] std::string brief_report() const;  ///< one line
-  [[nodiscard]] std::string full_report() const;   ///< with a line a parameter
 };
 
 /// Solves the problem. Throws deltadyn::Error for sizes, parameters or numbers that do not fit, options out of range,

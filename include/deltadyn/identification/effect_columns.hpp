@@ -86,17 +86,11 @@ class EffectModel {
   [[nodiscard]] const Robot& robot() const { return robot_; }
 
  private:
-  [[nodiscard]] std::vector<EffectColumn> columns_of_changes(const EffectSignals& signals, EffectId id, int joint,
-                                                             const Shape<double>& shape) const;
-  template <class E>
-  [[nodiscard]] std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& signals, int joint,
-                                                               const Shape<double>& shape) const;
   void add_differences(const PreparedLog& log, const Eigen::VectorXd& p, EffectSignals& out) const;
   void add_lags(const Eigen::VectorXd& p, const EffectSignals* near, EffectSignals& out) const;
 
   const Robot& robot_;
   std::unique_ptr<EffectStates> states_;
-  Eigen::MatrixXd gravity_;        ///< 2 x n: outwards and upwards in the frame of each drive's limb
   std::vector<int> own_friction_;  ///< columns of p that load leaves out
   std::vector<int> friction_;      ///< columns of p of all friction
   std::vector<MachineDifference> differences_;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/identification/base_estimate.hpp"
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/identification/consistent_fit.hpp"
 #include "deltadyn/identification/log_processing.hpp"

@@ -6,7 +6,6 @@
 /// on a small part of the logs; what is certain and harmless is mended.
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "deltadyn/runtime/robot.hpp"

@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "deltadyn/identification/ripple.hpp"
@@ -35,14 +34,13 @@ struct ProcessingOptions {
   double torque_cutoff_ratio = 1.25;  ///< -6 dB point of the low pass of regressor and torque, in units of cutoff_hz
   Periods periods = Periods::detect;  ///< periodic logs: Fourier fit of the motion, torque averaged over the periods
   double period_s = 0;                ///< used if periods is `given`
-  double reversal_sigmas = 4;         ///< a rate below this many standard deviations of its noise has no certain sign
-  double reversal_floor = 0.003;      ///< ... nor one below this share of the joint's largest rate
+  /// A rate below this share of the joint's largest one has no certain sign, nor one in its noise
+  double reversal_floor = 0.003;
   /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after
   /// a reversal [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
-  int stride = 0;                        ///< use every stride-th sample; 0: what the pass band asks for
 
   /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
   void keep_motion(double motion_hz);
@@ -51,16 +49,13 @@ struct ProcessingOptions {
   void validate() const;
 };
 
-/// A log made ready. Rows are numbered from 0; row k belongs to sample first + k stride of the log.
-struct PreparedLog {
-  std::string file;
+/// A log made ready: motion filtered, torque as recorded. Rows are numbered from 0; row k belongs to sample first + k
+/// stride of the log.
+struct PreparedLog : Log {
   double rate_hz = 0;
-  Eigen::VectorXd t_s;
-  Eigen::MatrixXd q, qd, qdd, tau;               ///< N x drives, motion filtered, torque as recorded
   std::shared_ptr<const FirDecimator> low_pass;  ///< null without filter
   Eigen::Index first = 0, rows = 0, stride = 1;
   std::optional<double> period_s;  ///< of a periodic log, whose samples then are means over the periods
-  std::vector<long> line;          ///< of each sample in the file; empty if unknown
   /// N x drives: the sign of a friction in this drive's torque is uncertain
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reversal;
   /// N x drives: a joint whose friction this drive feels stands still
@@ -69,15 +64,16 @@ struct PreparedLog {
   /// a joint without presliding. Empty if no joint has any. The joints' Coulomb columns in the regressor are multiplied
   /// by it.
   Eigen::MatrixXd coulomb_share;
-  Eigen::MatrixXd ripple;    ///< N x drives: torque of ProcessingOptions::ripples; empty: none
-  std::vector<char> filled;  ///< marks of Log::filled; empty: all measured
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> torque_out;  ///< as Log::torque_out; empty: nowhere
-  std::vector<std::string> notes;
+  Eigen::MatrixXd ripple;  ///< N x drives: torque of ProcessingOptions::ripples; empty: none
+
+  [[nodiscard]] double row_rate_hz() const { return rate_hz / static_cast<double>(stride); }
 };
 
 /// Filters, differentiates and masks one log. Throws deltadyn::Error with file and line for poses out of reach,
 /// singular poses, logs too short for the cut-off, and missing derivatives when filter is off.
 [[nodiscard]] PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOptions& options);
+[[nodiscard]] std::vector<PreparedLog> prepare_logs(const Robot& robot, const std::vector<Log>& logs,
+                                                    const ProcessingOptions& options);
 
 /// Do samples [first, first + count) hold one that must not enter a row of this drive (Log::filled, Log::torque_out)?
 [[nodiscard]] bool left_out(const PreparedLog& log, int drive, Eigen::Index first, Eigen::Index count);
@@ -89,14 +85,21 @@ enum class RowUse : char {
   unusable   ///< samples that are left out are in reach of the filter, or rest, where static friction takes any value
 };
 
+/// Rows x drives.
+using RowUses = Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Rows of a drive that count: all but the unusable ones, and without those near reversals if asked.
+[[nodiscard]] Eigen::Array<bool, Eigen::Dynamic, 1> usable_rows(const RowUses& use, Eigen::Index drive,
+                                                                bool with_reversals);
+
 /// Consecutive rows of a prepared log.
 struct RowBlock {
   Eigen::Index first_row = 0;
   std::vector<Eigen::MatrixXd> Y;  ///< for each drive: rows x parameters
   /// Rows x drives, filtered as Y, without the torque of ripples
   Eigen::MatrixXd tau;
-  Eigen::MatrixXd ripple;                                    ///< rows x drives: that torque; empty: none
-  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;  ///< rows x drives
+  Eigen::MatrixXd ripple;  ///< rows x drives: that torque; empty: none
+  RowUses use;
 
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
 };

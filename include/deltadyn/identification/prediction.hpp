@@ -14,12 +14,13 @@ struct Prediction {
   Eigen::VectorXd t_s;
   Eigen::MatrixXd tau, model;  ///< measured and predicted torque, filtered alike [N m | N]
   Eigen::MatrixXd q, qd, qdd;  ///< of the row's sample
-  Eigen::Array<RowUse, Eigen::Dynamic, Eigen::Dynamic> use;
+  RowUses use;
 
   [[nodiscard]] Eigen::MatrixXd residual() const { return tau - model; }
   [[nodiscard]] Eigen::Index rows() const { return tau.rows(); }
-  /// Rows of a drive that count: all but the unusable ones, and without those near reversals if asked.
-  [[nodiscard]] Eigen::Array<bool, Eigen::Dynamic, 1> usable(int drive, bool with_reversals) const;
+  [[nodiscard]] Eigen::Array<bool, Eigen::Dynamic, 1> usable(int drive, bool with_reversals) const {
+    return usable_rows(use, drive, with_reversals);
+  }
   /// Root mean square residual over usable rows [N m | N]; 0 without any.
   [[nodiscard]] double rms_residual(int drive, bool with_reversals) const;
   /// Root mean square measured torque over the same rows.

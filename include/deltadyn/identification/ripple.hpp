@@ -4,8 +4,6 @@
 /// Ripple of a drive's torque over its position (cogging, tooth meshing) as part of a model (effects/wave.hpp holds the
 /// law).
 
-#include <vector>
-
 namespace deltadyn {
 
 /// One wave: cosine cos(n q) + sine sin(n q).

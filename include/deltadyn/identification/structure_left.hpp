@@ -15,9 +15,8 @@ namespace deltadyn {
 struct StructureLeft {
   std::string file;
   int drive = 0;  ///< from 0
-  std::string
-      /// Of the drive: "velocity", "position", "acceleration"; "time" for slow waves that follow none of them
-      coordinate;
+  /// Of the drive: "velocity", "position", "acceleration"; "time" for slow waves that follow none of them
+  std::string coordinate;
   double share = 0;      ///< of the residual's mean square in that log
   double of_torque = 0;  ///< rms of that part over the rms torque of the drive in that log
   /// Range of speed in which a friction-like residual is largest beside the torque of that range [rad/s | m/s].

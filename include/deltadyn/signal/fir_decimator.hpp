@@ -29,8 +29,7 @@ class FirDecimator {
   [[nodiscard]] Eigen::Index centre(Eigen::Index output) const { return half_width() + output * factor_; }
   /// Number of outputs of an input with this many samples (0 if it is shorter than the filter).
   [[nodiscard]] Eigen::Index outputs(Eigen::Index samples) const;
-  /// First input sample needed for an output, and the number needed for a run of outputs.
-  [[nodiscard]] Eigen::Index first_input(Eigen::Index output) const { return output * factor_; }
+  /// Number of input samples that a run of outputs needs, from half_width() before the centre of the first one on.
   [[nodiscard]] Eigen::Index inputs(Eigen::Index n_outputs) const;
 
   /// Variance of a mean over many outputs of white noise, in units of that of independent outputs with the same
@@ -40,12 +39,10 @@ class FirDecimator {
   /// Gain at a frequency [Hz].
   [[nodiscard]] double gain(double frequency_hz) const;
 
-  /// Outputs first_output .. first_output + n_outputs - 1 of a block of channels.
-  /// \param in            samples x channels
-  /// \param input_offset  sample of the whole log that is row 0 of `in`; first_input(first_output) for a minimal block
-  /// \param out           n_outputs x channels
-  void apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Eigen::Index first_output, Eigen::Index n_outputs,
-             Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index input_offset = 0) const;
+  /// The first outputs of a block of channels, as many as `out` has rows.
+  /// \param in   samples x channels, at least inputs(out.rows()) of them
+  /// \param out  outputs x channels
+  void apply(const Eigen::Ref<const Eigen::MatrixXd>& in, Eigen::Ref<Eigen::MatrixXd> out) const;
 
  private:
   double sample_rate_hz_;

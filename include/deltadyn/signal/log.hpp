@@ -4,6 +4,7 @@
 /// A recorded motion in memory, SI units.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,22 @@ struct Log {
   }
   [[nodiscard]] bool is_left_out(Eigen::Index sample) const {
     return !filled.empty() && filled[static_cast<std::size_t>(sample)] == kLeftOut;
+  }
+  /// Is one of samples [first, first + count) left out?
+  [[nodiscard]] bool any_left_out(Eigen::Index first, Eigen::Index count) const {
+    if (filled.empty()) return false;
+    const auto begin = filled.begin() + first;
+    return std::find(begin, begin + count, kLeftOut) != begin + count;
+  }
+  /// Marks samples [first, last) as no evidence.
+  void leave_out(Eigen::Index first, Eigen::Index last) {
+    filled.resize(static_cast<std::size_t>(samples()), kMeasured);
+    std::fill(filled.begin() + first, filled.begin() + last, kLeftOut);
+  }
+  /// Marks samples [first, last) whose torque of one drive is no evidence.
+  void leave_torque_out(Eigen::Index drive, Eigen::Index first, Eigen::Index last) {
+    if (torque_out.size() == 0) torque_out.setConstant(samples(), drives(), false);
+    torque_out.col(drive).segment(first, last - first).setConstant(true);
   }
   [[nodiscard]] double sample_time_s() const {
     return samples() < 2 ? 0.0 : (t_s(samples() - 1) - t_s(0)) / static_cast<double>(samples() - 1);

@@ -3,7 +3,6 @@
 /// \file
 /// Is a recorded log fit for use? Repairs what is safe to repair and refuses the rest, with file, line and column.
 
-#include <string>
 #include <vector>
 
 #include "deltadyn/runtime/robot_description.hpp"
@@ -18,20 +17,6 @@ struct LogCheckOptions {
   /// false: positions and rates that the robot cannot have are let through, because examine_logs() names what they
   /// are (degrees, a gear, a zero).
   bool refuse_positions = true;
-  int max_filled_gap = 3;              ///< longest run of missing samples that is filled in,
-  double max_filled_gap_s = 0.004;     ///< or as many as fit into this time; at longer gaps the log is split
-  double max_filled_share = 0.3;       ///< largest share of samples that may be missing or spoilt
-  double max_stamp_jitter = 0.02;      ///< up to this share of the sample time, stamps are set to the even grid
-  double max_resampled_jitter = 0.45;  ///< up to this share, the log is resampled onto the even grid
-  Eigen::Index min_samples = 50;       ///< shorter logs are refused
-  double min_duration_s = 0.5;         ///< shorter logs are refused
-  double max_saturated_share = 0.05;   ///< of samples where the torque is cut off; fewer are only left out of fits
-  double stuck_time_s = 0.1;           ///< a position constant for longer while it should move is a stuck encoder
-  /// A sample this many times farther from the cubic through its neighbours than usual
-  double outlier_ratio = 30.0;
-
-  /// Throws Error(usage) if a value is out of range.
-  void validate() const;
 };
 
 /// Checks a log and mends what is certain and harmless, with one finding for each kind of fault (Log::findings,

@@ -7,15 +7,16 @@
 
 namespace deltadyn {
 
-/// Value at `t` of the cubic polynomial through the four samples around it (exact for cubics); with fewer samples, of
-/// the polynomial through all of them. Outside the samples the outermost polynomial is continued.
+/// Value at `t` of the polynomial through all samples.
 /// \param t_s     strictly increasing times of the samples [s]
 /// \param values  one value a sample
 /// \param t       where the value is wanted [s]
-[[nodiscard]] double interpolate_cubic(const Eigen::Ref<const Eigen::VectorXd>& t_s,
-                                       const Eigen::Ref<const Eigen::VectorXd>& values, double t);
+[[nodiscard]] double interpolate(const Eigen::Ref<const Eigen::VectorXd>& t_s,
+                                 const Eigen::Ref<const Eigen::VectorXd>& values, double t);
 
-/// interpolate_cubic() of every column at every new time.
+/// Every column at every new time: value of the cubic polynomial through the four samples around it (exact for cubics);
+/// with fewer samples, of the polynomial through all of them. Outside the samples the outermost polynomial is
+/// continued.
 /// \param t_s      N strictly increasing times [s]
 /// \param columns  N x channels
 /// \param new_t_s  M times [s]

@@ -99,10 +99,8 @@ std::optional<ClockDrifts> find_clock_drift(const Robot& robot, const BaseParame
       t.push_back(0.5 * (which[k].first_s + which[k].last_s));
       d.push_back(delay(static_cast<Index>(k)));
     }
-    const auto as_vector = [](const std::vector<double>& v) -> VectorXd {
-      return Eigen::Map<const VectorXd>(v.data(), static_cast<Index>(v.size()));
-    };
-    std::optional<ClockDrift> line = line_through(as_vector(t), as_vector(d));
+    std::optional<ClockDrift> line =
+        line_through(VectorXd::Map(t.data(), std::ssize(t)), VectorXd::Map(d.data(), std::ssize(d)));
     any = any || line.has_value();
     if (!line) line = ClockDrift{};
     line->first_s = line->delay_s + line->rate * (first - line->t_s);
@@ -118,10 +116,9 @@ void take_drift_out(const ClockDrift& drift, Log& log) {
   const Index n = log.samples();
   const VectorXd delay = drift.delay_s + drift.rate * (log.t_s.array() - drift.t_s);
   for (Index j = 0; j < log.drives(); ++j) log.tau.col(j) = mend_delays(log.tau.col(j), log.sample_time_s(), delay);
-  if (log.filled.empty()) log.filled.assign(static_cast<std::size_t>(n), Log::kMeasured);
   for (Index k = 0; k < n; ++k) {
     const double at = log.t_s(k) + delay(k);
-    if (at < log.t_s(0) || at > log.t_s(n - 1)) log.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
+    if (at < log.t_s(0) || at > log.t_s(n - 1)) log.leave_out(k, k + 1);
   }
 }
 

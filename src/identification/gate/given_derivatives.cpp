@@ -5,13 +5,12 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
-#include <optional>
 
 #include "deltadyn/signal/butterworth.hpp"
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/log_columns.hpp"
+#include "deltadyn/signal/log_part.hpp"
 
-#include "readings.hpp"
 #include "sample.hpp"
 
 namespace deltadyn::gate {
@@ -117,11 +116,8 @@ std::string wrong(const Comparison& c, const std::string& column, const std::str
 std::vector<LogFinding> examine_derivatives(const RobotDescription& robot, const Log& log, bool used) {
   std::vector<LogFinding> out;
   if (log.qd.size() == 0 || !is_motion(log)) return out;
-  Log piece;
-  const Index rows = std::min(kMostRows, log.samples()), from = (log.samples() - rows) / 2;
-  piece.file = log.file;
-  piece.t_s = log.t_s.segment(from, rows);
-  piece.q = log.q.middleRows(from, rows);
+  const Log piece = middle_of(log, kMostRows);
+  const Index rows = piece.samples(), from = (log.samples() - rows) / 2;
   const double rate_hz = 1 / log.sample_time_s();
   const double cutoff_hz = std::min(2 * noise_limited_band_hz({piece}, {}), 0.4 * rate_hz);
   const double length_s = static_cast<double>(rows) / rate_hz;
@@ -145,20 +141,20 @@ std::vector<LogFinding> examine_derivatives(const RobotDescription& robot, const
           wrong(c, derivative == 1 ? fmt::format("qd{}", j + 1) : fmt::format("qdd{}", j + 1),
                 derivative == 1 ? fmt::format("dq{}/dt", j + 1) : fmt::format("d2q{}/dt2", j + 1), derivative);
       if (text.empty()) continue;
-      LogFinding finding;
-      finding.level = used ? FindingLevel::fault : FindingLevel::warning;
-      finding.key = derivative == 1 ? "rate" : "acceleration";
-      finding.file = log.file;
-      finding.drive = static_cast<int>(j);
-      finding.value = std::abs(c.delay_s) > kLate_s ? c.delay_s : c.factor;
-      finding.std = std::abs(c.delay_s) > kLate_s ? c.delay_std : c.factor_std;
-      finding.unit = std::abs(c.delay_s) > kLate_s ? "s" : "";
-      finding.text = text + (used ? "" : "; it is not used, the positions are differentiated");
-      finding.mend =
-          used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
-                     (derivative == 1 ? names.qd : names.qdd)
-               : "";
-      out.push_back(std::move(finding));
+      const bool late = std::abs(c.delay_s) > kLate_s;
+      out.push_back(
+          {.level = used ? FindingLevel::fault : FindingLevel::warning,
+           .key = derivative == 1 ? "rate" : "acceleration",
+           .file = log.file,
+           .drive = static_cast<int>(j),
+           .value = late ? c.delay_s : c.factor,
+           .std = late ? c.delay_std : c.factor_std,
+           .unit = late ? "s" : "",
+           .text = text + (used ? "" : "; it is not used, the positions are differentiated"),
+           .mend =
+               used ? "leave out --no-filter (the tool then differentiates the positions), or give the right column " +
+                          (derivative == 1 ? names.qd : names.qdd)
+                    : ""});
     }
   }
   return out;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "deltadyn/runtime/in_parallel.hpp"
@@ -16,9 +15,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSoundResidual =
-    // Of the torque: friction of another law, load and noise leave less; wrong signs leave more
-    0.02;
+// Of the torque: friction of another law, load and noise leave less; wrong signs leave more
+constexpr double kSoundResidual = 0.02;
 constexpr double kSoundRatio = 1.2;  // all drives together over each drive by itself: one machine explains all torques
 constexpr double kWins = 0.5;        // a fault explains away at least half of the residual ...
 // ... or, where noise covers the rest, leaves nothing between all drives together and each alone
@@ -74,17 +72,6 @@ class Judge {
   }
 
  private:
-  [[nodiscard]] std::vector<Eigen::MatrixXd> torques(const Rows& rows, const Points& points) const {
-    std::vector<Eigen::MatrixXd> tau;
-    for (const DriveRows& drive : rows.drives) {
-      Eigen::MatrixXd one(drive.count(), points.tau.cols());
-      for (Index k = 0; k < drive.count(); ++k)
-        one.row(k) = points.tau.row(drive.at[static_cast<std::size_t>(k)].point);
-      tau.push_back(std::move(one));
-    }
-    return tau;
-  }
-
   [[nodiscard]] bool enough(const Rows& rows) const {
     Index total = 0;
     for (const DriveRows& drive : rows.drives) {
@@ -99,19 +86,25 @@ class Judge {
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     unreachable_ = rows.unreachable;
     if (!enough(rows)) return std::nullopt;
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
-    const int n = robot_.drives();
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points_.tau);
     Explanation out;
     out.reading = reading;
-    for (int j = 0; j < n; ++j) out.assignment.push_back(j);
-    out.factor.setOnes(n);
+    out.assignment = own_columns();
+    out.factor.setOnes(robot_.drives());
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
     alone_ = root_mean_square(own_residuals(blocks));
     with_springs_ = relative_residual(
-        residual_form(fold_torques(with_springs(rows), torques(rows, points_)), out.assignment, out.factor),
-        out.factor);
+        residual_form(fold_torques(with_springs(rows), points_.tau), out.assignment, out.factor), out.factor);
     return out;
+  }
+
+  /// Each drive's torque in the column of its position.
+  [[nodiscard]] std::vector<int> own_columns() const { return Reading::as_given(robot_.drives()).source; }
+
+  /// The signs of the torques as the bits of a number.
+  [[nodiscard]] Eigen::VectorXd signs_of(int set) const {
+    return Eigen::VectorXd::NullaryExpr(robot_.drives(), [set](Index j) { return (set >> j & 1) != 0 ? -1.0 : 1.0; });
   }
 
   /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault
@@ -123,8 +116,7 @@ class Judge {
       const Index before = drive.Y.cols();
       drive.Y.conservativeResize(Eigen::NoChange, before + n);
       drive.Y.rightCols(n).setZero();
-      for (Index k = 0; k < drive.count(); ++k)
-        drive.Y(k, before + j) = points_.q(drive.at[static_cast<std::size_t>(k)].point, j);
+      drive.Y.col(before + j) = drive.of_points(points_.q.col(j));
     }
     return rows;
   }
@@ -156,7 +148,7 @@ class Judge {
       for (std::size_t k = 0; k < residual.size(); ++k) {
         if (std::isfinite(residual[k])) own.push_back({residual[k], family.start[k], &family});
       }
-      std::sort(own.begin(), own.end(), [](const Start& a, const Start& b) { return a.residual < b.residual; });
+      std::ranges::sort(own, {}, &Start::residual);
       if (own.size() > kBestStarts) own.resize(kBestStarts);
       for (const Start& one : own) least = std::min(least, one.residual);
       found.insert(found.end(), own.begin(), own.end());
@@ -174,9 +166,7 @@ class Judge {
   [[nodiscard]] std::optional<Explanation> best_of_positions() const {
     std::optional<Explanation> best;
     for (const Explanation& e : all_) {
-      const bool torques_as_given =
-          std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
-      if (torques_as_given && (!best || e.residual < best->residual)) best = e;
+      if (e.torques_as_given() && (!best || e.residual < best->residual)) best = e;
     }
     return best;
   }
@@ -186,31 +176,38 @@ class Judge {
     const Reading reading = compose(h.reading, start);
     const Rows rows = rows_of_points(robot_, base_, points_, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return;
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points_));
-    reading_alone_ = root_mean_square(own_residuals(blocks));
-    if (h.drives_moved) {
-      add_signs_and_factors(h, reading, before, blocks, h.reading.source);
-      return;
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points_.tau);
+    Explanation e;
+    if (before != nullptr) {
+      e.words = before->words;
+      e.key = before->key;
+      e.mend = before->mend;
+      e.changes = before->changes;
     }
-    std::vector<int> order(blocks.size());
-    std::iota(order.begin(), order.end(), 0);
+    e.drive = before != nullptr ? before->drive : h.drive;
+    e.reading = reading;
+    e.alone = root_mean_square(own_residuals(blocks));
+    e.changes += h.changes;
+    e.odd = h.odd;
+    if (!h.words.empty()) e.say(h.key, h.words, h.mend);
+    e.assignment = h.drives_moved ? h.reading.source : own_columns();
     do {
-      add_signs_and_factors(h, reading, before, blocks, order);
+      add_signs_and_factors(h, e, blocks);
       // Both columns in another order is the robot numbered in another way: no further hypothesis.
-    } while (h.key != "position_order" && std::next_permutation(order.begin(), order.end()));
+    } while (!h.drives_moved && h.key != "position_order" && std::ranges::next_permutation(e.assignment).found);
   }
 
-  void add_signs_and_factors(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
-                             const std::vector<TorqueBlock>& blocks, const std::vector<int>& order) {
+  void add_signs_and_factors(const PositionHypothesis& h, Explanation e, const std::vector<TorqueBlock>& blocks) {
     const int n = robot_.drives();
-    const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
-    Eigen::VectorXd s(n);
+    if (!h.drives_moved) tell_order(e);
+    const Eigen::MatrixXd form = residual_form(blocks, e.assignment, Eigen::VectorXd::Ones(n));
     // The sign of all torques together is a matter of the masses; of two opposite patterns the one with fewer turned is
     // taken.
     for (int set = 0; set < (1 << (n - 1)); ++set) {
-      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
-      if (2 * (s.array() < 0).count() > n) s = -s;
-      add(h, reading, before, order, s, relative_residual(form, s), -1, {});
+      e.factor = signs_of(set);
+      if (2 * (e.factor.array() < 0).count() > n) e.factor = -e.factor;
+      e.residual = relative_residual(form, e.factor);
+      add(e, -1, {});
     }
     if (n == 1) return;
     // Another unit of one torque beside a wrong position is two faults, unless it is one drive's motor side.
@@ -218,47 +215,25 @@ class Judge {
     if (!h.words.empty() && !motor_side) return;
     for (int j = 0; j < n; ++j) {
       if (motor_side && j != h.drive) continue;
-      const Factor factor = best_factor(blocks, order, j);
+      const Factor factor = best_factor(blocks, e.assignment, j);
       if (std::abs(std::abs(factor.value) - 1) < kScaleWorth || std::abs(factor.value) < 5 * factor.std) continue;
-      s.setOnes();
-      s(j) = factor.value;
-      const Eigen::MatrixXd again = residual_form(blocks, order, s.cwiseAbs());
-      add(h, reading, before, order, s, relative_residual(again, s.cwiseSign()), j, factor);
+      e.factor.setOnes();
+      e.factor(j) = factor.value;
+      const Eigen::MatrixXd again = residual_form(blocks, e.assignment, e.factor.cwiseAbs());
+      e.residual = relative_residual(again, e.factor.cwiseSign());
+      add(e, j, factor);
     }
   }
 
-  void add(const PositionHypothesis& h, const Reading& reading, const Explanation* before,
-           const std::vector<int>& order, const Eigen::VectorXd& factor, double residual, int scaled_drive,
-           const Factor& scale) {
-    Explanation e;
-    e.reading = reading;
-    e.assignment = order;
-    e.factor = factor;
-    e.residual = residual;
-    e.alone = reading_alone_;
-    e.changes = h.changes + (before != nullptr ? before->changes : 0.0);
-    e.drive = h.drive;
-    e.odd = h.odd;
-    if (before != nullptr && !before->words.empty()) {
-      e.words = before->words;
-      e.key = before->key;
-      e.mend = before->mend;
-      e.drive = before->drive;
-    }
-    const auto say = [&e](const std::string& key, const std::string& words, const std::string& mend) {
-      e.words += (e.words.empty() ? "" : ", and ") + words;
-      if (e.key.empty()) e.key = key;
-      if (e.mend.empty()) e.mend = mend;
-    };
-    if (!h.words.empty()) say(h.key, h.words, h.mend);
-    if (!h.drives_moved) tell_order(order, e, say);
-    tell_signs(factor, scaled_drive, e, say);
-    if (scaled_drive >= 0) tell_factor(factor, scaled_drive, scale, e, say);
+  /// \param scaled_drive  whose torque has another scale; -1: none
+  void add(Explanation e, int scaled_drive, const Factor& scale) {
+    tell_signs(scaled_drive, e);
+    if (scaled_drive >= 0) tell_factor(scaled_drive, scale, e);
     if (!e.words.empty()) all_.push_back(std::move(e));
   }
 
-  template <class Say>
-  void tell_order(const std::vector<int>& order, Explanation& e, const Say& say) const {
+  static void tell_order(Explanation& e) {
+    const std::vector<int>& order = e.assignment;
     std::vector<int> moved;
     std::string columns;
     for (std::size_t j = 0; j < order.size(); ++j) {
@@ -274,36 +249,34 @@ class Judge {
             : fmt::format(
                   "the torques are in another order than the positions: drives 1 to {} have the torque columns {}",
                   order.size(), columns);
-    say("torque_order", words,
-        "bring positions and torques of each drive together (delta-log import: source in the map)");
+    e.say("torque_order", words,
+          "bring positions and torques of each drive together (delta-log import: source in the map)");
   }
 
-  template <class Say>
-  void tell_signs(const Eigen::VectorXd& factor, int scaled_drive, Explanation& e, const Say& say) const {
+  void tell_signs(int scaled_drive, Explanation& e) const {
     std::vector<int> turned;
-    for (int j = 0; j < factor.size(); ++j) {
-      if (factor(j) < 0 && j != scaled_drive) turned.push_back(j);
+    for (int j = 0; j < e.factor.size(); ++j) {
+      if (e.factor(j) < 0 && j != scaled_drive) turned.push_back(j);
     }
     if (turned.empty()) return;
     e.changes += static_cast<double>(turned.size());
     if (e.drive < 0 && turned.size() == 1) e.drive = turned.front();
-    say("torque_sign", fmt::format("the torque of {} has the wrong sign", drives_in_words(turned, robot_.drives())),
-        "turn the sign of the torque column (delta-log import: sign = -1 in the map)");
+    e.say("torque_sign", fmt::format("the torque of {} has the wrong sign", drives_in_words(turned, robot_.drives())),
+          "turn the sign of the torque column (delta-log import: sign = -1 in the map)");
   }
 
-  template <class Say>
-  void tell_factor(const Eigen::VectorXd& factor, int drive, const Factor& scale, Explanation& e,
-                   const Say& say) const {
+  static void tell_factor(int drive, const Factor& scale, Explanation& e) {
+    const double factor = e.factor(drive);
     // The form's factor turns the column into the torque; what the user sees is its inverse.
-    e.changes += factor(drive) < 0 ? 2.5 : 1.5;
-    e.value = 1 / factor(drive);
-    e.std = scale.std / (factor(drive) * factor(drive));
+    e.changes += factor < 0 ? 2.5 : 1.5;
+    e.value = 1 / factor;
+    e.std = scale.std / (factor * factor);
     e.drive = drive;
-    say("torque_scale_drive",
-        fmt::format("the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque "
-                    "constant or gear ratio?",
-                    drive + 1, e.value, e.std),
-        "give the torque of every drive in N m at the joint (N for a carriage)");
+    e.say("torque_scale_drive",
+          fmt::format("the torque of drive {} is {:.4g} +- {:.2g} times what the other drives need: unit, torque "
+                      "constant or gear ratio?",
+                      drive + 1, e.value, e.std),
+          "give the torque of every drive in N m at the joint (N for a carriage)");
   }
 
   [[nodiscard]] double refine(const PositionFamily& family, const Reading& start, double value) const {
@@ -341,19 +314,14 @@ class Judge {
     const Reading reading = compose(member(family, robot_.description(), value, 0).reading, start);
     const Rows rows = rows_of_points(robot_, base_, points, reading);
     if (rows.unreachable > kOutOfReach || !enough(rows)) return std::numeric_limits<double>::infinity();
-    const std::vector<TorqueBlock> blocks = fold_torques(rows, torques(rows, points));
+    const std::vector<TorqueBlock> blocks = fold_torques(rows, points.tau);
     const int n = robot_.drives();
-    std::vector<int> order(blocks.size());
-    std::iota(order.begin(), order.end(), 0);
+    const std::vector<int> order = own_columns();
     const Eigen::MatrixXd form = residual_form(blocks, order, Eigen::VectorXd::Ones(n));
     double best = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd s(n);
-    for (int set = 0; set < (1 << (n - 1)); ++set) {
-      for (int j = 0; j < n; ++j) s(j) = (set >> j & 1) != 0 ? -1 : 1;
-      best = std::min(best, relative_residual(form, s));
-    }
+    for (int set = 0; set < (1 << (n - 1)); ++set) best = std::min(best, relative_residual(form, signs_of(set)));
     if (!family.geometric || family.drives.size() != 1 || n == 1) return best;
-    s.setOnes();
+    Eigen::VectorXd s = Eigen::VectorXd::Ones(n);
     s(family.drives.front()) = best_factor(blocks, order, family.drives.front()).value;
     if (s.cwiseAbs().minCoeff() < 1e-6) return best;
     return std::min(best, relative_residual(residual_form(blocks, order, s.cwiseAbs()), s.cwiseSign()));
@@ -364,17 +332,12 @@ class Judge {
     few.sigma_s = points_.sigma_s;
     const Index N = points_.q.rows(), step = std::max<Index>(1, N / count);
     for (Index k = 0; k < N; k += step) few.at.push_back(points_.at[static_cast<std::size_t>(k)]);
-    const auto pick = [&](const Eigen::MatrixXd& all) {
-      Eigen::MatrixXd some(static_cast<Index>(few.at.size()), all.cols());
-      for (Index k = 0; k < some.rows(); ++k) some.row(k) = all.row(k * step);
-      return some;
-    };
-    few.q = pick(points_.q);
-    few.qd = pick(points_.qd);
-    few.qdd = pick(points_.qdd);
-    few.tau = pick(points_.tau);
-    few.torque_out.resize(few.tau.rows(), few.tau.cols());
-    for (Index k = 0; k < few.tau.rows(); ++k) few.torque_out.row(k) = points_.torque_out.row(k * step);
+    const auto rows = Eigen::seqN(0, std::ssize(few.at), step);
+    few.q = points_.q(rows, Eigen::all);
+    few.qd = points_.qd(rows, Eigen::all);
+    few.qdd = points_.qdd(rows, Eigen::all);
+    few.tau = points_.tau(rows, Eigen::all);
+    few.torque_out = points_.torque_out(rows, Eigen::all);
     return few;
   }
 
@@ -392,32 +355,26 @@ class Judge {
         out.push_back(e);
     }
     if (out.empty()) return out;
-    std::sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {
-      return a.changes != b.changes ? a.changes < b.changes : a.residual < b.residual;
-    });
+    std::ranges::sort(out, {}, [](const Explanation& e) { return std::pair(e.changes, e.residual); });
     // Searches end near one another: of the same words the best.
     std::vector<Explanation> distinct;
     for (const Explanation& e : out) {
-      if (std::none_of(distinct.begin(), distinct.end(), [&](const Explanation& d) {
+      if (std::ranges::none_of(distinct, [&](const Explanation& d) {
             return d.words == e.words || (d.key == e.key && d.drive == e.drive && is_search(d.key));
           }))
         distinct.push_back(e);
     }
-    out = std::move(distinct);
-    const double fewest = out.front().changes;
-    out.erase(std::remove_if(out.begin(), out.end(), [&](const Explanation& e) { return e.changes > fewest + 0.5; }),
-              out.end());
-    return out;
+    const double fewest = distinct.front().changes;
+    std::erase_if(distinct, [&](const Explanation& e) { return e.changes > fewest + 0.5; });
+    return distinct;
   }
 
   /// Noise may cover most of a residual. What is left of a fault then is that all drives together fit worse than each
   /// one alone.
   [[nodiscard]] bool heals(const Explanation& e, double as_given) const {
-    const bool torques_as_given =
-        std::is_sorted(e.assignment.begin(), e.assignment.end()) && (e.factor.array() == 1.0).all();
     if (e.odd && e.key == "position_scale") return false;  // a wrong length of the robot file looks like that, too
-    return torques_as_given && as_given > kBreaks * alone_ && e.residual < (e.odd ? kWinsOdd : kWinsNoisy) * as_given &&
-           e.residual < kHeals * e.alone;
+    return e.torques_as_given() && as_given > kBreaks * alone_ &&
+           e.residual < (e.odd ? kWinsOdd : kWinsNoisy) * as_given && e.residual < kHeals * e.alone;
   }
 
   static bool is_search(const std::string& key) { return key == "position_scale" || key == "position_zero"; }
@@ -425,7 +382,7 @@ class Judge {
   const Robot& robot_;
   const BaseParameters& base_;
   const Points& points_;
-  double unreachable_ = 0, alone_ = 0, reading_alone_ = 0;
+  double unreachable_ = 0, alone_ = 0;
   double with_springs_ = 1;  ///< residual of the log as given with a spring on every drive
   std::vector<Explanation> all_;
 };

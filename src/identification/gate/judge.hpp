@@ -4,6 +4,7 @@
 /// All hypotheses about signs, order, units and zeros of positions and torques, judged together: the one whose residual
 /// falls most, and to that of a sound fit, wins; others that explain as much are said beside it.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,16 @@ struct Explanation {
   int drive = -1;
   bool odd = false;           ///< PositionHypothesis::odd
   double value = 0, std = 0;  ///< of a scale
+
+  /// Adds what it says; key and mend are those of what is said first.
+  void say(const std::string& key_of_it, const std::string& words_of_it, const std::string& mend_of_it) {
+    words += (words.empty() ? "" : ", and ") + words_of_it;
+    if (key.empty()) key = key_of_it;
+    if (mend.empty()) mend = mend_of_it;
+  }
+  [[nodiscard]] bool torques_as_given() const {
+    return std::ranges::is_sorted(assignment) && (factor.array() == 1.0).all();
+  }
 };
 
 struct Judgement {

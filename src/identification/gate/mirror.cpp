@@ -28,16 +28,12 @@ struct DriveFit {
 
 /// Torques of each drive at its rows, under the Gaussian of the regressor.
 std::vector<Eigen::VectorXd> torques_at(const Sample& sample, const Rows& rows, const Reading& reading) {
-  int logs = 0;
-  for (const Stretch& stretch : sample.stretches) logs = std::max(logs, stretch.file + 1);
-  const std::vector<double> no_shift(static_cast<std::size_t>(logs), 0.0);
   std::vector<Eigen::VectorXd> out;
   for (std::size_t j = 0; j < rows.drives.size(); ++j) {
     const auto drive = static_cast<Index>(j);
-    std::vector<Eigen::VectorXd> column;
-    for (const Stretch& stretch : sample.stretches) column.emplace_back(stretch.tau.col(drive));
-    out.emplace_back(reading.factor(drive) *
-                     values_at(sample, column, rows.drives[j].at, no_shift, 0, sample.sigma_s).col(0));
+    const Eigen::VectorXd tau =
+        values_at(sample, recorded_torque(sample, drive), rows.drives[j].at, {}, 0, sample.sigma_s);
+    out.emplace_back(reading.factor(drive) * tau);
   }
   return out;
 }
@@ -100,7 +96,7 @@ double margin_of(const DriveFit& given, const DriveFit& turned) {
 
 }  // namespace
 
-std::optional<Pairing> compare_pairings(const Robot& robot, const BaseParameters& base, const Sample& sample) {
+std::optional<LogFinding> mirror_finding(const Robot& robot, const BaseParameters& base, const Sample& sample) {
   const RobotDescription& description = robot.description();
   const int yaw = robot.drives() - 1;
   if (!description.telescope || yaw != static_cast<int>(description.limbs.size()) || sample.stretches.empty())
@@ -111,39 +107,25 @@ std::optional<Pairing> compare_pairings(const Robot& robot, const BaseParameters
   if (given.empty()) return std::nullopt;
   const std::vector<DriveFit> other = fit_of(robot, base, sample, turned);
   if (other.empty()) return std::nullopt;
-  Pairing out;
-  out.rms = given.back().rms;
-  out.rms_turned = other.back().rms;
-  out.margin = margin_of(given.back(), other.back());
-  for (std::size_t j = 0; j < given.size(); ++j) out.margin_of_all += margin_of(given[j], other[j]);
-  return out;
-}
-
-std::optional<LogFinding> mirror_finding(const Robot& robot, const BaseParameters& base, const Sample& sample) {
-  const std::optional<Pairing> pairing = compare_pairings(robot, base, sample);
+  const double margin = margin_of(given.back(), other.back());
+  double margin_of_all = 0;
+  for (std::size_t j = 0; j < given.size(); ++j) margin_of_all += margin_of(given[j], other[j]);
   // What the model lacks in the yaw's drive alone is no evidence against all drives together.
-  if (!pairing || pairing->margin < kClear || pairing->margin_of_all < kClear) return std::nullopt;
-  const int yaw = robot.drives();
-  LogFinding f;
-  f.level = FindingLevel::warning;
-  f.key = "mirrored";
-  f.drive = yaw - 1;
-  f.value = pairing->margin;
-  f.text = fmt::format(
-      "the numbering of the limbs and the sign of drive {0} do not belong together: residual of drive {0} {1:.4g} N m "
-      "as given, "
-      "{2:.4g} "
-      "N m with the yaw turned (chi^2 less by {3:.0f}); the parameters are those of the columns as they are",
-      yaw, pairing->rms, pairing->rms_turned, pairing->margin);
-  f.mend = fmt::format(
-      "move one drive by hand: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above, and a positive "
-      "angle of "
-      "drive {} turns "
-      "the tool counter-clockwise; turn position and torque of drive {} (sign = -1 in the map), or swap the columns of "
-      "limbs 2 "
-      "and 3",
-      yaw, yaw);
-  return f;
+  if (margin < kClear || margin_of_all < kClear) return std::nullopt;
+  return LogFinding{.level = FindingLevel::warning,
+                    .key = "mirrored",
+                    .drive = yaw,
+                    .value = margin,
+                    .text = fmt::format(
+                        "the numbering of the limbs and the sign of drive {0} do not belong together: residual of "
+                        "drive {0} {1:.4g} N m as given, {2:.4g} N m with the yaw turned (chi^2 less by {3:.0f}); the "
+                        "parameters are those of the columns as they are",
+                        yaw + 1, given.back().rms, other.back().rms, margin),
+                    .mend = fmt::format(
+                        "move one drive by hand: limb 2 stands 120 deg counter-clockwise from limb 1 seen from above, "
+                        "and a positive angle of drive {0} turns the tool counter-clockwise; turn position and torque "
+                        "of drive {0} (sign = -1 in the map), or swap the columns of limbs 2 and 3",
+                        yaw + 1)};
 }
 
 bool is_turned_yaw(const RobotDescription& robot, const Explanation& explanation) {

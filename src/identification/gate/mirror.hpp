@@ -14,21 +14,9 @@
 
 namespace deltadyn::gate {
 
-/// How the torques read with the yaw as given, and with position and torque of its drive turned.
-struct Pairing {
-  double rms = 0, rms_turned = 0;  ///< residual of the yaw's drive [N m]
-  double margin =
-      /// By how much chi^2 of that drive falls when the yaw is turned, for rows that are independent of one another
-      0;
-  double margin_of_all = 0;  ///< the same of all drives together
-};
-
-/// One fit of the base parameters to all drives for each reading, each drive weighted by its own residual. Nothing for
-/// robots without a drive for the yaw, for few rows, and for poses out of reach.
-[[nodiscard]] std::optional<Pairing> compare_pairings(const Robot& robot, const BaseParameters& base,
-                                                      const Sample& sample);
-
-/// A warning where the turned reading is clearly the better one.
+/// A warning where the torques read clearly better with position and torque of the yaw's drive turned: one fit of the
+/// base parameters to all drives for each reading, each drive weighted by its own residual. Nothing for robots without
+/// a drive for the yaw, for few rows, and for poses out of reach.
 [[nodiscard]] std::optional<LogFinding> mirror_finding(const Robot& robot, const BaseParameters& base,
                                                        const Sample& sample);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <optional>
 #include <utility>
 
 #include "deltadyn/identification/prediction.hpp"
@@ -45,23 +44,19 @@ Log thinned(const Log& log) {
   if (rows < 2) return log;
   Eigen::MatrixXd in(log.samples(), 2 * log.drives()), out(rows, 2 * log.drives());
   in << log.q, log.tau;
-  pass.apply(in, 0, rows, out);
+  pass.apply(in, out);
   Log thin;
   thin.file = log.file;
   thin.q = out.leftCols(log.drives());
   thin.tau = out.rightCols(log.drives());
   thin.t_s.resize(rows);
-  if (!log.filled.empty()) thin.filled.assign(static_cast<std::size_t>(rows), Log::kMeasured);
   if (log.torque_out.size() > 0) thin.torque_out.resize(rows, log.drives());
   const Index width = 2 * pass.half_width() + 1;
   for (Index k = 0; k < rows; ++k) {
-    const Index first = pass.first_input(k);
+    const Index first = pass.centre(k) - pass.half_width();
     thin.t_s(k) = log.t_s(pass.centre(k));
     if (log.torque_out.size() > 0) thin.torque_out.row(k) = log.torque_out.middleRows(first, width).colwise().any();
-    if (log.filled.empty()) continue;
-    const auto begin = log.filled.begin() + first;
-    if (std::find(begin, begin + width, Log::kLeftOut) != begin + width)
-      thin.filled[static_cast<std::size_t>(k)] = Log::kLeftOut;
+    if (log.any_left_out(first, width)) thin.leave_out(k, k + 1);
   }
   return thin;
 }
@@ -175,9 +170,20 @@ class DriveRowsSeen {
  public:
   DriveRowsSeen(const Seen& seen, int drive, double scale)
       : residual_(seen.rows.residual().col(drive).cwiseAbs()),
-        recorded_(recorded(seen, drive)),
-        moves_(recorded_ && moving(seen, drive)),
+        recorded_(residual_.size()),
+        moves_(residual_.size()),
         scale_(scale) {
+    // Rows at rest count as recorded, too: a push often begins there, and what is missing is more than static friction
+    // can hold. Where the machine moves and the torque is left out (servo off), it is missing anyway.
+    const PreparedLog& log = seen.prepared;
+    const Index reach = log.low_pass->half_width(), inner = reach / 2;  // most of the low pass' weight is on this half
+    for (Index k = 0; k < residual_.size(); ++k) {
+      const Index at = sample_of_row(log, k), first = at - inner, count = 2 * inner + 1;
+      const bool rests = log.rest.col(drive).segment(first, count).any();
+      const bool out = log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any();
+      recorded_(k) = (rests || !out) && !log.any_left_out(at - reach, 2 * reach + 1);
+      moves_(k) = recorded_(k) && !rests && !out;
+    }
     const VectorXd tau = recorded_.select(seen.rows.tau.col(drive).array(), 0.0).matrix();
     moving_ = moves_.count();
     largest_torque_ = tau.size() > 0 ? tau.cwiseAbs().maxCoeff() : 0.0;
@@ -209,41 +215,6 @@ class DriveRowsSeen {
   }
 
  private:
-  /// Rows at rest count, too: a push often begins there, and what is missing is more than static friction can hold.
-  /// Where the machine moves and the torque is left out (servo off), it is missing anyway.
-  static Eigen::Array<bool, Eigen::Dynamic, 1> recorded(const Seen& seen, int drive) {
-    const PreparedLog& log = seen.prepared;
-    Eigen::Array<bool, Eigen::Dynamic, 1> out = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(seen.rows.rows(), true);
-    const Index reach = log.low_pass->half_width();
-    for (Index k = 0; k < out.size(); ++k) {
-      const auto [first, count] = inner_half(log, k);
-      if (log.torque_out.size() > 0) {
-        out(k) =
-            !log.torque_out.col(drive).segment(first, count).any() || log.rest.col(drive).segment(first, count).any();
-      }
-      if (log.filled.empty()) continue;
-      const auto begin = log.filled.begin() + (sample_of_row(log, k) - reach), end = begin + 2 * reach + 1;
-      out(k) = out(k) && std::find(begin, end, Log::kLeftOut) == end;
-    }
-    return out;
-  }
-  /// Rows whose inner half holds no rest.
-  static Eigen::Array<bool, Eigen::Dynamic, 1> moving(const Seen& seen, int drive) {
-    const PreparedLog& log = seen.prepared;
-    Eigen::Array<bool, Eigen::Dynamic, 1> out(seen.rows.rows());
-    for (Index k = 0; k < out.size(); ++k) {
-      const auto [first, count] = inner_half(log, k);
-      out(k) = !log.rest.col(drive).segment(first, count).any() &&
-               !(log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
-    }
-    return out;
-  }
-  /// First sample and number of those that most of the low pass' weight is on.
-  static std::pair<Index, Index> inner_half(const PreparedLog& log, Index row) {
-    const Index reach = log.low_pass->half_width() / 2;
-    return {sample_of_row(log, row) - reach, 2 * reach + 1};
-  }
-
   /// At rest static friction makes residuals that are no push.
   [[nodiscard]] bool above(Index row, double moving, double at_rest) const {
     return recorded_(row) && residual_(row) > (moves_(row) ? moving : at_rest);
@@ -259,7 +230,6 @@ class DriveRowsSeen {
 LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& rows, const DriveRowsSeen& seen,
                      const std::vector<Push>& pushes) {
   const double spacing = rows.rows() > 1 ? rows.t_s(1) - rows.t_s(0) : 0.0;
-  if (log.torque_out.size() == 0) log.torque_out.setConstant(log.samples(), log.drives(), false);
   std::string times;
   double largest = 0, length_s = 0;
   for (const Push& push : pushes) {
@@ -267,24 +237,19 @@ LogFinding leave_out(Log& log, int drive, const char* unit, const Prediction& ro
     largest = std::max(largest, push.largest);
     length_s += to - from;
     times += fmt::format("{}{:.4g} to {:.4g}", times.empty() ? "" : ", ", from, to);
-    for (Index k = 0; k < log.samples(); ++k) {
-      if (log.t_s(k) >= from && log.t_s(k) <= to) log.torque_out(k, drive) = true;
-    }
+    log.leave_torque_out(drive, std::ranges::lower_bound(log.t_s, from) - log.t_s.begin(),
+                         std::ranges::upper_bound(log.t_s, to) - log.t_s.begin());
   }
-  LogFinding f;
-  f.level = FindingLevel::mended;
-  f.key = "outside_torque";
-  f.file = log.file;
-  f.drive = drive;
-  f.value = length_s;
-  f.unit = "s";
-  f.text = fmt::format(
-      "drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where the drive gives at "
-      "most {:.3g}; "
-      "left "
-      "out: t_s = {} ({:.2g} s)",
-      drive + 1, largest, unit, seen.largest_torque(), times, length_s);
-  return f;
+  return {
+      .level = FindingLevel::mended,
+      .key = "outside_torque",
+      .file = log.file,
+      .drive = drive,
+      .value = length_s,
+      .unit = "s",
+      .text = fmt::format("drive {} was pushed from outside (a hand, a stop, an impact): {:.3g} {} are missing where "
+                          "the drive gives at most {:.3g}; left out: t_s = {} ({:.2g} s)",
+                          drive + 1, largest, unit, seen.largest_torque(), times, length_s)};
 }
 
 std::vector<Seen> see(const Robot& robot, const std::vector<Log>& logs) {

@@ -54,53 +54,41 @@ std::string units_of(const RobotDescription& robot, double ratio, double relativ
 
 LogFinding scale_finding(const RobotDescription& robot, const Ratio& ratio, double prior_std, bool fault,
                          const std::string& who, int drive) {
-  LogFinding f;
-  f.level = fault ? FindingLevel::fault : FindingLevel::warning;
-  f.key = drive >= 0 ? "torque_scale" : "scale";
-  f.drive = drive;
-  f.value = ratio.value;
-  f.std = ratio.std;
-  f.text =
-      fmt::format("torque is {:.3g} +- {:.2g} times what the masses of the prior need, {}: {}", ratio.value, ratio.std,
-                  who, units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std)));
-  f.mend =
-      "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille "
-      "--rated-torque .. (or "
-      "--torque-unit A, a gear ratio) makes such a log; or, if it is right, give a --prior with the weighed masses";
-  return f;
+  return {.level = fault ? FindingLevel::fault : FindingLevel::warning,
+          .key = drive >= 0 ? "torque_scale" : "scale",
+          .drive = drive,
+          .value = ratio.value,
+          .std = ratio.std,
+          .text = fmt::format("torque is {:.3g} +- {:.2g} times what the masses of the prior need, {}: {}", ratio.value,
+                              ratio.std, who,
+                              units_of(robot, ratio.value, std::hypot(ratio.data_std / ratio.value, prior_std))),
+          .mend =
+              "give the torque in N m at the joint (N for a carriage): delta-log import LOG --torque-unit permille "
+              "--rated-torque .. (or --torque-unit A, a gear ratio) makes such a log; or, if it is right, give a "
+              "--prior with the weighed masses"};
 }
 
 /// Inertia that comes out negative: the torque, or the position, has the wrong sign.
 bool add_sign_findings(const RobotDescription& robot, const TorqueScale& scale, std::vector<LogFinding>& out) {
   std::vector<int> negative;
-  int known = 0;
-  double worst = 0, worst_std = 0;
   for (std::size_t j = 0; j < scale.inertia.size(); ++j) {
     const Ratio& r = scale.inertia[j];
-    if (!r.known) continue;
-    ++known;
-    if (r.value < -kCertain * r.data_std && r.value < -0.02) {
-      if (negative.empty()) {
-        worst = r.value;
-        worst_std = r.data_std;
-      }
-      negative.push_back(static_cast<int>(j));
-    }
+    if (r.known && r.value < -kCertain * r.data_std && r.value < -0.02) negative.push_back(static_cast<int>(j));
   }
   if (negative.empty()) return false;
   const bool all_limbs = negative.size() >= robot.limbs.size() && negative.front() == 0;
-  LogFinding f;
-  f.level = FindingLevel::fault;
-  f.key = "torque_sign";
-  f.drive = negative.size() == 1 ? negative.front() : -1;
-  f.value = worst;
-  f.std = worst_std;
-  f.text = fmt::format(
-      "torque of {} has the wrong sign{}: the inertia comes out at {:.3g} +- {:.2g} times that of the prior",
-      drives_in_words(negative, robot.drives()), all_limbs ? "" : " (or its position has)", worst, worst_std);
-  f.mend = "turn the sign of the torque (delta-log import: sign = -1 in the map)";
-  out.push_back(std::move(f));
-  (void)known;
+  const Ratio& first = scale.inertia[static_cast<std::size_t>(negative.front())];
+  out.push_back(
+      {.level = FindingLevel::fault,
+       .key = "torque_sign",
+       .drive = negative.size() == 1 ? negative.front() : -1,
+       .value = first.value,
+       .std = first.data_std,
+       .text = fmt::format(
+           "torque of {} has the wrong sign{}: the inertia comes out at {:.3g} +- {:.2g} times that of the prior",
+           drives_in_words(negative, robot.drives()), all_limbs ? "" : " (or its position has)", first.value,
+           first.data_std),
+       .mend = "turn the sign of the torque (delta-log import: sign = -1 in the map)"});
   return true;
 }
 
@@ -109,6 +97,37 @@ std::string all_or_limbs(const RobotDescription& robot, bool yaw_alike) {
   if (robot.drives() == 1) return "drive 1";
   if (robot.drives() == limbs || yaw_alike) return "on all drives alike";
   return fmt::format("on drives 1 to {} alike", limbs);
+}
+
+/// Rate of a drive that only a twentieth of the steps exceed [rad/s | m/s].
+double usual_rate(const Log& log, int drive) {
+  const Index stride = std::max<Index>(1, log.samples() / 5000);
+  std::vector<double> rates;
+  for (Index k = 1; k < log.samples(); k += stride)
+    rates.push_back(std::abs(log.q(k, drive) - log.q(k - 1, drive)) / std::max(log.t_s(k) - log.t_s(k - 1), 1e-12));
+  return quantile(std::move(rates), 0.95);
+}
+
+/// A rate that no drive of this limit has: positions or time in another unit.
+void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& logs, int drive,
+                      std::vector<LogFinding>& out) {
+  const double limit = robot.limits[static_cast<std::size_t>(drive)].velocity;
+  if (!(limit > 0 && limit < 1e9)) return;
+  for (const Log& log : logs) {
+    const double rate = usual_rate(log, drive);
+    if (rate < kFarTooFast * limit) continue;
+    out.push_back({.level = FindingLevel::fault,
+                   .key = "position_rate",
+                   .file = log.file,
+                   .drive = drive,
+                   .value = rate,
+                   .unit = robot.kind_of_drive(drive) == DriveKind::revolute ? "rad/s" : "m/s",
+                   .text = fmt::format("a velocity of {:.4g} is far beyond the limit of {:.4g} of drive {} (SI): "
+                                       "positions or time have another unit",
+                                       rate, limit, drive + 1),
+                   .mend = "give positions in rad or m, or name the column _deg; give the time in seconds"});
+    return;
+  }
 }
 
 }  // namespace
@@ -129,18 +148,15 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   }
   if (count > 0) inertia /= count, inertia_std /= count;
   if (weight_known && g.value < 0 && count > 0 && inertia > 0) {
-    LogFinding f;
-    f.level = FindingLevel::fault;
-    f.key = "gravity_direction";
-    f.value = g.value;
-    f.std = g.data_std;
-    f.text = fmt::format(
-        "gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} "
-        "times",
-        g.value, g.data_std, inertia);
-    f.mend = "check how the base hangs: gravity in the robot file, and the direction of positive positions";
-    out.push_back(std::move(f));
-    return out;
+    return {
+        {.level = FindingLevel::fault,
+         .key = "gravity_direction",
+         .value = g.value,
+         .std = g.data_std,
+         .text = fmt::format("gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, "
+                             "the inertia {:.3g} times",
+                             g.value, g.data_std, inertia),
+         .mend = "check how the base hangs: gravity in the robot file, and the direction of positive positions"}};
   }
   Ratio ratio = g;
   bool certain = weight_known;
@@ -180,43 +196,6 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   return out;
 }
 
-namespace {
-
-/// Rate of a drive that only a twentieth of the steps exceed [rad/s | m/s].
-double usual_rate(const Log& log, int drive) {
-  const Index stride = std::max<Index>(1, log.samples() / 5000);
-  std::vector<double> rates;
-  for (Index k = 1; k < log.samples(); k += stride)
-    rates.push_back(std::abs(log.q(k, drive) - log.q(k - 1, drive)) / std::max(log.t_s(k) - log.t_s(k - 1), 1e-12));
-  return quantile(std::move(rates), 0.95);
-}
-
-/// A rate that no drive of this limit has: positions or time in another unit.
-void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& logs, int drive,
-                      std::vector<LogFinding>& out) {
-  const double limit = robot.limits[static_cast<std::size_t>(drive)].velocity;
-  if (!(limit > 0 && limit < 1e9)) return;
-  for (const Log& log : logs) {
-    const double rate = usual_rate(log, drive);
-    if (rate < kFarTooFast * limit) continue;
-    LogFinding f;
-    f.level = FindingLevel::fault;
-    f.key = "position_rate";
-    f.file = log.file;
-    f.drive = drive;
-    f.value = rate;
-    f.unit = robot.kind_of_drive(drive) == DriveKind::revolute ? "rad/s" : "m/s";
-    f.text = fmt::format(
-        "a velocity of {:.4g} is far beyond the limit of {:.4g} of drive {} (SI): positions or time have another unit",
-        rate, limit, drive + 1);
-    f.mend = "give positions in rad or m, or name the column _deg; give the time in seconds";
-    out.push_back(std::move(f));
-    return;
-  }
-}
-
-}  // namespace
-
 std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs, bool moving) {
   std::vector<LogFinding> out;
   for (int j = 0; j < robot.drives(); ++j) {
@@ -228,30 +207,28 @@ std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std:
     }
     const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
     if (limit.effort > 0 && limit.effort < 1e9 && torque > kWarnEffort * limit.effort) {
-      LogFinding f;
-      f.level = torque > kFaultEffort * limit.effort ? FindingLevel::fault : FindingLevel::warning;
-      f.key = "effort";
-      f.drive = j;
-      f.value = torque / limit.effort;
-      f.text = fmt::format("torque of drive {} reaches {:.4g} {}, {:.3g} times the effort in the robot file: unit?",
-                           j + 1, torque, turns ? "N m" : "N", f.value);
-      f.mend = "give the torque in N m at the joint (N for a carriage), or mend the effort in the robot file";
-      out.push_back(std::move(f));
+      out.push_back(
+          {.level = torque > kFaultEffort * limit.effort ? FindingLevel::fault : FindingLevel::warning,
+           .key = "effort",
+           .drive = j,
+           .value = torque / limit.effort,
+           .text = fmt::format("torque of drive {} reaches {:.4g} {}, {:.3g} times the effort in the robot file: unit?",
+                               j + 1, torque, turns ? "N m" : "N", torque / limit.effort),
+           .mend = "give the torque in N m at the joint (N for a carriage), or mend the effort in the robot file"});
     }
     if (moving) add_rate_finding(robot, logs, j, out);
     const double farthest = std::max(std::abs(limit.lower), std::abs(limit.upper));
     if (farthest > 0 && farthest < 1e9 && position > kFarBeyond * farthest) {
-      LogFinding f;
-      f.level = FindingLevel::fault;
-      f.key = "position_range";
-      f.drive = j;
-      f.value = position;
-      f.unit = turns ? "rad" : "m";
-      f.text = fmt::format("position of drive {} reaches {:.4g} {}, the robot file allows {:.3g}: {}?", j + 1, position,
-                           f.unit, farthest, turns ? "degrees, or the motor's side of a gear" : "millimetres");
-      f.mend =
-          turns ? "name the column with its unit (q1_deg ...), or divide by the gear ratio" : "convert the column to m";
-      out.push_back(std::move(f));
+      out.push_back({.level = FindingLevel::fault,
+                     .key = "position_range",
+                     .drive = j,
+                     .value = position,
+                     .unit = turns ? "rad" : "m",
+                     .text = fmt::format("position of drive {} reaches {:.4g} {}, the robot file allows {:.3g}: {}?",
+                                         j + 1, position, turns ? "rad" : "m", farthest,
+                                         turns ? "degrees, or the motor's side of a gear" : "millimetres"),
+                     .mend = turns ? "name the column with its unit (q1_deg ...), or divide by the gear ratio"
+                                   : "convert the column to m"});
     }
   }
   return out;

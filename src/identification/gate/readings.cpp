@@ -68,14 +68,11 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
     h.drives_moved = true;
     h.words = fmt::format(
         "the drives are in another order: the drive that turns the tool is in the columns of drive {}, the limbs, "
-        "counted from "
-        "any of them, in "
-        "those of drives {}",
+        "counted from any of them, in those of drives {}",
         order.back() + 1, columns.substr(0, columns.rfind(',')));
     h.mend =
         "put the columns in the order of the limbs, counter-clockwise from above (limb 1 on +x), then the drive that "
-        "turns the "
-        "tool (delta-log import: source in the map)";
+        "turns the tool (delta-log import: source in the map)";
     out.push_back(std::move(h));
   }
 }
@@ -102,13 +99,23 @@ std::string unit_in_words(const RobotDescription& robot, int drive, double facto
   return "";
 }
 
-PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& robot, double value, double tolerance) {
+/// A member of a family without its words.
+PositionHypothesis member_of(const PositionFamily& family, const RobotDescription& robot, double factor,
+                             double offset) {
   PositionHypothesis h;
   h.reading = Reading::as_given(robot.drives());
-  for (const int j : family.drives) h.reading.factor(j) = value;
+  for (const int j : family.drives) {
+    h.reading.factor(j) = factor;
+    h.reading.offset(j) = offset;
+  }
   h.key = family.key;
   h.changes = family.changes;
   h.drive = family.drives.size() == 1 ? family.drives.front() : -1;
+  return h;
+}
+
+PositionHypothesis scaled(const PositionFamily& family, const RobotDescription& robot, double value, double tolerance) {
+  PositionHypothesis h = member_of(family, robot, value, 0);
   const std::string who = drives_in_words(family.drives, robot.drives());
   const std::string unit = unit_in_words(robot, family.drives.front(), value, tolerance);
   if (!unit.empty()) {
@@ -198,16 +205,15 @@ std::vector<PositionFamily> position_families(const RobotDescription& robot) {
   std::vector<PositionFamily> out;
   if (robot.parts.empty()) return out;
   const std::vector<int> limbs = limbs_of(robot);
-  std::vector<double> factors;
-  for (double f = 1.0 / 400; f < 400; f *= 1.05) {
-    if (f < 0.8 || f > 1.25) factors.push_back(f);
-  }
-  std::vector<double> coarse;
-  for (double f = 1.0 / 400; f < 400; f *= 1.08) {
-    if (f < 0.8 || f > 1.25) coarse.push_back(f);
-  }
-  out.push_back({"position_scale", limbs, factors, true, 0.05, {}, 1});
-  for (const int limb : limbs) out.push_back({"position_scale", {limb}, coarse, true, 0.08, {}, 1.5});
+  const auto scales = [](std::vector<int> drives, double step, double changes) -> PositionFamily {
+    std::vector<double> factors;
+    for (double f = 1.0 / 400; f < 400; f *= 1 + step) {
+      if (f < 0.8 || f > 1.25) factors.push_back(f);
+    }
+    return {"position_scale", std::move(drives), factors, true, step, {}, changes};
+  };
+  out.push_back(scales(limbs, 0.05, 1));
+  for (const int limb : limbs) out.push_back(scales({limb}, 0.08, 1.5));
   if (robot.drive_kind != DriveKind::revolute) {
     // The zeros of all carriages together are a matter of where the plate's is.
     constexpr double kStep_m = 0.02, kFarthest = 0.5;  // of the strut
@@ -227,16 +233,8 @@ std::vector<PositionFamily> position_families(const RobotDescription& robot) {
 
 PositionHypothesis member(const PositionFamily& family, const RobotDescription& robot, double value, double tolerance) {
   if (family.geometric) return scaled(family, robot, value, tolerance);
-  PositionHypothesis h;
-  h.reading = Reading::as_given(robot.drives());
   const double sign = family.sign.front();
-  for (const int j : family.drives) {
-    h.reading.factor(j) = sign;
-    h.reading.offset(j) = value;
-  }
-  h.key = family.key;
-  h.changes = family.changes;
-  h.drive = family.drives.size() == 1 ? family.drives.front() : -1;
+  PositionHypothesis h = member_of(family, robot, sign, value);
   const std::string who = drives_in_words(family.drives, robot.drives());
   if (robot.kind_of_drive(family.drives.front()) != DriveKind::revolute) {
     h.odd = true;

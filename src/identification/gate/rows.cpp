@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "deltadyn/signal/reversal_mask.hpp"
@@ -94,31 +95,19 @@ struct PointRegressor {
   }
 };
 
-/// Rows of one drive, those near reversals apart.
-struct Bins {
-  std::vector<Place> at[2];
-  std::vector<Eigen::RowVectorXd> Y[2];
+/// A row of one drive.
+struct FoundRow {
+  Place at;
+  Eigen::RowVectorXd Y;
+  bool near_reversal = false;
 };
 
-void append(const std::vector<Place>& at, const std::vector<Eigen::RowVectorXd>& Y,
-            std::vector<std::pair<Place, Eigen::RowVectorXd>>& all) {
-  for (std::size_t k = 0; k < at.size(); ++k) all.emplace_back(at[k], Y[k]);
-}
-
-DriveRows rows_of(const Bins& bins, int parameters) {
-  std::vector<std::pair<Place, Eigen::RowVectorXd>> all;
-  append(bins.at[0], bins.Y[0], all);
-  if (static_cast<Index>(all.size()) < kFewestUnmasked) {
-    append(bins.at[1], bins.Y[1], all);
-    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-      return a.first.stretch != b.first.stretch ? a.first.stretch < b.first.stretch : a.first.point < b.first.point;
-    });
-  }
+DriveRows stacked(const std::vector<FoundRow>& found, int parameters) {
   DriveRows rows;
-  rows.Y.resize(static_cast<Index>(all.size()), parameters);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    rows.at.push_back(all[k].first);
-    rows.Y.row(static_cast<Index>(k)) = all[k].second;
+  rows.Y.resize(static_cast<Index>(found.size()), parameters);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    rows.at.push_back(found[k].at);
+    rows.Y.row(static_cast<Index>(k)) = found[k].Y;
   }
   return rows;
 }
@@ -142,9 +131,15 @@ Eigen::MatrixXd Reading::apply(const Eigen::MatrixXd& columns, int derivative) c
   return out;
 }
 
+Eigen::MatrixXd DriveRows::of_points(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd out(count(), columns.cols());
+  for (Index k = 0; k < count(); ++k) out.row(k) = columns.row(at[static_cast<std::size_t>(k)].point);
+  return out;
+}
+
 Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sample& sample, const Reading& reading) {
   const int n = robot.drives();
-  std::vector<Bins> bins(static_cast<std::size_t>(n));
+  std::vector<std::vector<FoundRow>> found(static_cast<std::size_t>(n));
   Rows rows;
   double looked_at = 0, unreachable = 0;
   for (std::size_t s = 0; s < sample.stretches.size(); ++s) {
@@ -164,15 +159,19 @@ Rows low_passed_rows(const Robot& robot, const BaseParameters& base, const Sampl
       for (int j = 0; j < n; ++j) {
         const auto at = static_cast<std::size_t>(j);
         if (stretch.torque_out.col(j).segment(k - reach, 2 * reach + 1).any()) continue;
-        const int bin = any_within(regressor.reversal[at], k, reach) ? 1 : 0;
-        bins[at].at[bin].push_back({static_cast<int>(s), k});
-        bins[at].Y[bin].push_back(kernel.weight[0].transpose() *
-                                  regressor.Y[at].middleRows(k + kernel.from, kernel.weight[0].size()));
+        found[at].push_back(
+            {{static_cast<int>(s), k},
+             kernel.weight[0].transpose() * regressor.Y[at].middleRows(k + kernel.from, kernel.weight[0].size()),
+             any_within(regressor.reversal[at], k, reach)});
       }
     }
     rows.Y_of_points.push_back(std::move(regressor.Y));
   }
-  for (const Bins& one : bins) rows.drives.push_back(rows_of(one, base.count()));
+  for (std::vector<FoundRow>& of_drive : found) {
+    if (std::ranges::count(of_drive, false, &FoundRow::near_reversal) >= kFewestUnmasked)
+      std::erase_if(of_drive, std::mem_fn(&FoundRow::near_reversal));
+    rows.drives.push_back(stacked(of_drive, base.count()));
+  }
   rows.unreachable = looked_at > 0 ? unreachable / looked_at : 1.0;
   return rows;
 }
@@ -217,8 +216,7 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
                         qdd = reading.apply(points.qdd, 2);
   const Eigen::RowVectorXd floor = 0.02 * qd.cwiseAbs().colwise().maxCoeff();
   Rows rows;
-  rows.drives.resize(static_cast<std::size_t>(n));
-  std::vector<std::vector<Eigen::RowVectorXd>> found(static_cast<std::size_t>(n));
+  std::vector<std::vector<FoundRow>> found(static_cast<std::size_t>(n));
   Eigen::MatrixXd full(n, robot.parameters());
   Index unreachable = 0;
   for (Index k = 0; k < q.rows(); ++k) {
@@ -231,15 +229,10 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
       // The Gaussian smears the friction's step over what the drive takes to reverse.
       const double smeared = kSmear * points.sigma_s * std::abs(ak(j));
       if (std::abs(vk(j)) < std::max(floor(j), smeared) || points.torque_out.row(k).any()) continue;
-      found[static_cast<std::size_t>(j)].emplace_back(full.row(j)(base.independent));
-      rows.drives[static_cast<std::size_t>(j)].at.push_back({0, k});
+      found[static_cast<std::size_t>(j)].push_back({{0, k}, full.row(j)(base.independent)});
     }
   }
-  for (int j = 0; j < n; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    rows.drives[at].Y.resize(static_cast<Index>(found[at].size()), base.count());
-    for (std::size_t k = 0; k < found[at].size(); ++k) rows.drives[at].Y.row(static_cast<Index>(k)) = found[at][k];
-  }
+  for (const std::vector<FoundRow>& of_drive : found) rows.drives.push_back(stacked(of_drive, base.count()));
   rows.unreachable = q.rows() > 0 ? static_cast<double>(unreachable) / static_cast<double>(q.rows()) : 1.0;
   return rows;
 }
@@ -250,7 +243,8 @@ Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorX
   Eigen::MatrixXd out(static_cast<Index>(at.size()), 1 + derivatives);
   std::vector<Kernel> kernels;  // one a stretch: steps and shifts may differ
   for (const Stretch& stretch : sample.stretches) {
-    kernels.emplace_back(sigma_s, stretch.step_s, shift_s_of_log[static_cast<std::size_t>(stretch.file)]);
+    kernels.emplace_back(sigma_s, stretch.step_s,
+                         shift_s_of_log.empty() ? 0.0 : shift_s_of_log[static_cast<std::size_t>(stretch.file)]);
   }
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto s = static_cast<std::size_t>(at[k].stretch);

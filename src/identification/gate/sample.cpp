@@ -7,6 +7,7 @@
 
 #include "deltadyn/signal/differentiate_log.hpp"
 #include "deltadyn/signal/log_part.hpp"
+#include "deltadyn/signal/motion_band.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
 namespace deltadyn::gate {
@@ -21,7 +22,10 @@ constexpr double kPerPeriod = 13;   // grid points a period of the band
 // The motion's own filter ends well above the Gaussian that torque and regressor share: what it takes off the regressor
 // alone would look like a lag.
 constexpr double kMotionRatio = 2.0;
-constexpr Index kFewestSamples = 60;  // of a stretch
+constexpr Index kFewestSamples = 60;       // of a stretch
+constexpr double kPointsOfSample = 16000;  // of all stretches together, about
+// The band falls until the noise of the acceleration is below this share of its rms
+constexpr double kAccelerationNoise = 0.003;
 
 /// Smallest step of a recorded position: the encoder's, where it counts.
 double resolution(const Eigen::Ref<const Eigen::VectorXd>& position) {
@@ -54,12 +58,6 @@ Eigen::MatrixXd thin(const Eigen::MatrixXd& columns, Index factor) {
   return out;
 }
 
-Eigen::MatrixXd every(const Eigen::MatrixXd& columns, Index factor) {
-  Eigen::MatrixXd out((columns.rows() + factor - 1) / factor, columns.cols());
-  for (Index row = 0; row < out.rows(); ++row) out.row(row) = columns.row(row * factor);
-  return out;
-}
-
 Stretch stretch_of(const Log& piece, int file, double band_hz) {
   const double rate_hz = 1.0 / piece.sample_time_s();
   const double cutoff_hz = std::min(kMotionRatio * band_hz, 0.4 * rate_hz);
@@ -68,10 +66,11 @@ Stretch stretch_of(const Log& piece, int file, double band_hz) {
   Stretch out;
   out.file = file;
   out.step_s = static_cast<double>(factor) / rate_hz;
-  out.q = every(motion.q, factor);
-  out.qd = every(motion.qd, factor);
-  out.qdd = every(motion.qdd, factor);
   out.tau = thin(piece.tau, factor);
+  const auto grid = Eigen::seqN(0, out.tau.rows(), factor);
+  out.q = motion.q(grid, Eigen::all);
+  out.qd = motion.qd(grid, Eigen::all);
+  out.qdd = motion.qdd(grid, Eigen::all);
   out.first = (motion.first + factor - 1) / factor;
   out.last = std::min<Index>(out.points(), motion.last / factor);
   out.spoilt.assign(static_cast<std::size_t>(out.points()), 0);
@@ -107,7 +106,7 @@ double noise_limited_band_hz(const std::vector<Log>& pieces, const SampleOptions
   double cutoff = highest;
   const auto too_noisy = [&](double hz) {
     for (Index j = 0; j < drives; ++j) {
-      if (derivative_noise(noise(j), rate_hz, hz, 4, 2) > options.acceleration_noise * acceleration(j)) return true;
+      if (derivative_noise(noise(j), rate_hz, hz, 4, 2) > kAccelerationNoise * acceleration(j)) return true;
     }
     return false;
   };
@@ -127,6 +126,12 @@ std::vector<int> file_numbers(const std::vector<Log>& logs) {
   return out;
 }
 
+std::vector<Eigen::VectorXd> recorded_torque(const Sample& sample, Index drive) {
+  std::vector<Eigen::VectorXd> out;
+  for (const Stretch& stretch : sample.stretches) out.emplace_back(stretch.tau.col(drive));
+  return out;
+}
+
 Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
   std::vector<Log> pieces;
   std::vector<int> owner;
@@ -137,7 +142,7 @@ Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
     if (log.samples() < kFewestSamples) continue;
     const double rate_hz = 1.0 / log.sample_time_s();
     const double grid_hz = std::min(rate_hz, kPerPeriod * options.highest_band_hz);
-    const double share_s = static_cast<double>(options.points) / static_cast<double>(logs.size()) / grid_hz;
+    const double share_s = kPointsOfSample / static_cast<double>(logs.size()) / grid_hz;
     const double length_s = static_cast<double>(log.samples()) / rate_hz;
     const int count = length_s <= 1.5 * share_s ? 1 : options.stretches;
     const auto samples = count == 1 ? log.samples() : static_cast<Index>((share_s / count + 2 * margin_s) * rate_hz);
@@ -157,6 +162,29 @@ Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options) {
     out.stretches.push_back(stretch_of(pieces[k], owner[k], out.band_hz));
   }
   return out;
+}
+
+double relative_torque_noise(const std::vector<Log>& logs, const Sample& sample) {
+  if (sample.stretches.empty() || !(sample.sigma_s > 0)) return 0;
+  const Index drives = sample.stretches.front().tau.cols();
+  // Noise band of a Gaussian: the integral of its squared gain.
+  const double band_hz = 1 / (4 * sample.sigma_s * std::sqrt(std::numbers::pi));
+  double sum = 0;
+  for (Index j = 0; j < drives; ++j) {
+    double density = 0, seconds = 0, square = 0, points = 0;
+    for (const Log& log : logs) {
+      if (log.samples() < kFewestSamples) continue;
+      const double step_s = log.sample_time_s(), length_s = step_s * static_cast<double>(log.samples());
+      density += length_s * motion_band(log.tau.col(j), 1 / step_s).noise_density;
+      seconds += length_s;
+    }
+    for (const Stretch& stretch : sample.stretches) {
+      square += stretch.tau.col(j).squaredNorm();
+      points += static_cast<double>(stretch.points());
+    }
+    if (square > 0 && seconds > 0) sum += density / seconds * band_hz * points / square;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<Index>(1, drives)));
 }
 
 }  // namespace deltadyn::gate

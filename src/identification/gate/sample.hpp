@@ -30,18 +30,17 @@ struct Sample {
   std::vector<Stretch> stretches;
   double band_hz = 0;  ///< -6 dB point of the Gaussian low pass that regressor and torque share
   double sigma_s = 0;  ///< of that Gaussian
-  bool coarse =
-      /// Even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
-      false;
+  /// Even in the lowest band the encoders' noise is not small beside the motion: a large residual means nothing
+  bool coarse = false;
 };
 
 struct SampleOptions {
-  Eigen::Index points = 16000;  ///< of all stretches together, about
-  int stretches = 12;           ///< a log that is longer than its share
+  int stretches = 12;  ///< a log that is longer than its share
   double highest_band_hz = 40;
   double lowest_band_hz = 8;
-  /// The band falls until the noise of the acceleration is below this share of its rms
-  double acceleration_noise = 0.003;
+
+  /// A sample in one band, whatever the noise.
+  [[nodiscard]] static SampleOptions in_band(double hz) { return {.highest_band_hz = hz, .lowest_band_hz = hz}; }
 };
 
 /// Band by the noise of the motion: the highest one at which encoder noise stays small beside the acceleration of the
@@ -53,7 +52,15 @@ struct SampleOptions {
 /// The number of each log's file, from 0 in the order of the list: parts of one file share its delays.
 [[nodiscard]] std::vector<int> file_numbers(const std::vector<Log>& logs);
 
+/// Recorded torque of one drive, a column a stretch.
+[[nodiscard]] std::vector<Eigen::VectorXd> recorded_torque(const Sample& sample, Eigen::Index drive);
+
 /// Logs too short for a stretch are left out; the result may be empty.
 [[nodiscard]] Sample take_sample(const std::vector<Log>& logs, const SampleOptions& options = {});
+
+/// How much of a residual the noise of the torque record makes by itself: white noise of the recorded torques (the
+/// floor of their spectra) under the sample's Gaussian, over the torques under it; rms over the drives, as
+/// Timing::rms_after counts.
+[[nodiscard]] double relative_torque_noise(const std::vector<Log>& logs, const Sample& sample);
 
 }  // namespace deltadyn::gate

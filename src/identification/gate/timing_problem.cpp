@@ -42,14 +42,12 @@ Freedom freedom(int logs, int drives, bool delay, bool lag, const std::function<
 
 TimingProblem::TimingProblem(const Sample& sample, const Rows& rows, int logs)
     : sample_(sample), rows_(rows), logs_(logs), drives_(static_cast<int>(rows.drives.size())) {
-  for (const DriveRows& drive : rows.drives) total_ += drive.count();
   for (int j = 0; j < drives_; ++j) {
-    std::vector<Eigen::VectorXd> column;
-    for (const Stretch& stretch : sample.stretches) column.emplace_back(stretch.tau.col(j));
-    recorded_.push_back(std::move(column));
+    first_.push_back(total_);
+    total_ += rows.drives[static_cast<std::size_t>(j)].count();
+    recorded_.push_back(recorded_torque(sample, j));
   }
   weight_.setOnes(drives_);
-  memory_ = 1.0;
 }
 
 bool TimingProblem::solvable() const {
@@ -58,10 +56,9 @@ bool TimingProblem::solvable() const {
 }
 
 double TimingProblem::prepare() {
-  const std::vector<double> none(static_cast<std::size_t>(logs_), 0.0);
   for (int j = 0; j < drives_; ++j) {
     const Eigen::VectorXd tau =
-        values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), none, 0, sample_.sigma_s);
+        values_at(sample_, recorded_[static_cast<std::size_t>(j)], places(j), {}, 0, sample_.sigma_s);
     weight_(j) = std::sqrt(static_cast<double>(tau.size()) / std::max(tau.squaredNorm(), 1e-300));
   }
   make_basis();
@@ -72,17 +69,12 @@ double TimingProblem::prepare() {
   return delay;
 }
 
-double TimingProblem::relative_rms(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const {
-  Eigen::VectorXd r, unused;
-  Eigen::MatrixXd slopes;
-  const Eigen::VectorXd tau = torque(delay, lag, slopes, false);
-  r = tau - basis_ * (basis_.transpose() * tau);
+double TimingProblem::relative_rms(const Shifts& shifts) const {
+  const Eigen::VectorXd tau = torque(shifts), r = tau - basis_ * (basis_.transpose() * tau);
   double sum = 0;
-  Index row = 0;
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
+    const auto [row, count] = stacked(j);
     sum += r.segment(row, count).squaredNorm() / std::max(tau.segment(row, count).squaredNorm(), 1e-300);
-    row += count;
   }
   return std::sqrt(sum / drives_);
 }
@@ -125,12 +117,11 @@ double TimingProblem::noise_unit(const Solution& s) const {
   return variance * std::max(1.0, memory_of(r)) / memory_;
 }
 
-std::pair<double, double> TimingProblem::curvature(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const {
-  Eigen::MatrixXd slopes, all(total_, 5);
-  const Eigen::VectorXd tau = torque(delay, lag, slopes, false);
-  all.col(0) = tau;
-  all.middleCols(1, 2) = model_slopes(tau, Eigen::MatrixXd::Zero(logs_, drives_), 1.0);
-  all.rightCols(2) = model_slopes(tau, Eigen::MatrixXd::Zero(logs_, drives_), kCalm);
+std::pair<double, double> TimingProblem::curvature(const Shifts& shifts) const {
+  Eigen::MatrixXd all(total_, 5);
+  const Eigen::VectorXd tau = torque(shifts);
+  const Eigen::MatrixXd no_lag = Eigen::MatrixXd::Zero(logs_, drives_);
+  all << tau, model_slopes(tau, no_lag, 1.0), model_slopes(tau, no_lag, kCalm);
   project_out(all);
   const Eigen::VectorXd r = all.col(0);
   const Eigen::MatrixXd J = all.middleCols(1, 2), Z = all.rightCols(2);
@@ -138,38 +129,29 @@ std::pair<double, double> TimingProblem::curvature(const Eigen::MatrixXd& delay,
   return {step(1), deviations(r - J * step, J, Z)(1)};
 }
 
-void TimingProblem::expand(const Solution& s, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const {
-  delay.setZero(logs_, drives_);
-  lag.setZero(logs_, drives_);
-  spread(s.free, s.theta, delay, lag);
+Shifts TimingProblem::all_alike(double delay) const {
+  return {Eigen::MatrixXd::Constant(logs_, drives_, delay), Eigen::MatrixXd::Zero(logs_, drives_)};
 }
 
-void TimingProblem::expand_std(const Solution& s, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const {
-  delay.setZero(logs_, drives_);
-  lag.setZero(logs_, drives_);
-  spread(s.free, s.std, delay, lag);
-}
-
-void TimingProblem::spread(const Freedom& free, const Eigen::VectorXd& theta, Eigen::MatrixXd& delay,
-                           Eigen::MatrixXd& lag) const {
+Shifts TimingProblem::expand(const Freedom& free, const Eigen::VectorXd& values) const {
+  Shifts out = all_alike(0);
   for (int l = 0; l < logs_; ++l) {
     for (int j = 0; j < drives_; ++j) {
       const auto at = static_cast<std::size_t>(l * drives_ + j);
-      if (free.delay[at] >= 0) delay(l, j) = theta(free.delay[at]);
-      if (free.lag[at] >= 0) lag(l, j) = theta(free.lag[at]);
+      if (free.delay[at] >= 0) out.delay(l, j) = values(free.delay[at]);
+      if (free.lag[at] >= 0) out.lag(l, j) = values(free.lag[at]);
     }
   }
+  return out;
 }
 
 void TimingProblem::make_basis() {
   const Index B = rows_.drives.front().Y.cols();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(total_, B + drives_);
-  Index row = 0;
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
+    const auto [row, count] = stacked(j);
     A.block(row, 0, count, B) = weight_(j) * rows_.drives[static_cast<std::size_t>(j)].Y;
     A.block(row, B + j, count, 1).setConstant(weight_(j));
-    row += count;
   }
   const Eigen::VectorXd norm = A.colwise().norm().cwiseMax(1e-300).transpose();
   A *= norm.cwiseInverse().asDiagonal();
@@ -181,51 +163,46 @@ void TimingProblem::make_basis() {
 Eigen::MatrixXd TimingProblem::model_slopes(const Eigen::VectorXd& tau, const Eigen::MatrixXd& lag, double calm) const {
   const Index B = rows_.drives.front().Y.cols();
   const Eigen::VectorXd beta = (qr_.solve(tau).array() / column_norm_.array()).head(B);
-  const std::vector<double> none(static_cast<std::size_t>(logs_), 0.0);
   Eigen::MatrixXd out(total_, 2);
-  Index row = 0;
   for (int j = 0; j < drives_; ++j) {
     std::vector<Eigen::VectorXd> model;
     for (const auto& Y : rows_.Y_of_points) model.emplace_back(Y[static_cast<std::size_t>(j)] * beta);
     model = behind_low_pass(model, -lag.col(j).cwiseAbs());
-    const Index count = places_count(j);
+    const auto [row, count] = stacked(j);
     out.middleRows(row, count) =
-        weight_(j) * values_at(sample_, model, places(j), none, 2, calm * sample_.sigma_s).rightCols(2);
-    row += count;
+        weight_(j) * values_at(sample_, model, places(j), {}, 2, calm * sample_.sigma_s).rightCols(2);
   }
   return out;
 }
 
-Eigen::VectorXd TimingProblem::torque(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag, Eigen::MatrixXd& slopes,
-                                      bool with_slopes) const {
+Eigen::VectorXd TimingProblem::torque(const Shifts& shifts, Eigen::MatrixXd* slopes) const {
   Eigen::VectorXd tau(total_);
-  if (with_slopes) slopes.resize(total_, 2);
-  Index row = 0;
+  const bool with_slopes = slopes != nullptr;
+  if (with_slopes) slopes->resize(total_, 2);
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
-    std::vector<double> shift(static_cast<std::size_t>(logs_));
-    for (int l = 0; l < logs_; ++l)
-      shift[static_cast<std::size_t>(l)] = std::clamp(delay(l, j), -kFarthest_s, kFarthest_s);
+    const auto [row, count] = stacked(j);
+    const auto lag = shifts.lag.col(j);
+    std::vector<double> shift;
+    for (const double delay : shifts.delay.col(j)) shift.push_back(std::clamp(delay, -kFarthest_s, kFarthest_s));
     const std::vector<Eigen::VectorXd>& recorded = recorded_[static_cast<std::size_t>(j)];
-    const bool lead = (lag.col(j).array() < 0).any();
+    const bool lead = (lag.array() < 0).any();
     const Eigen::MatrixXd t =
         weight_(j) * values_at(sample_, recorded, places(j), shift, with_slopes ? 2 : 1, sample_.sigma_s);
     Eigen::MatrixXd once, twice;
     if (lead) {
-      const std::vector<Eigen::VectorXd> y = behind_low_pass(recorded, lag.col(j));
+      const std::vector<Eigen::VectorXd> y = behind_low_pass(recorded, lag);
       once = weight_(j) * values_at(sample_, y, places(j), shift, 1, sample_.sigma_s);
       if (with_slopes)
-        twice = weight_(j) * values_at(sample_, behind_low_pass(y, lag.col(j)), places(j), shift, 1, sample_.sigma_s);
+        twice = weight_(j) * values_at(sample_, behind_low_pass(y, lag), places(j), shift, 1, sample_.sigma_s);
     }
     for (Index k = 0; k < count; ++k) {
       const int log = sample_.stretches[static_cast<std::size_t>(places(j)[static_cast<std::size_t>(k)].stretch)].file;
-      const double T = lag(log, j);
+      const double T = lag(log);
       tau(row + k) = T < 0 ? once(k, 0) : t(k, 0) + T * t(k, 1);
       if (!with_slopes) continue;
-      slopes(row + k, 0) = T < 0 ? once(k, 1) : t(k, 1) + T * t(k, 2);
-      slopes(row + k, 1) = T < 0 ? twice(k, 1) : t(k, 1);
+      (*slopes)(row + k, 0) = T < 0 ? once(k, 1) : t(k, 1) + T * t(k, 2);
+      (*slopes)(row + k, 1) = T < 0 ? twice(k, 1) : t(k, 1);
     }
-    row += count;
   }
   return tau;
 }
@@ -243,18 +220,18 @@ std::vector<Eigen::VectorXd> TimingProblem::behind_low_pass(const std::vector<Ei
 
 void TimingProblem::linearise(const Freedom& free, const Eigen::VectorXd& theta, Eigen::VectorXd& r, Eigen::MatrixXd& J,
                               Eigen::MatrixXd& Z) const {
-  Eigen::MatrixXd delay = Eigen::MatrixXd::Zero(logs_, drives_), lag = delay, slopes;
-  spread(free, theta, delay, lag);
+  const Shifts shifts = expand(free, theta);
+  Eigen::MatrixXd slopes;
   const int G = free.parameters;
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(total_, 1 + 2 * G);
-  const Eigen::VectorXd tau = torque(delay, lag, slopes, true);
+  const Eigen::VectorXd tau = torque(shifts, &slopes);
   all.col(0) = tau;
   // The noise of a recorded torque is orthogonal to its own derivative: a delay alone needs no instrument.
   const bool lags = std::any_of(free.lag.begin(), free.lag.end(), [](int k) { return k >= 0; });
   const Eigen::VectorXd model =
-      lags ? Eigen::VectorXd(model_slopes(tau, lag, kCalm).col(0)) : Eigen::VectorXd(slopes.col(0));
-  Index row = 0;
+      lags ? Eigen::VectorXd(model_slopes(tau, shifts.lag, kCalm).col(0)) : Eigen::VectorXd(slopes.col(0));
   for (int j = 0; j < drives_; ++j) {
+    Index row = stacked(j).first;
     for (const Place& place : places(j)) {
       const int log = sample_.stretches[static_cast<std::size_t>(place.stretch)].file;
       const auto at = static_cast<std::size_t>(log * drives_ + j);
@@ -274,12 +251,8 @@ void TimingProblem::linearise(const Freedom& free, const Eigen::VectorXd& theta,
 
 double TimingProblem::scan() const {
   const auto steps = static_cast<int>(std::lround(2 * kLongestDelay_s / kScanStep_s));
-  Eigen::MatrixXd tau(total_, steps + 1), slopes;
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(logs_, drives_);
-  for (int k = 0; k <= steps; ++k) {
-    const double delay = -kLongestDelay_s + k * kScanStep_s;
-    tau.col(k) = torque(Eigen::MatrixXd::Constant(logs_, drives_, delay), none, slopes, false);
-  }
+  Eigen::MatrixXd tau(total_, steps + 1);
+  for (int k = 0; k <= steps; ++k) tau.col(k) = torque(all_alike(-kLongestDelay_s + k * kScanStep_s));
   project_out(tau);
   Index best = 0;
   tau.colwise().squaredNorm().minCoeff(&best);
@@ -288,34 +261,23 @@ double TimingProblem::scan() const {
 
 double TimingProblem::memory_of(const Eigen::VectorXd& r) const {
   double memory = 0;
-  Index row = 0;
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
+    const auto [row, count] = stacked(j);
     const Eigen::Array<bool, Eigen::Dynamic, 1> all = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(count, true);
     memory += noise_correlation(r.segment(row, count), all, 20) / drives_;
-    row += count;
   }
   return memory;
 }
 
 void TimingProblem::reweigh(double delay) {
-  Eigen::MatrixXd slopes;
-  const Eigen::MatrixXd lag = Eigen::MatrixXd::Zero(logs_, drives_);
-  Eigen::MatrixXd r = torque(Eigen::MatrixXd::Constant(logs_, drives_, delay), lag, slopes, false);
-  const Eigen::VectorXd tau = r;
-  project_out(r);
-  Index row = 0;
-  memory_ = std::max(1.0, memory_of(r.col(0)));
-  Eigen::VectorXd weight = weight_;
+  const Eigen::VectorXd tau = torque(all_alike(delay)), r = tau - basis_ * (basis_.transpose() * tau);
+  memory_ = std::max(1.0, memory_of(r));
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
-    const Eigen::VectorXd one = r.col(0).segment(row, count);
+    const auto [row, count] = stacked(j);
     // Noise-free logs: the filters' own error stays.
     const double floor = 1e-6 * tau.segment(row, count).norm();
-    weight(j) *= std::sqrt(static_cast<double>(count)) / std::max({one.norm(), floor, 1e-300});
-    row += count;
+    weight_(j) *= std::sqrt(static_cast<double>(count)) / std::max({r.segment(row, count).norm(), floor, 1e-300});
   }
-  weight_ = weight;
   make_basis();
 }
 
@@ -329,9 +291,8 @@ Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen:
   // [basis Z]^T [basis J r] by part; leaving one out and solving again is cheap.
   std::vector<Eigen::MatrixXd> part(kParts, Eigen::MatrixXd::Zero(Q + G, Q + G + 1));
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(Q + G, Q + G + 1);
-  Index row = 0;
   for (int j = 0; j < drives_; ++j) {
-    const Index count = places_count(j);
+    const auto [row, count] = stacked(j);
     for (int p = 0; p < kParts; ++p) {
       const Index from = count * p / kParts, rows = count * (p + 1) / kParts - from;
       Eigen::MatrixXd left(rows, Q + G), right(rows, Q + G + 1);
@@ -339,7 +300,6 @@ Eigen::VectorXd TimingProblem::deviations(const Eigen::VectorXd& r, const Eigen:
       right << basis_.middleRows(row + from, rows), J.middleRows(row + from, rows), r.segment(row + from, rows);
       part[static_cast<std::size_t>(p)].noalias() += left.transpose() * right;
     }
-    row += count;
   }
   for (const Eigen::MatrixXd& one : part) total += one;
   Eigen::MatrixXd shifts(G, kParts);

@@ -10,6 +10,7 @@
 #include "deltadyn/runtime/dense.hpp"
 
 #include "rows.hpp"
+#include "torque_timing.hpp"
 
 namespace deltadyn::gate {
 
@@ -45,7 +46,7 @@ class TimingProblem {
   double prepare();
 
   /// Residual of the base parameters, each drive over its torque, rms over the drives.
-  [[nodiscard]] double relative_rms(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const;
+  [[nodiscard]] double relative_rms(const Shifts& shifts) const;
 
   /// Gauss-Newton from `start`; a lag has instruments, which noise does not pull.
   [[nodiscard]] Solution solve(const Freedom& free, const Eigen::VectorXd& start) const;
@@ -59,11 +60,12 @@ class TimingProblem {
 
   /// What a timing leaves of the torque's second derivative, with its standard deviation [s^2]: 0 if the timing is of
   /// the right kind. A delay c and a lag c are alike to first order; in the second one they differ by c^2 / 2.
-  [[nodiscard]] std::pair<double, double> curvature(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag) const;
+  [[nodiscard]] std::pair<double, double> curvature(const Shifts& shifts) const;
 
-  /// Delays and lags, or their standard deviations, logs x drives [s].
-  void expand(const Solution& s, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const;
-  void expand_std(const Solution& s, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const;
+  /// One delay and no lag.
+  [[nodiscard]] Shifts all_alike(double delay) const;
+  /// Delays and lags, or their standard deviations, of Solution::theta or Solution::std.
+  [[nodiscard]] Shifts expand(const Freedom& free, const Eigen::VectorXd& values) const;
   [[nodiscard]] int logs() const { return logs_; }
   [[nodiscard]] int drives() const { return drives_; }
 
@@ -71,11 +73,11 @@ class TimingProblem {
   [[nodiscard]] const std::vector<Place>& places(int drive) const {
     return rows_.drives[static_cast<std::size_t>(drive)].at;
   }
-  [[nodiscard]] Eigen::Index places_count(int drive) const {
-    return rows_.drives[static_cast<std::size_t>(drive)].count();
+  /// First of a drive's stacked rows, and their number.
+  [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> stacked(int drive) const {
+    const auto at = static_cast<std::size_t>(drive);
+    return {first_[at], rows_.drives[at].count()};
   }
-
-  void spread(const Freedom& free, const Eigen::VectorXd& theta, Eigen::MatrixXd& delay, Eigen::MatrixXd& lag) const;
 
   /// Orthonormal basis of what base parameters and an offset of each drive can explain.
   void make_basis();
@@ -86,9 +88,8 @@ class TimingProblem {
   /// \param calm  width of the Gaussian over that of the sample
   [[nodiscard]] Eigen::MatrixXd model_slopes(const Eigen::VectorXd& tau, const Eigen::MatrixXd& lag, double calm) const;
 
-  /// Weighted torque with delay and lag taken out; columns of `slopes`: by delay and by lag.
-  [[nodiscard]] Eigen::VectorXd torque(const Eigen::MatrixXd& delay, const Eigen::MatrixXd& lag,
-                                       Eigen::MatrixXd& slopes, bool with_slopes) const;
+  /// Weighted torque with delay and lag taken out; columns of `slopes`, if wanted: by delay and by lag.
+  [[nodiscard]] Eigen::VectorXd torque(const Shifts& shifts, Eigen::MatrixXd* slopes = nullptr) const;
 
   /// Columns behind a first-order low pass with the time constant -lag of their log; as they are where the lag is not
   /// negative.
@@ -118,6 +119,7 @@ class TimingProblem {
   const Sample& sample_;
   const Rows& rows_;
   int logs_, drives_;
+  std::vector<Eigen::Index> first_;  ///< of each drive's stacked rows
   Eigen::Index total_ = 0;
   Eigen::VectorXd weight_;
   double memory_ = 1;

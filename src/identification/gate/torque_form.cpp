@@ -27,20 +27,15 @@ Eigen::MatrixXd scaled_information(const Eigen::MatrixXd& A, Eigen::VectorXd& sc
 
 }  // namespace
 
-std::vector<TorqueBlock> fold_torques(const Rows& rows, const std::vector<Eigen::MatrixXd>& tau) {
+std::vector<TorqueBlock> fold_torques(const Rows& rows, const Eigen::MatrixXd& tau) {
   std::vector<TorqueBlock> blocks;
-  for (std::size_t j = 0; j < rows.drives.size(); ++j) {
-    Eigen::MatrixXd Y = rows.drives[j].Y, t = tau[j];
+  for (const DriveRows& drive : rows.drives) {
+    Eigen::MatrixXd Y = drive.Y, t = drive.of_points(tau);
     if (Y.rows() > 0) {
       Y.rowwise() -= Eigen::RowVectorXd(Y.colwise().mean());
       t.rowwise() -= Eigen::RowVectorXd(t.colwise().mean());
     }
-    TorqueBlock block;
-    block.YtY = Y.transpose() * Y;
-    block.Ytau = Y.transpose() * t;
-    block.tau2 = t.colwise().squaredNorm().transpose();
-    block.rows = Y.rows();
-    blocks.push_back(std::move(block));
+    blocks.push_back({Y.transpose() * Y, Y.transpose() * t, t.colwise().squaredNorm().transpose(), Y.rows()});
   }
   return blocks;
 }

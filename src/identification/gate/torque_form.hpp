@@ -21,8 +21,8 @@ struct TorqueBlock {
   Eigen::Index rows = 0;
 };
 
-/// \param tau  of each drive's rows: rows x columns
-[[nodiscard]] std::vector<TorqueBlock> fold_torques(const Rows& rows, const std::vector<Eigen::MatrixXd>& tau);
+/// \param tau  points x columns, for rows of rows_of_points()
+[[nodiscard]] std::vector<TorqueBlock> fold_torques(const Rows& rows, const Eigen::MatrixXd& tau);
 
 /// S with s^T S s = sum over the drives of (residual / torque)^2 when drive j's torque is s_j factor_j times column
 /// assignment[j].

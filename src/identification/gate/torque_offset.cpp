@@ -44,8 +44,7 @@ struct Rest {
     Index row = 0;
     for (Index j = 0; j < drives; ++j) {
       const DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
-      VectorXd tau(drive.count());
-      for (Index k = 0; k < tau.size(); ++k) tau(k) = points.tau(drive.at[static_cast<std::size_t>(k)].point, j);
+      const VectorXd tau = drive.of_points(points.tau.col(j));
       rms(j) = std::max(root_mean_square(tau), 1e-12);
       A.middleRows(row, tau.size()) = drive.Y / rms(j);
       offset.col(j).segment(row, tau.size()).setConstant(1 / rms(j));
@@ -114,33 +113,30 @@ std::optional<TorqueOffset> torque_offset(const Robot& robot, const BaseParamete
   const double as_given = root_mean_square(rest.torque);
   const Offsets best = best_offsets(rest, robot.drives());
   if (best.residual >= kSound || best.residual >= kOffsetWins * as_given) return {};
-  TorqueOffset out{{}, VectorXd::Zero(robot.drives())};
-  LogFinding& f = out.finding;
-  f.level = FindingLevel::warning;
-  f.key = "torque_offset";
-  f.drive = best.drives.size() == 1 ? best.drives.front() : -1;
-  f.value = best.value(0);
-  f.std = best.std(0);
+  VectorXd offset = VectorXd::Zero(robot.drives());
   std::string sizes;
+  const char* unit = "";
   for (Index k = 0; k < best.value.size(); ++k) {
     const int drive = best.drives[static_cast<std::size_t>(k)];
-    const char* unit = robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
-    f.unit = unit;
-    out.value(drive) = best.value(k);
+    unit = robot.description().kind_of_drive(drive) == DriveKind::revolute ? "N m" : "N";
+    offset(drive) = best.value(k);
     const bool last = k + 1 == best.value.size();
     sizes +=
         fmt::format("{}{:+.4g} +- {:.2g} {}", k == 0 ? "" : (last ? " and " : ", "), best.value(k), best.std(k), unit);
   }
-  f.text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
-                       drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual);
-  f.mend =
-      "if the zero of the sensor or amplifier is off, fit it (delta-identify --offset) or take it out (delta-log "
-      "import: offset "
-      "in "
-      "the map); friction that differs by direction looks alike, and so does a hose if all drives are off: "
-      "delta-diagnose names "
-      "them";
-  return out;
+  return TorqueOffset{
+      {.level = FindingLevel::warning,
+       .key = "torque_offset",
+       .drive = best.drives.size() == 1 ? best.drives.front() : -1,
+       .value = best.value(0),
+       .std = best.std(0),
+       .unit = unit,
+       .text = fmt::format("the torque of {} has an offset of {}: residual {:.2g} % as given, {:.2g} % without it",
+                           drives_in_words(best.drives, robot.drives()), sizes, 100 * as_given, 100 * best.residual),
+       .mend = "if the zero of the sensor or amplifier is off, fit it (delta-identify --offset) or take it out "
+               "(delta-log import: offset in the map); friction that differs by direction looks alike, and so does a "
+               "hose if all drives are off: delta-diagnose names them"},
+      offset};
 }
 
 }  // namespace deltadyn::gate

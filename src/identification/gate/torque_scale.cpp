@@ -31,10 +31,8 @@ std::optional<Estimate> estimate(const Robot& robot, const BaseParameters& base,
   Index total = 0;
   for (int j = 0; j < n; ++j) {
     const DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
-    Eigen::VectorXd one(drive.count());
-    for (Index k = 0; k < drive.count(); ++k) one(k) = points.tau(drive.at[static_cast<std::size_t>(k)].point, j);
-    weight(j) = static_cast<double>(one.size()) / std::max(one.squaredNorm(), 1e-300);
-    tau.push_back(std::move(one));
+    tau.emplace_back(drive.of_points(points.tau.col(j)));
+    weight(j) = static_cast<double>(drive.count()) / std::max(tau.back().squaredNorm(), 1e-300);
     total += drive.count();
   }
   if (total < 3 * B) return std::nullopt;

@@ -7,8 +7,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "torque_form.hpp"
-
 namespace deltadyn::gate {
 
 struct Ratio {

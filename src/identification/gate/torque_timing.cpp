@@ -10,8 +10,6 @@ namespace deltadyn::gate {
 
 namespace {
 
-using Eigen::Index;
-
 constexpr double kLongestLag_s = 0.02;
 constexpr double kSigmas = 4.5;  // a delay within this many of its standard deviations is chance
 constexpr double kWorth = 25.0;  // fall of chi^2 that pays for a further parameter: five standard deviations
@@ -36,12 +34,6 @@ bool stands_out(const Solution& s, double least) {
 Solution fit(const TimingProblem& problem, bool delay, const std::function<int(int, int)>& group, double start) {
   const Freedom f = freedom(problem.logs(), problem.drives(), delay, !delay, group);
   return problem.solve(f, Eigen::VectorXd::Constant(f.parameters, start));
-}
-
-std::pair<double, double> curvature_of(const TimingProblem& problem, const Solution& s) {
-  Eigen::MatrixXd delay, lag;
-  problem.expand(s, delay, lag);
-  return problem.curvature(delay, lag);
 }
 
 /// Does the delay differ from drive to drive, or from log to log? Then that solution, else `common`.
@@ -76,8 +68,8 @@ Solution choose(const TimingProblem& problem, double start, double least) {
   const Solution none = problem.solve(freedom(problem.logs(), problem.drives(), false, false, same), Eigen::VectorXd());
   const Solution delay = fit(problem, true, same, start);
   const Solution lag = fit(problem, false, same, std::clamp(delay.theta(0), -kLongestLag_s, kLongestLag_s));
-  const auto [bend_delay, std_delay] = curvature_of(problem, delay);
-  const auto [bend_lag, std_lag] = curvature_of(problem, lag);
+  const auto [bend_delay, std_delay] = problem.curvature(problem.expand(delay.free, delay.theta));
+  const auto [bend_lag, std_lag] = problem.curvature(problem.expand(lag.free, lag.theta));
   const double off_delay = std::abs(bend_delay) / std_delay, off_lag = std::abs(bend_lag) / std_lag;
   // A delay is the simpler one: it must clearly fail before a lag takes its place.
   const bool is_delay = !lag.converged || off_delay <= std::max(off_lag, kFails);
@@ -102,32 +94,27 @@ Solution choose(const TimingProblem& problem, double start, double least) {
 Timing estimate_timing(const Sample& sample, const Rows& rows, const std::vector<double>& least_s) {
   Timing out;
   TimingProblem problem(sample, rows, static_cast<int>(least_s.size()));
-  const auto logs = static_cast<Index>(least_s.size());
-  const auto drives = static_cast<Index>(rows.drives.size());
-  for (Eigen::MatrixXd* m : {&out.delay_s, &out.lag_s, &out.delay_std, &out.lag_std}) m->setZero(logs, drives);
+  out.shift = out.std = problem.all_alike(0);
   if (!problem.solvable()) return out;
   const double start = problem.prepare();
   const double least = *std::max_element(least_s.begin(), least_s.end());
   const Solution best = choose(problem, start, least);
-  out.rms_before = problem.relative_rms(out.delay_s, out.lag_s);
+  out.rms_before = problem.relative_rms(out.shift);
   if (best.free.parameters == 0) {
-    out.delay_std.setConstant(best.std.size() > 0 ? best.std(0) : 0.0);
+    out.std.delay.setConstant(best.std.size() > 0 ? best.std(0) : 0.0);
     out.rms_after = out.rms_before;
     return out;
   }
-  problem.expand(best, out.delay_s, out.lag_s);
-  problem.expand_std(best, out.delay_std, out.lag_std);
-  out.significant = true;
+  out.shift = problem.expand(best.free, best.theta);
+  out.std = problem.expand(best.free, best.std);
   // Drives whose own share is within chance, or too small to matter, keep their torque as it is.
-  for (Index l = 0; l < logs; ++l) {
-    for (Index j = 0; j < drives; ++j) {
-      const double floor = least_s[static_cast<std::size_t>(l)];
-      if (std::abs(out.delay_s(l, j)) < std::max(kSigmas * out.delay_std(l, j), floor)) out.delay_s(l, j) = 0;
-      if (std::abs(out.lag_s(l, j)) < std::max(kSigmas * out.lag_std(l, j), floor)) out.lag_s(l, j) = 0;
-    }
+  const Eigen::ArrayXXd floor =
+      Eigen::Map<const Eigen::ArrayXd>(least_s.data(), std::ssize(least_s)).replicate(1, problem.drives());
+  for (const auto& [value, std] : {std::pair(&out.shift.delay, &out.std.delay), {&out.shift.lag, &out.std.lag}}) {
+    *value = (value->array().abs() < (kSigmas * std->array()).max(floor)).select(0, *value);
   }
-  out.significant = out.delay_s.cwiseAbs().maxCoeff() > 0 || out.lag_s.cwiseAbs().maxCoeff() > 0;
-  out.rms_after = problem.relative_rms(out.delay_s, out.lag_s);
+  out.significant = !out.shift.delay.isZero(0) || !out.shift.lag.isZero(0);
+  out.rms_after = problem.relative_rms(out.shift);
   return out;
 }
 
@@ -141,11 +128,8 @@ LogDelays delays_of_logs(const Sample& sample, const Rows& rows, int logs) {
   Solution own = fit(
       problem, true, [](int l, int) { return l; }, common.theta(0));
   if (!own.converged) return out;
-  Eigen::MatrixXd delay, lag;
-  problem.expand(common, delay, lag);
-  out.rms_before = problem.relative_rms(delay, lag);
-  problem.expand(own, delay, lag);
-  out.rms_after = problem.relative_rms(delay, lag);
+  out.rms_before = problem.relative_rms(problem.expand(common.free, common.theta));
+  out.rms_after = problem.relative_rms(problem.expand(own.free, own.theta));
   out.delay_s = own.theta;
   return out;
 }

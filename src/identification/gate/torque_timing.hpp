@@ -12,12 +12,15 @@
 
 namespace deltadyn::gate {
 
-/// Delay and time constant of each drive's torque; one row a log.
-struct Timing {
-  Eigen::MatrixXd delay_s;  ///< logs x drives; positive: the torque comes late
+/// Delay and time constant of each drive's torque, logs x drives [s].
+struct Shifts {
+  Eigen::MatrixXd delay;  ///< positive: the torque comes late
   /// Time constant of a low pass: positive, the record is behind it; negative, the motor (a command was recorded).
-  Eigen::MatrixXd lag_s;
-  Eigen::MatrixXd delay_std, lag_std;
+  Eigen::MatrixXd lag;
+};
+
+struct Timing {
+  Shifts shift, std;
   bool significant = false;              ///< anything to remove at all
   double rms_before = 0, rms_after = 0;  ///< relative residual of the base parameters: as recorded, and moved back
 };

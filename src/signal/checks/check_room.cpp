@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSmallestTravelRad = 0.01;  // less is not a motion
 constexpr double kSmallestTravelM = 0.001;
+constexpr double kLongestFilled_s = 0.004;  // as many missing samples as fit into it are filled in
 
 }  // namespace
 
@@ -27,8 +28,7 @@ std::vector<Channel> CheckRoom::channels() const {
 }
 
 Index CheckRoom::longest_filled(double step_s) const {
-  const auto in_time = static_cast<Index>(options.max_filled_gap_s / std::max(step_s, 1e-9));
-  return std::max<Index>(options.max_filled_gap, in_time);
+  return std::max<Index>(kLongestFilledRows, static_cast<Index>(kLongestFilled_s / std::max(step_s, 1e-9)));
 }
 
 std::string CheckRoom::where(Index sample, const std::string& column) const {
@@ -65,11 +65,6 @@ void CheckRoom::mark_filled(Index sample, char mark) const {
   log.filled.resize(static_cast<std::size_t>(log.samples()), Log::kMeasured);
   char& flag = log.filled[static_cast<std::size_t>(sample)];
   if (flag != Log::kLeftOut) flag = mark;
-}
-
-void CheckRoom::leave_torque_out(Index drive, Index begin, Index end) const {
-  if (log.torque_out.size() == 0) log.torque_out.setConstant(log.samples(), log.drives(), false);
-  log.torque_out.col(drive).segment(begin, end - begin).setConstant(true);
 }
 
 double CheckRoom::travel(Index drive, Index begin, Index end) const {

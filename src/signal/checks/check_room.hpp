@@ -19,6 +19,10 @@ namespace deltadyn::checks {
 
 using Eigen::Index;
 
+inline constexpr int kLongestFilledRows = 3;        ///< longest run of missing samples that is filled in, however slow
+inline constexpr Index kFewestSamples = 50;         ///< shorter logs are refused
+inline constexpr double kShortestDuration_s = 0.5;  ///< shorter logs are refused
+
 /// One column of the log.
 struct Channel {
   Eigen::MatrixXd* block;
@@ -63,8 +67,6 @@ struct CheckRoom {
             double value, const std::string& unit, const std::string& sentence, const std::string& mend = {}) const;
   /// Marks a sample whose values were made up; Log::kBridged never takes back Log::kLeftOut.
   void mark_filled(Index sample, char mark) const;
-  /// Marks samples [begin, end) whose torque of one drive is no evidence.
-  void leave_torque_out(Index drive, Index begin, Index end) const;
   [[nodiscard]] bool turns(Index drive) const {
     return robot.kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute;
   }

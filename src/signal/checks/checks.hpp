@@ -10,7 +10,6 @@
 namespace deltadyn::checks {
 
 // --- on the rows as they are in the file
-// -----------------------------------------------------------------------------------
 void check_counts(CheckRoom& room);            ///< one value a drive and sample
 void refuse_missing_numbers(CheckRoom& room);  ///< a table of poses has nothing to fill from
 void check_length(CheckRoom& room);
@@ -23,7 +22,6 @@ void measure_channels(CheckRoom& room);       ///< quantisation step, noise, tra
 std::vector<Log> split(CheckRoom& room);      ///< at long gaps and where another recording begins
 
 // --- on each stretch without long gaps
-// -------------------------------------------------------------------------------------
 void put_on_grid(CheckRoom& room);         ///< even steps of time; lost rows become missing numbers
 Index fresh_phase(const CheckRoom& room);  ///< first row in which the slowest stale channel was measured
 void fill_missing_numbers(CheckRoom& room);

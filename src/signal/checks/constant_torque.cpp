@@ -75,9 +75,9 @@ std::vector<Run> runs_of(const CheckRoom& room, Index d) {
   const double highest = tau.maxCoeff(), lowest = tau.minCoeff();
   const auto is_chance_or_limit = [&](Run& run) {
     const auto length = static_cast<double>(run.end - run.begin);
-    Index rest = 0;
-    for (Index i = run.begin; i < run.end && log.torque_out.size() > 0; ++i) rest += log.torque_out(i, d) ? 1 : 0;
-    run.resting = static_cast<double>(rest) > 0.9 * length;
+    run.resting =
+        log.torque_out.size() > 0 &&
+        static_cast<double>(log.torque_out.col(d).segment(run.begin, run.end - run.begin).count()) > 0.9 * length;
     // Without noise a drive at rest needs a constant torque.
     if (run.resting && (coarse || noise_free)) return true;
     if (coarse && length < kCoarseRuns * usual_run) return true;
@@ -132,7 +132,7 @@ void check_constant_torque(CheckRoom& room) {
     }
     std::vector<std::string> columns;
     for (const Run& run : together) {
-      room.leave_torque_out(run.drive, run.begin, run.end);
+      room.log.leave_torque_out(run.drive, run.begin, run.end);
       begin = std::min(begin, run.begin);
       end = std::max(end, run.end);
       columns.push_back(

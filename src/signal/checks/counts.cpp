@@ -40,13 +40,12 @@ void check_length(CheckRoom& room) {
   const Log& log = room.log;
   const Index n = log.samples();
   const double duration = n < 2 ? 0.0 : log.t_s(n - 1) - log.t_s(0);
-  if (n < room.options.min_samples ||
-      (std::isfinite(duration) && duration >= 0 && duration < room.options.min_duration_s)) {
+  if (n < kFewestSamples || (std::isfinite(duration) && duration >= 0 && duration < kShortestDuration_s)) {
     throw UnusablePart(
         fmt::format("the log is too short: {} samples, {:.4g} s", n, std::isfinite(duration) ? duration : 0.0),
         log.file,
         fmt::format("record at least {} samples and {:.4g} s; to identify a robot, some seconds of varied motion",
-                    room.options.min_samples, room.options.min_duration_s));
+                    kFewestSamples, kShortestDuration_s));
   }
 }
 

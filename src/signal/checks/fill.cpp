@@ -4,16 +4,17 @@
 /// measured.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deltadyn/signal/resample.hpp"
+
 #include "checks.hpp"
+#include "sample_stretches.hpp"
 
 namespace deltadyn::checks {
 namespace {
 
-constexpr int kMostKnots = 6;
 /// Errors of filling up to this many times the noise: three measured neighbours on either side leave 1.5 times for one
 /// sample and 2.4 times for three, the noise of the value it is compared with included. The filters average over tens
 /// of samples, so that one such sample widens a row's error by less than half.
@@ -22,53 +23,28 @@ constexpr double kNoiseRatio = 3.0;
 /// is below 1e-4 of the acceleration.
 constexpr double kShareOfPositions = 1e-6;
 constexpr double kShareOfTorques = 1e-3;
-constexpr Index kEachColumn = 2;  // columns that are named one by one
+constexpr Index kEachColumn = 2;     // columns that are named one by one
+constexpr double kMostFilled = 0.3;  // of the samples that may be missing or spoilt
 
 struct Knots {
-  std::array<double, kMostKnots> t{};
-  std::array<double, kMostKnots> v{};
-  int count = 0;
+  Eigen::VectorXd t, v;
 
-  void add(double time, double value) {
-    t[static_cast<std::size_t>(count)] = time;
-    v[static_cast<std::size_t>(count++)] = value;
-  }
-  /// The polynomial through all knots.
-  [[nodiscard]] double at(double time) const {
-    double sum = 0;
-    for (int i = 0; i < count; ++i) {
-      const auto a = static_cast<std::size_t>(i);
-      double weight = 1;
-      for (int j = 0; j < count; ++j) {
-        const auto b = static_cast<std::size_t>(j);
-        if (j != i) weight *= (time - t[b]) / (t[a] - t[b]);
-      }
-      sum += weight * v[a];
-    }
-    return sum;
-  }
+  [[nodiscard]] double at(double time) const { return interpolate(t, v, time); }
 };
 
 /// The known values nearest to [begin, end) on either side.
 template <class Values>
 Knots knots_around(const Values& values, const Eigen::VectorXd& t_s, Index begin, Index end, int each_side) {
-  std::array<Index, kMostKnots / 2> before{};
-  int found = 0;
-  for (Index k = begin - 1; k >= 0 && found < each_side; --k) {
-    if (std::isfinite(values(k))) before[static_cast<std::size_t>(found++)] = k;
+  std::vector<Index> rows;
+  for (Index k = begin - 1; k >= 0 && std::ssize(rows) < each_side; --k) {
+    if (std::isfinite(values(k))) rows.push_back(k);
   }
-  Knots knots;
-  for (int i = found; i-- > 0;) {
-    const Index k = before[static_cast<std::size_t>(i)];
-    knots.add(t_s(k), values(k));
+  std::ranges::reverse(rows);
+  const auto wanted = std::ssize(rows) + each_side;
+  for (Index k = end; k < values.size() && std::ssize(rows) < wanted; ++k) {
+    if (std::isfinite(values(k))) rows.push_back(k);
   }
-  int behind = 0;
-  for (Index k = end; k < values.size() && behind < each_side; ++k) {
-    if (!std::isfinite(values(k))) continue;
-    knots.add(t_s(k), values(k));
-    ++behind;
-  }
-  return knots;
+  return {t_s(rows), values(rows)};
 }
 
 /// Fills the missing numbers of one channel.
@@ -86,18 +62,13 @@ class Filler {
 
   void fill() {
     const auto values = channel_.values();
-    const Index n = values.size();
-    for (Index i = 0; i < n; ++i) {
-      Index end = i;
-      while (end < n && !std::isfinite(values(end))) ++end;
-      if (end == i) continue;
-      if (end - i == n) {
+    for_each_gap(values, [&](Index begin, Index end) {
+      if (end - begin == values.size()) {
         throw Error("the column holds no number", room_.where(0, channel_.name),
                     "record this drive, or give the column that holds its values");
       }
-      fill_run(i, end);
-      i = end;
-    }
+      fill_run(begin, end);
+    });
   }
   /// Numbers that were missing in this channel alone.
   [[nodiscard]] const Tally& filled() const { return filled_; }
@@ -113,13 +84,13 @@ class Filler {
     for (Index k = begin; k < end; ++k) values(k) = knots.at(room_.log.t_s(k));
     if (stale_ > 1 && end - begin <= longest_) {
       // What was never measured is no loss; thinned out later. Only at the ends the update is missing.
-      if (long_run && channel_.block == &room_.log.tau) room_.leave_torque_out(channel_.drive, begin, end);
+      if (long_run && channel_.block == &room_.log.tau) room_.log.leave_torque_out(channel_.drive, begin, end);
       return;
     }
     const bool told =
         room_.log.is_filled(begin) || (!room_.log.line.empty() && room_.log.line[static_cast<std::size_t>(begin)] == 0);
     if (channel_.block == &room_.log.tau && long_run) {
-      room_.leave_torque_out(channel_.drive, begin, end);
+      room_.log.leave_torque_out(channel_.drive, begin, end);
     } else if (channel_.block == &room_.log.q || channel_.block == &room_.log.tau) {
       for (Index k = begin; k < end; ++k) room_.mark_filled(k, mark);
     }
@@ -224,7 +195,7 @@ void refuse_too_many_filled(CheckRoom& room) {
   const auto filled = std::ranges::count_if(log.filled, spoilt);
   const double share = static_cast<double>(filled) / static_cast<double>(log.samples());
   // One sample must be allowed in a log of any length.
-  if (share > room.options.max_filled_share && filled > room.options.max_filled_gap) {
+  if (share > kMostFilled && filled > kLongestFilledRows) {
     const auto first = std::ranges::find_if(log.filled, spoilt) - log.filled.begin();
     throw UnusablePart(fmt::format("{:.2g} % of the samples are missing or spoilt, the first one here", 100.0 * share),
                        room.where(first), "look for lost packets or a loose encoder cable, and record again");

@@ -16,9 +16,8 @@ namespace {
 constexpr double kLargestSampleTime = 0.2;   // s; slower sampling shows nothing of the dynamics
 constexpr double kUnevenShare = 0.1;         // of the steps away from the usual one: then a longer step is no lost row
 constexpr double kLongestUnevenStep = 0.03;  // s; within it a drive's motion is still a cubic
-constexpr double kShortParts[] = {4.0, 2.0,
-                                  // s; the shorter a part, the larger the share that the filters lose at its ends
-                                  1.0};
+// s; the shorter a part, the larger the share that the filters lose at its ends
+constexpr double kShortParts[] = {4.0, 2.0, 1.0};
 constexpr double kEnough = 0.8;  // of the recorded time has to stay in the parts that are used
 
 /// A longer step than this is a gap.
@@ -79,19 +78,14 @@ void drop_blind_rows(CheckRoom& room) {
   std::vector<char> blind(static_cast<std::size_t>(n), 0);
   std::vector<Tally> tallies(static_cast<std::size_t>(log.drives()));
   for (Index d = 0; d < log.drives(); ++d) {
-    const auto q = log.q.col(d);
     const int stale = room.stale_positions[static_cast<std::size_t>(d)];
     const Index longest = stale > 1 ? 3 * stale : room.longest_filled(usual);
-    for (Index i = 0; i < n;) {
-      Index end = i;
-      while (end < n && !std::isfinite(q(end))) ++end;
+    for_each_gap(log.q.col(d), [&](Index begin, Index end) {
       // At the ends there is nothing to fill from.
-      if (end > i && (end - i > longest || i == 0 || end == n)) {
-        std::fill(blind.begin() + i, blind.begin() + end, 1);
-        if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(i, end - i);
-      }
-      i = std::max(end, i + 1);
-    }
+      if (end - begin <= longest && begin != 0 && end != n) return;
+      std::fill(blind.begin() + begin, blind.begin() + end, 1);
+      if (stale <= 1) tallies[static_cast<std::size_t>(d)].add(begin, end - begin);
+    });
   }
   std::vector<Index> rows;
   std::vector<Index> recordings;
@@ -128,7 +122,7 @@ std::vector<Log> split(CheckRoom& room) {
     for (std::size_t k = 0; k + 1 < borders.size(); ++k) sum += seconds(k) >= least ? seconds(k) : 0.0;
     return sum;
   };
-  double shortest = room.options.min_duration_s;
+  double shortest = kShortestDuration_s;
   for (const double least : kShortParts) {
     if (least <= shortest || time_in_parts_of(least) < kEnough * time_in_parts_of(0)) continue;
     shortest = least;
@@ -145,7 +139,7 @@ std::vector<Log> split(CheckRoom& room) {
   Tally dropped;
   for (std::size_t k = 0; k + 1 < borders.size(); ++k) {
     const Index samples = borders[k + 1] - borders[k];
-    if (samples < room.options.min_samples || seconds(k) < shortest) {
+    if (samples < kFewestSamples || seconds(k) < shortest) {
       dropped.add(borders[k]);
       continue;
     }

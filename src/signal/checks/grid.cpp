@@ -3,6 +3,7 @@
 /// were really taken at uneven times are moved.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -17,10 +18,12 @@ namespace deltadyn::checks {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTrueStamps = 0.8;    // the positions are clearly smoother over the stamps than over even steps
-constexpr double kEvenStep = 0.2;      // a step this share away from the usual one is still even
-constexpr double kSlightDrift = 5e-3;  // of the clock: rates are wrong by no more, whichever clock was right
-constexpr double kLongUneven = 2.5;    // usual steps; interpolation across more is no measurement
+constexpr double kStampJitter = 0.02;      // up to this share of the sample time, stamps are set to the even grid
+constexpr double kResampledJitter = 0.45;  // up to this share, the log is resampled onto the even grid
+constexpr double kTrueStamps = 0.8;        // the positions are clearly smoother over the stamps than over even steps
+constexpr double kEvenStep = 0.2;          // a step this share away from the usual one is still even
+constexpr double kSlightDrift = 5e-3;      // of the clock: rates are wrong by no more, whichever clock was right
+constexpr double kLongUneven = 2.5;        // usual steps; interpolation across more is no measurement
 
 /// Median distance of the positions from the cubic through four neighbours, over the stamps divided by over even steps.
 double roughness_over_stamps(const Log& log, const TimeGrid& grid) {
@@ -35,10 +38,9 @@ double roughness_over_stamps(const Log& log, const TimeGrid& grid) {
         if (grid.index[at + 2] - grid.index[at - 2] != 4) continue;
         const double by_rows = q(i) - (4.0 * (q(i - 1) + q(i + 1)) - (q(i - 2) + q(i + 2))) / 6.0;
         if (!std::isfinite(by_rows)) continue;
-        Eigen::Vector4d t(log.t_s(i - 2), log.t_s(i - 1), log.t_s(i + 1), log.t_s(i + 2));
-        const Eigen::Vector4d v(q(i - 2), q(i - 1), q(i + 1), q(i + 2));
+        const std::array around{i - 2, i - 1, i + 1, i + 2};
         even.push_back(std::abs(by_rows));
-        stamped.push_back(std::abs(q(i) - interpolate_cubic(t, v, log.t_s(i))));
+        stamped.push_back(std::abs(q(i) - interpolate(log.t_s(around), q(around), log.t_s(i))));
       }
     }
     const double by_rows = lower_median(std::move(even));
@@ -90,11 +92,11 @@ void say_uneven(const CheckRoom& room, const char* what_was_done) {
 void judge_stamps(CheckRoom& room) {
   TimeGrid& grid = room.grid;
   room.largest_jitter = std::max(room.largest_jitter, grid.jitter);
-  if (grid.jitter <= room.options.max_stamp_jitter) return;
+  if (grid.jitter <= kStampJitter) return;
   const Eigen::VectorXd& t = room.log.t_s;
   const double drift = drift_of(grid, t);
   const bool locally_even = uneven_share(grid, t) < 0.05;
-  if (grid.jitter > room.options.max_resampled_jitter && locally_even) {
+  if (grid.jitter > kResampledJitter && locally_even) {
     room.resample = drift > kSlightDrift;
     room.tell(drift > kSlightDrift ? FindingLevel::warning : FindingLevel::mended, "clock_drift", grid.worst, "t_s", -1,
               drift, "",
@@ -109,7 +111,7 @@ void judge_stamps(CheckRoom& room) {
     say_uneven(room, "the positions are smoother over even steps, so the samples were taken evenly: set to even steps");
     return;
   }
-  if (grid.jitter > room.options.max_resampled_jitter) {
+  if (grid.jitter > kResampledJitter) {
     // No row has a place of its own on an even grid: all rows stay, and the grid comes with the resampling.
     for (std::size_t i = 0; i < grid.index.size(); ++i) grid.index[i] = static_cast<Index>(i);
   }
@@ -198,7 +200,7 @@ void move_to_grid(CheckRoom& room) {
   Log& log = room.log;
   const Index n = log.samples();
   Index wanted = n;
-  if (room.grid.jitter > room.options.max_resampled_jitter) {
+  if (room.grid.jitter > kResampledJitter) {
     room.grid.start_s = log.t_s(0);
     wanted = static_cast<Index>(std::floor((log.t_s(n - 1) - log.t_s(0)) / room.grid.step_s + 1e-9)) + 1;
   }

@@ -76,7 +76,7 @@ void leave_rest_out(CheckRoom& room) {
       begin = std::max(begin, done);
       done = end;
       if (end - begin < shortest) continue;
-      room.leave_torque_out(d, begin, end);
+      room.log.leave_torque_out(d, begin, end);
       resting += end - begin;
     }
     all += resting;

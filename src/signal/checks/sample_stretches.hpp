@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,18 @@ void for_each_run(const Values& values, Each each) {
     end = begin + 1;
     while (end < values.size() && values(end) == values(begin)) ++end;
     each(begin, end);
+  }
+}
+
+/// Calls each(begin, end) for the runs of missing numbers.
+template <class Values, class Each>
+void for_each_gap(const Values& values, Each each) {
+  for (Eigen::Index begin = 0; begin < values.size(); ++begin) {
+    Eigen::Index end = begin;
+    while (end < values.size() && !std::isfinite(values(end))) ++end;
+    if (end == begin) continue;
+    each(begin, end);
+    begin = end;
   }
 }
 

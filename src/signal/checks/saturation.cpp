@@ -12,9 +12,12 @@
 namespace deltadyn::checks {
 namespace {
 
-constexpr Index kShortestRun = 3;    // equal values in a row at the level
-constexpr Index kFewestClipped = 6;  // rows; fewer are chance
-constexpr Index kMostBeyond = 3;     // rows beyond a level that is still the level of a cut: spikes
+constexpr double kMostCutOff = 0.05;  // of samples where the torque is cut off; fewer are only left out of fits
+constexpr Index kShortestRun = 3;     // equal values in a row at the level
+constexpr Index kFewestClipped = 6;   // rows; fewer are chance
+constexpr Index kMostBeyond = 3;      // rows beyond a level that is still the level of a cut: spikes
+
+using Flags = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 /// The rows of one drive at a level where its torque is cut off.
 struct Cut {
@@ -32,11 +35,9 @@ bool is_rounded_top(const Eigen::Ref<const Eigen::VectorXd>& tau, const Cut& cut
 
 /// Runs of at least kShortestRun equal values at the extreme of one sign. A few single samples beyond it are taken for
 /// spikes.
-Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const std::vector<char>& out, double step, double sign) {
+Cut cut_of(const Eigen::Ref<const Eigen::VectorXd>& tau, const Flags& out, double step, double sign) {
   Cut best;
-  const auto counts = [&](Index begin, Index end) {
-    return end - begin >= kShortestRun && out[static_cast<std::size_t>(begin)] == 0;
-  };
+  const auto counts = [&](Index begin, Index end) { return end - begin >= kShortestRun && !out(begin); };
   // The extreme among values that occur in runs.
   bool any = false;
   for_each_run(tau, [&](Index begin, Index end) {
@@ -67,9 +68,8 @@ void check_saturation(CheckRoom& room) {
     const std::string column = drive_columns(room.robot, static_cast<int>(d)).tau;
     if (tau.maxCoeff() == tau.minCoeff()) continue;
     // A servo that is off also repeats a value; it was found before.
-    std::vector<char> out(static_cast<std::size_t>(n), 0);
-    for (Index i = 0; i < n && log.torque_out.size() > 0; ++i)
-      out[static_cast<std::size_t>(i)] = log.torque_out(i, d) ? 1 : 0;
+    Flags out = Flags::Constant(n, false);
+    if (log.torque_out.size() > 0) out = log.torque_out.col(d);
     const double step = measure_channel(tau).step;
     const Cut above = cut_of(tau, out, step, 1.0);
     const Cut below = cut_of(tau, out, step, -1.0);
@@ -77,21 +77,20 @@ void check_saturation(CheckRoom& room) {
     std::ranges::merge(above.rows, below.rows, std::back_inserter(rows));
     const auto clipped = static_cast<Index>(rows.size());
     // Where the other values repeat too, equality means nothing.
-    Index repeats = 0;
-    for (Index i = 1; i < n; ++i) repeats += tau(i) == tau(i - 1) && out[static_cast<std::size_t>(i)] == 0 ? 1 : 0;
+    const Index repeats = (tau.tail(n - 1).array() == tau.head(n - 1).array() && !out.tail(n - 1)).count();
     const Index repeated_elsewhere = std::max<Index>(0, repeats - clipped);
     if (clipped < kFewestClipped || repeated_elsewhere > (n - clipped) / 5) continue;
     const double share = static_cast<double>(clipped) / static_cast<double>(n);
     const std::string levels = above.rows.empty()   ? fmt::format("{:.9g}", below.level)
                                : below.rows.empty() ? fmt::format("{:.9g}", above.level)
                                                     : fmt::format("{:.9g} or {:.9g}", below.level, above.level);
-    if (share > room.options.max_saturated_share) {
+    if (share > kMostCutOff) {
       throw Error(
           fmt::format("the torque is at its extreme ({}) in {:.2g} % of the samples, the first one here: it is cut off",
                       levels, 100.0 * share),
           room.where(rows.front(), column), "record a gentler motion, or widen the range of the recorder");
     }
-    for (const Index i : rows) room.leave_torque_out(d, i, i + 1);
+    for (const Index i : rows) room.log.leave_torque_out(d, i, i + 1);
     room.tell(FindingLevel::mended, "torque_cut_off", rows.front(), column, static_cast<int>(d),
               static_cast<double>(clipped), "rows",
               fmt::format("the torque is cut off at {} from here on in {} samples, left out of fits", levels, clipped));

@@ -13,6 +13,7 @@
 namespace deltadyn::checks {
 namespace {
 
+constexpr double kOutlier = 30.0;     // times farther from the cubic through its neighbours than usual
 constexpr double kRounding = 1e-9;    // of the value: what the digits of a file leave of a constant
 constexpr Index kWindow = 25;         // samples on either side that tell what is usual here
 constexpr double kManySpikes = 0.01;  // of the samples: then the recording itself is in doubt
@@ -35,13 +36,12 @@ class SpikeSearch {
   SpikeSearch(CheckRoom& room, const Channel& channel)
       : room_(room), channel_(channel), values_(channel.values()), largest_(values_.cwiseAbs().maxCoeff()) {
     const Index n = values_.size();
-    size_.assign(static_cast<std::size_t>(n), 0.0);
-    for (Index i = 2; i + 2 < n; ++i) size_[static_cast<std::size_t>(i)] = std::abs(surprise(values_, i));
+    size_.setZero(n);
+    for (Index i = 2; i + 2 < n; ++i) size_(i) = std::abs(surprise(values_, i));
     std::vector<double> moving;
     for (const auto& [begin, end] : sample_stretches(n, 512)) {
       for (Index i = begin; i < end; ++i) {
-        const double s = size_[static_cast<std::size_t>(i)];
-        if (s > kRounding * largest_) moving.push_back(s);
+        if (size_(i) > kRounding * largest_) moving.push_back(size_(i));
       }
     }
     usual_ = lower_median(std::move(moving));
@@ -49,11 +49,11 @@ class SpikeSearch {
 
   void run() {
     const Index n = values_.size();
-    const double floor = std::max(room_.options.outlier_ratio * usual_, 1e-12 * largest_);
+    const double floor = std::max(kOutlier * usual_, 1e-12 * largest_);
     for (Index i = 2; i + 2 < n; ++i) {
-      if (at(i) <= floor || !is_peak(i)) continue;
+      if (size_(i) <= floor || !is_peak(i)) continue;
       const double nearby = largest_nearby(i, 3);
-      if (at(i) > room_.options.outlier_ratio * nearby / 5.0) {
+      if (size_(i) > kOutlier * nearby / 5.0) {
         if (replaced_leaves_little(i, nearby)) {
           replace(i, i + 1);
           continue;
@@ -68,19 +68,13 @@ class SpikeSearch {
   [[nodiscard]] double first_value() const { return first_value_; }
 
  private:
-  [[nodiscard]] double at(Index i) const { return size_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] bool is_peak(Index i) const {
-    for (Index k = i - 2; k <= i + 2; ++k) {
-      if (at(k) > at(i)) return false;
-    }
-    return true;
-  }
+  [[nodiscard]] bool is_peak(Index i) const { return size_.segment(i - 2, 5).maxCoeff() <= size_(i); }
 
   /// Largest surprise around sample i, without those within `apart`, which what is at i causes itself.
   [[nodiscard]] double largest_nearby(Index i, Index apart) const {
     double largest = 0;
     for (Index k = std::max<Index>(2, i - kWindow); k <= std::min(values_.size() - 3, i + kWindow); ++k) {
-      if (std::abs(k - i) > apart) largest = std::max(largest, at(k));
+      if (std::abs(k - i) > apart) largest = std::max(largest, size_(k));
     }
     return largest;
   }
@@ -95,7 +89,7 @@ class SpikeSearch {
     for (Index k = std::max<Index>(2, centre - 2); k <= std::min(mended.size() - 3, centre + 2); ++k) {
       left = std::max(left, std::abs(surprise(mended, k)));
     }
-    return left < 0.1 * at(i) + nearby;
+    return left < 0.1 * size_(i) + nearby;
   }
 
   /// End of a spike of several samples around i: all of them far from the line across, which itself is smooth; i if
@@ -114,7 +108,7 @@ class SpikeSearch {
         double least = 1e300;
         for (Index k = begin; k < end; ++k)
           least = std::min(least, std::abs(values_(k) - bridge(values_, begin, end, k)));
-        if (least < 8.0 * around || least < room_.options.outlier_ratio * usual_) continue;
+        if (least < 8.0 * around || least < kOutlier * usual_) continue;
         i = begin;
         return end;
       }
@@ -149,9 +143,8 @@ class SpikeSearch {
       for (Index k = begin; k < end; ++k) column(k) = bridge(values_, begin, end, k);
     }
     values_.segment(begin, end - begin) = column.segment(begin, end - begin);
-    for (Index k = std::max<Index>(2, begin - 2); k <= std::min(values_.size() - 3, end + 1); ++k) {
-      size_[static_cast<std::size_t>(k)] = std::abs(surprise(values_, k));
-    }
+    for (Index k = std::max<Index>(2, begin - 2); k <= std::min(values_.size() - 3, end + 1); ++k)
+      size_(k) = std::abs(surprise(values_, k));
     for (Index k = begin; k < end; ++k) room_.mark_filled(k, end - begin == 1 ? Log::kBridged : Log::kLeftOut);
   }
 
@@ -161,7 +154,7 @@ class SpikeSearch {
   double largest_;
   double usual_ = 0;
   double first_value_ = 0;
-  std::vector<double> size_;
+  Eigen::VectorXd size_;
   Tally spikes_;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <utility>
 
 #include "deltadyn/runtime/statistics.hpp"
 
@@ -95,12 +94,9 @@ bool mend_coarse_clock(CheckRoom& room) {
             log.t_s(repeated.first), repeated.count - 1),
         room.where(repeated.first, "t_s"), "write one row a sample, with all channels in it");
   }
-  double off = 0;
+  const Eigen::ArrayXd row = Eigen::ArrayXd::LinSpaced(n, 0, static_cast<double>(n - 1));
   Index worst = 0;
-  for (Index i = 0; i < n; ++i) {
-    const double distance = std::abs(log.t_s(i) - log.t_s(0) - step * static_cast<double>(i));
-    if (distance > off) std::tie(off, worst) = std::pair(distance, i);
-  }
+  const double off = (log.t_s.array() - log.t_s(0) - step * row).abs().maxCoeff(&worst);
   // Even rows stay within one tick of the clock; more means lost rows, whose place the stamps no longer tell.
   if (off > 1.5 * coarse + step) {
     throw Error(

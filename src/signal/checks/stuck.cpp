@@ -15,6 +15,13 @@
 namespace deltadyn::checks {
 namespace {
 
+constexpr double kStuck_s = 0.1;  // a position constant for longer while it should move is a stuck encoder
+
+/// Rows of a position that is constant for too long.
+Index shortest_hold(double step_s) {
+  return std::max<Index>(5, static_cast<Index>(std::lround(kStuck_s / step_s)));
+}
+
 /// All other limb drives travel far while this one rests: the closed loops of a Delta make that a rare motion.
 bool others_move(const CheckRoom& room, Index drive, Index begin, Index end) {
   const auto limbs = static_cast<Index>(room.robot.limbs.size());
@@ -72,7 +79,7 @@ void find_frozen_positions(CheckRoom& room) {
   const Index n = log.samples(), drives = log.drives();
   if (log.tau.size() == 0 || n < 10 || drives < 2) return;  // of a single drive it may be the encoder
   const double step_s = (log.t_s(n - 1) - log.t_s(0)) / static_cast<double>(n - 1);
-  const auto shortest = std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / step_s)));
+  const Index shortest = shortest_hold(step_s);
   std::vector<Usual> usual;
   Tally tally;
   for (Index begin = 0, end = 0; begin < n; begin = end) {
@@ -120,8 +127,7 @@ void check_excitation(CheckRoom& room) {
 
 void check_stuck(CheckRoom& room) {
   const Log& log = room.log;
-  const auto shortest =
-      std::max<Index>(5, static_cast<Index>(std::lround(room.options.stuck_time_s / log.sample_time_s())));
+  const Index shortest = shortest_hold(log.sample_time_s());
   for (Index d = 0; d < log.drives(); ++d) {
     const auto q = log.q.col(d);
     const Usual usual = usual_of(q);

@@ -43,7 +43,7 @@ void thin_to_fresh_rows(CheckRoom& room) {
   for (Index i = phase; i < log.samples(); i += factor) {
     if (i >= half && i + half < log.samples()) rows.push_back(i);
   }
-  if (static_cast<Index>(rows.size()) < room.options.min_samples) {
+  if (static_cast<Index>(rows.size()) < kFewestSamples) {
     throw UnusablePart(
         fmt::format("a channel changes only every {} rows, which leaves {} samples", factor, rows.size()), log.file,
         "record at the rate at which the drives answer, for longer");
@@ -56,16 +56,13 @@ void thin_to_fresh_rows(CheckRoom& room) {
     for (Index d = 0; d < from->cols(); ++d) {
       if ((*stale)[static_cast<std::size_t>(d)] > 1) continue;
       Eigen::MatrixXd out(static_cast<Index>(rows.size()), 1);
-      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), 0,
-                     out.rows(), out);
+      low_pass.apply(from->col(d).segment(rows.front() - half, rows.back() - rows.front() + 2 * half + 1), out);
       to->col(d) = out;
     }
   }
   // A spoilt sample spoils the rows that average over it.
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (Index i = rows[k] - half; i <= rows[k] + half && !log.filled.empty(); ++i) {
-      if (log.is_left_out(i)) thin.filled[k] = Log::kLeftOut;
-    }
+    if (log.any_left_out(rows[k] - half, 2 * half + 1)) thin.filled[k] = Log::kLeftOut;
     if (log.torque_out.size() > 0) {
       thin.torque_out.row(static_cast<Index>(k)) =
           log.torque_out.middleRows(rows[k] - half, 2 * half + 1).colwise().any();
