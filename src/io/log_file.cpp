@@ -195,15 +195,9 @@ std::vector<std::string> positions_beyond(const CsvReader& reader, int drives) {
 
 /// Whether the header is one of these tools' logs: t_s and a position, separated by commas.
 bool is_contract_header(std::string_view line) {
-  bool time = false, position = false;
-  for (;;) {
-    const auto comma = line.find(',');
-    const std::string_view name = forms::trimmed(line.substr(0, comma));
-    time = time || name == "t_s";
-    position = position || is_position_name(name);
-    if (comma == std::string_view::npos) return time && position;
-    line.remove_prefix(comma + 1);
-  }
+  std::vector<std::string_view> names;
+  forms::split_at_commas(line, names);
+  return std::ranges::find(names, "t_s") != names.end() && std::ranges::any_of(names, is_position_name);
 }
 
 /// Whether the columns that are needed have the names of the contract.

@@ -237,4 +237,14 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
   fields.push_back(trimmed(line));
 }
 
+void split_at_commas(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    const auto comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
+}
+
 }  // namespace deltadyn::forms

@@ -42,6 +42,9 @@ enum class Field { number, missing, date, text };
 /// \param exact  a blank as separator stands for itself, so that two of them have an empty field between them
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields, bool exact = false);
 
+/// The fields of a line of plain CSV, without blanks around them; there are no quotes.
+void split_at_commas(std::string_view line, std::vector<std::string_view>& fields);
+
 /// Lines of a text without their ends (LF, CR LF or CR alone); calls `each(line, number)`, number from 1, until it
 /// returns false. Returns whether the last line had an end.
 template <class Each>

@@ -18,6 +18,13 @@ struct TextFile {
   bool is_windows_1252 = false;  ///< it was in Windows-1252
 };
 
+/// All of a file. Throws Error(bad_input): missing, unreadable, a folder.
+/// \param instead_of_folder  what to give instead, for the message
+[[nodiscard]] std::string read_bytes(const std::string& path, const char* instead_of_folder);
+
+/// Throws Error(bad_input) if there is a zero byte: no text has one.
+void refuse_zero_bytes(const std::string& path, std::string_view text);
+
 /// Reads a text file as UTF-8. Throws Error(bad_input): missing, a folder, empty, not a text.
 [[nodiscard]] TextFile read_text_file(const std::string& path);
 

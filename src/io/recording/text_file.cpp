@@ -53,12 +53,11 @@ constexpr BinaryForm kBinaryForms[] = {
     {"%PDF"sv, "a PDF", "give the recording itself, as CSV"},
 };
 
-std::string read_bytes(const std::string& path) {
+}  // namespace
+
+std::string read_bytes(const std::string& path, const char* instead_of_folder) {
   std::error_code failed;
-  if (std::filesystem::is_directory(path, failed)) {
-    throw Error("this is a folder, not a file", path,
-                "give the exported file, or the folder of a rosbag2 with its .db3 file");
-  }
+  if (std::filesystem::is_directory(path, failed)) throw Error("this is a folder, not a file", path, instead_of_folder);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file)
     throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path,
@@ -80,7 +79,10 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
-}  // namespace
+void refuse_zero_bytes(const std::string& path, std::string_view text) {
+  if (text.find('\0') != std::string_view::npos)
+    throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
+}
 
 void refuse_binary_form(const std::string& path, std::string_view head) {
   for (const BinaryForm& form : kBinaryForms) {
@@ -89,15 +91,13 @@ void refuse_binary_form(const std::string& path, std::string_view head) {
 }
 
 TextFile read_text_file(const std::string& path) {
-  TextFile file{path, read_bytes(path)};
+  TextFile file{path, read_bytes(path, "give the exported file, or the folder of a rosbag2 with its .db3 file")};
   if (file.text.empty()) throw Error("the file is empty", path, "check that the recording or its export is complete");
   refuse_binary_form(path, file.text);
   DecodedText decoded = decode_text(std::move(file.text));
   file.text = std::move(decoded.text);
   file.is_windows_1252 = decoded.is_windows_1252;
-  if (file.text.find('\0') != std::string::npos) {
-    throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
-  }
+  refuse_zero_bytes(path, file.text);
   return file;
 }
 
