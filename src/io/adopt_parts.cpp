@@ -208,12 +208,10 @@ class Finder {
   }
 
   [[nodiscard]] static std::optional<Vec> direction_of(const Strut& strut, const InertialVector<double>& p) {
-    const Vec c = p.segment<3>(inertial::kMcx) / p(0), arm = c - strut.elbow;
+    const robot_file::LinkInertial central = robot_file::central_inertial(p);
+    const Vec arm = central.X_LC.translation() - strut.elbow;
     if (arm.norm() < 10 * kPoint) return std::nullopt;
-    using namespace inertial;
-    Eigen::Matrix3d I;
-    I << p(kIxx), p(kIxy), p(kIxz), p(kIxy), p(kIyy), p(kIyz), p(kIxz), p(kIyz), p(kIzz);
-    I -= p(0) * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+    const Eigen::Matrix3d& I = central.I_C;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(I);
     // Where the tensor tells the rod's axis, it must be the line through the centre of mass: else that centre lies
     // beside the rod.

@@ -64,6 +64,9 @@ struct LinkInertial {
   [[nodiscard]] InertialVector<double> in_frame(const Pose& X_FL) const;
 };
 
+/// From the ten parameters of a body with mass, in the axes of its frame.
+[[nodiscard]] LinkInertial central_inertial(const InertialVector<double>& p);
+
 /// One `<drive>` of the `<deltadyn>` element; attributes as written.
 struct DriveNote {
   int line = 0;
