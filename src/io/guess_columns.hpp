@@ -3,6 +3,7 @@
 /// \file
 /// Which columns of a recording are the drives' positions and torques, from their names.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,6 @@ namespace deltadyn {
 
 /// What a guess could not decide, and how the user can.
 struct OpenQuestion {
-  Quantity quantity;
   std::string what, mend;
 };
 
@@ -30,8 +30,8 @@ struct OpenQuestion {
 /// sets of columns fit alike, a unit is not stated, or only commanded positions are there, nothing is added and the
 /// question returned.
 /// \param notes  where the order of the drives rests on more than plain names, it is said here
-[[nodiscard]] std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot,
-                                                       Quantity quantity, const MapDefaults& defaults, ColumnMap& map,
-                                                       std::vector<std::string>& notes);
+[[nodiscard]] std::optional<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot,
+                                                         Quantity quantity, const MapDefaults& defaults, ColumnMap& map,
+                                                         std::vector<std::string>& notes);
 
 }  // namespace deltadyn

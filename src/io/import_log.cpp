@@ -363,10 +363,8 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     if (nameless || map_.has(quantity)) continue;
     const bool needed = quantity == Quantity::position ||
                         (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
-    for (const OpenQuestion& question :
-         guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
-      if (needed) ask(question.what, question.mend);
-    }
+    const auto open = guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes);
+    if (open && needed) ask(open->what, open->mend);
     note_joints_beyond(quantity);
     const ChannelMap* guessed = map_.find(quantity, 1);
     if (guessed != nullptr && read_header_words(guessed->source, "").origin == Origin::commanded) {

@@ -12,6 +12,7 @@
 #include "common_grid.hpp"
 #include "guess_columns.hpp"
 #include "header_words.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -87,9 +88,8 @@ std::string LogImport::map_of_the_rest() const {
     if (!quantity) replace(fmt::format("\"{}\"", word_of(one.quantity)), "QUANTITY");
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
-    for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3))
-      lines.replace(at, 1, "\n# ");
-    text += "\n# " + lines + "\n" + fmt::format("{}", fmt::join(open_constants(one, kind), ""));
+    text += "\n# " + forms::with_each(lines, "\n", "\n# ") + "\n" +
+            fmt::format("{}", fmt::join(open_constants(one, kind), ""));
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY "
@@ -138,9 +138,7 @@ std::string LogImport::map_text() const {
     remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
   for (const Open& open : open_) {
     remarks.push_back("STILL OPEN: " + open.what);
-    std::string mend = "  " + mend_in_map(open.mend, "this map");
-    for (auto at = mend.find('\n'); at != std::string::npos; at = mend.find('\n', at + 3)) mend.replace(at, 1, "\n# ");
-    remarks.push_back(mend);
+    remarks.push_back("  " + forms::with_each(mend_in_map(open.mend, "this map"), "\n", "\n# "));
   }
   remarks.push_back("Every column of the recording, with its range:");
   for (const RecordedChannel& channel : recording_.channels) {

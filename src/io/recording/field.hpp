@@ -14,6 +14,8 @@ namespace deltadyn::forms {
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lower(std::string_view text);
+/// The text with `to` in place of each `from`.
+[[nodiscard]] std::string with_each(std::string text, std::string_view from, std::string_view to);
 
 /// Stands for a number that is missing.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
