@@ -74,14 +74,6 @@ struct ParameterMatch {
 /// The columns that a parameter file was written for: limbs of their own, the tool, rotor inertias, offsets.
 [[nodiscard]] ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot);
 
-/// Displacement over which the friction of each joint builds up after a reversal [rad | m], drives first, then the
-/// telescope; 0 where the file says nothing (rows driveK.presliding, telescope.presliding). Throws Error(bad_input) for
-/// a joint that the robot does not have and for a negative displacement.
-[[nodiscard]] Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot);
-
-/// Name of that row.
-[[nodiscard]] std::string presliding_name(const RobotDescription& robot, int joint);
-
 /// match_parameters(table, names, units).value
 [[nodiscard]] Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,
                                      const std::vector<std::string>& units = {});
