@@ -1,10 +1,10 @@
-#include "adopt_attachments.hpp"
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
+
+#include "adopt_parts.hpp"
 
 namespace deltadyn::cad {
 namespace {
@@ -110,7 +110,7 @@ class Solver {
     if (found == tree_.links.end())
       throw Error(fmt::format("there is no link '{}'", link), "--plate-frame", "name a link of the plate",
                   ExitCode::usage);
-    return link_pose(tree_, zero_pose(tree_), link).translation();
+    return link_pose(tree_, parts_.X_R, link).translation();
   }
 
   [[nodiscard]] Attachments finish(const std::string& note) const {

@@ -8,7 +8,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
-#include "adopt_attachments.hpp"
+#include "adopt_parts.hpp"
 #include "robot_file_format.hpp"
 
 namespace deltadyn::cad {
@@ -64,7 +64,7 @@ class Placer {
 
   /// z of the link that carries the drives, or of the root where that one lies.
   [[nodiscard]] Vec upright() const {
-    const Vec z = link_pose(tree_, zero_pose(tree_), parts_.limbs.front().drive->parent_link).linear().col(2);
+    const Vec z = link_pose(tree_, parts_.X_R, parts_.limbs.front().drive->parent_link).linear().col(2);
     return std::abs(z.dot(up_)) > 0.5 ? z : Vec(Vec::UnitZ());
   }
 
@@ -291,9 +291,8 @@ class Placer {
   /// drawn.
   Vec lower_joint_alone(const Telescope& bar) {
     double height = 0;
-    const std::vector<Pose> X_R = zero_pose(tree_);
     for (const std::string& link : tree_.body(bar.tool.back()).links) {
-      const Vec above = bar.lower_joint - link_pose(tree_, X_R, link).translation();
+      const Vec above = bar.lower_joint - link_pose(tree_, parts_.X_R, link).translation();
       if (above.cross(up_).norm() < kPoint) height = above.dot(up_);
     }
     out_.notes.push_back(

@@ -25,7 +25,7 @@ Pose frame(const Eigen::Matrix3d& R, const Vec& origin) {
 class Collector {
  public:
   Collector(const UrdfTree& tree, const Parts& parts, const Placed& placed, std::vector<std::string>& notes)
-      : tree_(tree), parts_(parts), placed_(placed), notes_(notes), X_R_(zero_pose(tree)) {}
+      : tree_(tree), parts_(parts), placed_(placed), notes_(notes) {}
 
   NamedValues run() {
     std::vector<Ten> arms, struts;
@@ -47,7 +47,7 @@ class Collector {
     for (const std::string& link : links) {
       const auto found = tree_.inertials.find(link);
       if (found == tree_.inertials.end()) continue;
-      sum += found->second.in_frame(X_RF.inverse() * link_pose(tree_, X_R_, link));
+      sum += found->second.in_frame(X_RF.inverse() * link_pose(tree_, parts_.X_R, link));
     }
     return sum;
   }
@@ -145,7 +145,6 @@ class Collector {
   const Parts& parts_;
   const Placed& placed_;
   std::vector<std::string>& notes_;
-  const std::vector<Pose> X_R_;
   NamedValues values_;
 };
 

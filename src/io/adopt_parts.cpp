@@ -17,7 +17,11 @@ constexpr int kFarthestRoot = 8;  // moving joints between the root and the base
 
 class Finder {
  public:
-  Finder(const UrdfTree& tree, const AdoptOptions& options) : tree_(tree), options_(options), X_R_(zero_pose(tree)) {}
+  Finder(const UrdfTree& tree, const AdoptOptions& options) : tree_(tree), options_(options) {
+    parts_.X_R.assign(tree.bodies.size(), Pose::Identity());
+    // A body stands behind its parent in the list.
+    for (const Joint& j : tree.joints) parts_.X_R[static_cast<std::size_t>(j.child)] = pose(j.parent) * j.X_PJ;
+  }
 
   Parts run() {
     find_base();
@@ -40,7 +44,7 @@ class Finder {
   [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
   [[nodiscard]] const Body& body(int index) const { return tree_.body(index); }
   [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
-  [[nodiscard]] const Pose& pose(int index) const { return X_R_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const Pose& pose(int index) const { return parts_.X_R[static_cast<std::size_t>(index)]; }
   [[nodiscard]] Vec place(const Joint& j) const { return (pose(j.parent) * j.X_PJ).translation(); }
   [[nodiscard]] Vec axis(const Joint& j) const { return (pose(j.parent) * j.X_PJ).linear() * j.axis; }
 
@@ -188,7 +192,7 @@ class Finder {
     InertialVector<double> sum = InertialVector<double>::Zero();
     double farthest = 10 * kPoint;
     for (const std::string& link : body(rod).links) {
-      const Pose X_RL = link_pose(tree_, X_R_, link);
+      const Pose X_RL = link_pose(tree_, parts_.X_R, link);
       const auto inertial = tree_.inertials.find(link);
       if (inertial != tree_.inertials.end() && inertial->second.mass > 0) {
         sum += inertial->second.in_frame(X_RL);
@@ -203,7 +207,7 @@ class Finder {
     for (const robot_file::Loop& loop : tree_.loops)
       for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor})
         if (!strut.end && tree_.links.at(end->link).body == rod)
-          strut.end = (link_pose(tree_, X_R_, end->link) * end->X_LO).translation();
+          strut.end = (link_pose(tree_, parts_.X_R, end->link) * end->X_LO).translation();
     if (sum(0) > 0) strut.direction = direction_of(strut, sum);
   }
 
@@ -307,12 +311,11 @@ class Finder {
         if (taken.count(place.parent) > 0 && taken.insert(link).second) more = true;
     }
     parts_.plate_links.assign(taken.begin(), taken.end());
-    parts_.plate_place = link_pose(tree_, X_R_, options_.plate).translation();
+    parts_.plate_place = link_pose(tree_, parts_.X_R, options_.plate).translation();
   }
 
   const UrdfTree& tree_;
   const AdoptOptions& options_;
-  const std::vector<Pose> X_R_;
   Parts parts_;
   int base_ = 0;
   std::vector<const Joint*> hung_plates_;  ///< joints at the far ends of struts
@@ -320,14 +323,6 @@ class Finder {
 };
 
 }  // namespace
-
-std::vector<Pose> zero_pose(const UrdfTree& tree) {
-  std::vector<Pose> X_R(tree.bodies.size(), Pose::Identity());
-  // A body stands behind its parent in the list.
-  for (const Joint& j : tree.joints)
-    X_R[static_cast<std::size_t>(j.child)] = X_R[static_cast<std::size_t>(j.parent)] * j.X_PJ;
-  return X_R;
-}
 
 Pose link_pose(const UrdfTree& tree, const std::vector<Pose>& X_R, const std::string& link) {
   const robot_file::LinkPlace& place = tree.links.at(link);

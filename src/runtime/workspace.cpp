@@ -1,7 +1,6 @@
 #include "deltadyn/runtime/workspace.hpp"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 #include "deltadyn/runtime/error.hpp"
