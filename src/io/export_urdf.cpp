@@ -2,7 +2,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-
 #include "export_parts.hpp"
 #include "robot_file_format.hpp"
 
