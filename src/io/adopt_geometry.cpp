@@ -349,8 +349,7 @@ class Placer {
     if ((down + Vec::UnitZ()).norm() > kParallel)
       out_.notes.push_back(
           "gravity is taken from base to plate, though z of the root link points elsewhere; if the robot hangs or "
-          "leans, give "
-          "--gravity-direction");
+          "leans, give --gravity-direction");
     return {0, 0, -size};
   }
 

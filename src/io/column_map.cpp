@@ -359,13 +359,11 @@ std::string to_toml(const ColumnMap& map, const std::vector<std::string>& remark
       "# A channel at the drive in SI units is sign * (scale * recorded + offset) [unit], through its constants and "
       "its gear.\n"
       "# Further keys of a channel: scale, offset, sign (1 or -1), gear_ratio (motor turns per drive turn, where the "
-      "recording "
-      "is of\n"
+      "recording is of\n"
       "# the motor), torque_constant_Nm_A (unit A), rated_torque_Nm (unit % or permille), counts_per_turn (unit cnt), "
       "lead_m_turn\n"
       "# (motors of sliding drives), wrap (the number begins again after this much), delay_s (the value is older than "
-      "its "
-      "stamp).\n";
+      "its stamp).\n";
   for (const std::string& remark : remarks) text += "# " + remark + "\n";
   if (!map.topic.empty()) text += fmt::format("\ntopic = {}\n", quoted(map.topic));
   if (!map.time_source.empty() || map.rate_hz) {

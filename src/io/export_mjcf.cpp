@@ -90,8 +90,7 @@ class Mjcf {
     root_ = child(&document_, "mujoco", {{"model", robot_.name.empty() ? robot_.type : robot_.name}});
     const std::string words = fmt::format(
         "\n  {} written by deltadyn: identified parameters, loops closed by equality constraints.\n  SI units, angles "
-        "in rad. "
-        "Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
+        "in rad. Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
         robot_.type, model_export::left_out_comment(parts_.left_out, "  "));
     root_->InsertNewComment(words.c_str());
     settings();

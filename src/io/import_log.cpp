@@ -351,11 +351,9 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
     open_.clear();  // the one cause of all that is open
     ask("the header line is missing: the first line holds numbers only",
         "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins "
-        "one) with the "
-        "numbers of the columns as source,\n"
+        "one) with the numbers of the columns as source,\n"
         "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    "
-        "quantity = "
-        "\"position\"\n    source = 2\n"
+        "quantity = \"position\"\n    source = 2\n"
         "    unit = \"rad\"",
         place(recording_.file, 1));
   }

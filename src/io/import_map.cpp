@@ -93,10 +93,8 @@ std::string LogImport::map_of_the_rest() const {
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY "
-         "(\"position\", "
-         "\"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s rpm; Nm mNm N A "
-         "mA % "
-         "permille).\n" +
+         "(\"position\", \"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s "
+         "rpm; Nm mNm N A mA % permille).\n" +
          text;
 }
 
@@ -106,8 +104,7 @@ std::string LogImport::open_time() const {
   if (known) return "";
   if (map_.time_source.empty()) {
     return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or "
-           "rate_hz = "
-           "1000\n";
+           "rate_hz = 1000\n";
   }
   return "# unit = \"UNIT\"   # STILL OPEN: s, ms, us, ns, min or filetime; or tick_s = seconds of a tick\n";
 }

@@ -172,8 +172,7 @@ std::string missing_effects(const ParameterTable& table, const std::string& effe
   if (table.effects == kEffectsNotWritten) {
     return table.file +
            " holds only together with effects that were not written: run delta-diagnose again with --effects-out FILE, "
-           "and give "
-           "--effects FILE";
+           "and give --effects FILE";
   }
   std::error_code ignored;
   const std::string text = fmt::format("{} holds only together with the effects of {}", table.file, table.effects);
@@ -223,10 +222,9 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     throw Error("as many units as names are needed", table.file, "", ExitCode::usage);
   }
   const auto count = static_cast<Eigen::Index>(names.size());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   ParameterMatch match;
   match.value = Eigen::VectorXd::Zero(count);
-  match.std = match.prior = match.data_share = Eigen::VectorXd::Constant(count, nan);
+  match.std = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
   std::unordered_set<const ParameterEntry*> used;
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
@@ -245,8 +243,6 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     used.insert(&entry);
     match.value(i) = entry.value;
     match.std(i) = entry.std;
-    match.prior(i) = entry.prior;
-    match.data_share(i) = entry.data_share;
   }
   if (used.empty() && !names.empty()) {
     throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()),

@@ -160,8 +160,7 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
                             usual_step(channel.values)),
                 recording.file,
                 "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts "
-                "rows; or "
-                "unit or rate_hz below [time] in a column map (--map)");
+                "rows; or unit or rate_hz below [time] in a column map (--map)");
   }
   take_stamps(recording, channel, *unit, recording.timelines[channel.timeline]);
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;

@@ -212,7 +212,6 @@ struct JointDynamics {
   }
 
   Status derivative(double time, const State& state, State& rate) {
-    ++counts.evaluations;
     if (const Status status = terms_at(state, scratch); status != Status::ok) return status;
     solve_with_side_load(time, scratch, solution);
     const int c = coordinates();

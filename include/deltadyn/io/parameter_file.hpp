@@ -58,9 +58,9 @@ void write_parameters(const std::string& path, const ParameterTable& table);
 
 /// The wanted parameters in order, with what is worth telling.
 struct ParameterMatch {
-  Eigen::VectorXd value, std, prior, data_share;  ///< std, prior, data_share: NaN where not known
-  std::vector<std::string> missing;               ///< wanted names that the table lacks; their value is 0
-  std::vector<std::string> warnings;              ///< rows of the table that nobody wanted, with their line
+  Eigen::VectorXd value, std;         ///< std: NaN where not known
+  std::vector<std::string> missing;   ///< wanted names that the table lacks; their value is 0
+  std::vector<std::string> warnings;  ///< rows of the table that nobody wanted, with their line
 };
 
 /// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").

@@ -35,8 +35,7 @@ constexpr BinaryForm kBinaryForms[] = {
      "convert it: rostopic echo -b FILE.bag -p /joint_states > log.csv, or rosbags-convert to rosbag2"},
     {"\x89MCAP0\r\n"sv, "a rosbag2 in MCAP storage",
      "convert it to SQLite storage: ros2 bag convert -i FILE.mcap -o out.yaml with storage_id: sqlite3; or export CSV "
-     "from "
-     "PlotJuggler"},
+     "from PlotJuggler"},
     {"\x1f\x8b"sv, "a gzip archive", "gunzip it and give the file inside"},
     {"\x28\xB5\x2F\xFD"sv, "a zstd archive", "unzstd it and give the file inside"},
     {"BZh"sv, "a bzip2 archive", "bunzip2 it and give the file inside"},
