@@ -64,12 +64,8 @@ AdoptedRobot adopt_robot(const std::string& text, const std::string& where, cons
   robot_file::require_metres(tree);
   const cad::Parts parts = cad::find_parts(tree, options);
   cad::Placed placed = cad::place_parts(tree, parts, options);
-  AdoptedRobot adopted;
-  adopted.notes = parts.notes;
-  adopted.notes.insert(adopted.notes.end(), placed.notes.begin(), placed.notes.end());
-  adopted.parameters = cad::inertial_values(tree, parts, placed, adopted.notes);
-  adopted.robot = placed.robot;
-  adopted.drives = placed.drives;
+  cad::add_masses(tree, parts, placed);
+  AdoptedRobot& adopted = placed;
   require_masses(adopted, where);
   return adopted;
 }

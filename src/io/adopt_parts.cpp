@@ -30,20 +30,16 @@ class Finder {
     const bool prismatic = parts_.limbs.front().drive->prismatic;
     for (const Limb& limb : parts_.limbs)
       if (limb.drive->prismatic != prismatic)
-        refuse("the drives of the limbs are of different kinds", at(*limb.drive), "name the drives by --drives");
+        refuse("the drives of the limbs are of different kinds", tree_.at(*limb.drive), "name the drives by --drives");
     if (parts_.telescope && prismatic)
-      refuse("a telescope bar with prismatic drives is not a known type", at(*parts_.telescope->drive),
+      refuse("a telescope bar with prismatic drives is not a known type", tree_.at(*parts_.telescope->drive),
              "name the drives by --drives");
     find_plate();
     return parts_;
   }
 
  private:
-  // --- messages and access ------------------------------------------------------------------------
-  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
-  [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
-  [[nodiscard]] const Body& body(int index) const { return tree_.body(index); }
-  [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
+  // --- access --------------------------------------------------------------------------------------
   [[nodiscard]] const Pose& pose(int index) const { return parts_.X_R[static_cast<std::size_t>(index)]; }
   [[nodiscard]] Vec place(const Joint& j) const { return (pose(j.parent) * j.X_PJ).translation(); }
   [[nodiscard]] Vec axis(const Joint& j) const { return (pose(j.parent) * j.X_PJ).linear() * j.axis; }
@@ -51,8 +47,8 @@ class Finder {
   /// Joints to the children that hold something.
   [[nodiscard]] std::vector<const Joint*> children(int index) const {
     std::vector<const Joint*> list;
-    for (const int k : body(index).joints)
-      if (!joint(k).floating) list.push_back(&joint(k));
+    for (const int k : tree_.body(index).joints)
+      if (!tree_.joint(k).floating) list.push_back(&tree_.joint(k));
     return list;
   }
 
@@ -67,7 +63,7 @@ class Finder {
           base_ = index;
           return;
         }
-        for (const int k : body(index).joints) next.push_back(joint(k).child);
+        for (const int k : tree_.body(index).joints) next.push_back(tree_.joint(k).child);
       }
       level = next;
     }
@@ -95,9 +91,9 @@ class Finder {
       for (const std::string& name : options_.drives) {
         const auto found = std::ranges::find(candidates, name, &Joint::name);
         if (found == candidates.end())
-          refuse(
-              fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
-              "--drives", "name three or four of them", ExitCode::usage);
+          refuse(fmt::format("'{}' is no joint on the base, {}; these are: {}", name, tree_.body(base_).name,
+                             names(candidates)),
+                 "--drives", "name three or four of them", ExitCode::usage);
         named.push_back(*found);
       }
       candidates = named;
@@ -129,11 +125,11 @@ class Finder {
     const std::string found = names(drives), all = names(children(base_));
     if (parts_.limbs.size() == 4)
       refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet", found),
-             at(body(base_).name),
+             tree_.at(tree_.body(base_).name),
              fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
     refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}",
                        drives.size(), drives.empty() ? "" : ": ", found),
-           at(body(base_).name),
+           tree_.at(tree_.body(base_).name),
            fmt::format("hang the struts on the arms, or name the drives: --drives A,B,C out of {}", all));
   }
 
@@ -143,7 +139,7 @@ class Finder {
     for (const Joint* j : children(drive.child)) collect_strut(*j, limb);
     if (limb.struts.empty() || limb.struts.size() > 2)
       refuse(fmt::format("an arm or carriage carries one strut or two, but this one carries {}", limb.struts.size()),
-             at(body(drive.child).name),
+             tree_.at(tree_.body(drive.child).name),
              "leave springs and covers between the struts out of the tree, or fix them to a strut");
     parts_.limbs.push_back(limb);
   }
@@ -166,17 +162,17 @@ class Finder {
       const Vec one = place(*next[0]), two = place(*next[1]);
       if (((one + two) / 2 - strut.elbow).norm() < kPoint && (one - two).norm() > kPoint) {
         limb.arm.insert(limb.arm.end(), strut.bodies.begin(), strut.bodies.end());
-        parts_.notes.push_back(
-            fmt::format("link {} joins the two struts at the elbow; its mass is counted to the arm", body(b).name));
+        parts_.notes.push_back(fmt::format("link {} joins the two struts at the elbow; its mass is counted to the arm",
+                                           tree_.body(b).name));
         for (const Joint* j : next) collect_strut(*j, limb);
         return;
       }
     }
-    strut.name = body(b).name;
+    strut.name = tree_.body(b).name;
     if (next.size() > 1)
       refuse(fmt::format("{} moving joints hang on this strut ({}), but it carries nothing but the plate", next.size(),
                          names(next)),
-             at(strut.name), "fix what belongs to the strut to it by fixed joints");
+             tree_.at(strut.name), "fix what belongs to the strut to it by fixed joints");
     if (next.size() == 1) {
       strut.end = place(*next.front());
       hung_plates_.push_back(next.front());
@@ -191,7 +187,7 @@ class Finder {
     Vec frame = Vec::Zero();
     InertialVector<double> sum = InertialVector<double>::Zero();
     double farthest = 10 * kPoint;
-    for (const std::string& link : body(rod).links) {
+    for (const std::string& link : tree_.body(rod).links) {
       const Pose X_RL = link_pose(tree_, parts_.X_R, link);
       const auto inertial = tree_.inertials.find(link);
       if (inertial != tree_.inertials.end() && inertial->second.mass > 0) {
@@ -199,7 +195,7 @@ class Finder {
         continue;
       }
       const double distance = (X_RL.translation() - strut.elbow).norm();
-      if (link == body(rod).name || distance < farthest || strut.end) continue;
+      if (link == tree_.body(rod).name || distance < farthest || strut.end) continue;
       farthest = distance;
       frame = X_RL.translation();
     }
@@ -229,15 +225,15 @@ class Finder {
   // --- telescope bar ------------------------------------------------------------------------------
   void add_telescope(const Joint& drive, const std::vector<const Joint*>& below) {
     if (parts_.telescope)
-      refuse(fmt::format("joint {} carries a telescope bar, too", parts_.telescope->drive->name), at(drive),
+      refuse(fmt::format("joint {} carries a telescope bar, too", parts_.telescope->drive->name), tree_.at(drive),
              "name the four drives by --drives");
     const auto slide = std::ranges::find_if(below, &Joint::prismatic);
     if (slide == below.begin())
-      refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive", at(**slide),
-             "put two revolute joints (about x, then y) between drive and bar");
+      refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive",
+             tree_.at(**slide), "put two revolute joints (about x, then y) between drive and bar");
     if (slide + 1 == below.end())
       refuse("the telescope bar ends in a universal joint that carries the tool, but nothing follows the sliding joint",
-             at(**slide), "hang the tool on the bar's lower part by two revolute joints");
+             tree_.at(**slide), "hang the tool on the bar's lower part by two revolute joints");
     Telescope& bar = parts_.telescope.emplace();
     bar.drive = &drive;
     bar.axis = axis(drive);
@@ -249,7 +245,7 @@ class Finder {
         if ((place(**j) - point).norm() > kPoint)
           refuse(fmt::format("{}: its axes must meet, but this one lies {:.6g} beside it", what,
                              (place(**j) - point).norm()),
-                 at(**j), "mend the joint's origin");
+                 tree_.at(**j), "mend the joint's origin");
     };
     meet(below.begin(), slide, bar.upper_joint, "the upper universal joint");
     meet(slide + 1, below.end(), bar.lower_joint, "the lower universal joint");
@@ -261,7 +257,7 @@ class Finder {
 
   // --- plate --------------------------------------------------------------------------------------
   void add_with_children(int index, const Vec& ball) {
-    for (const std::string& link : body(index).links) parts_.plate_links.push_back(link);
+    for (const std::string& link : tree_.body(index).links) parts_.plate_links.push_back(link);
     for (const Joint* j : children(index)) {
       if ((place(*j) - ball).norm() > kPoint)
         parts_.notes.push_back(
@@ -285,11 +281,11 @@ class Finder {
       plate_by_name();
     } else if (loose_.size() == 1) {
       const int index = loose_.front();
-      parts_.plate_links = body(index).links;
+      parts_.plate_links = tree_.body(index).links;
       parts_.plate_place = pose(index).translation();
     } else {
       std::vector<std::string> found;
-      for (const int index : loose_) found.push_back(body(index).name);
+      for (const int index : loose_) found.push_back(tree_.body(index).name);
       refuse(loose_.empty()
                  ? std::string("no strut carries a plate, and no link hangs loose that could be it")
                  : fmt::format("no strut carries a plate, and several links hang loose: {}", fmt::join(found, ", ")),

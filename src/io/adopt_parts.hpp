@@ -70,6 +70,8 @@ struct LimbPlace {
   Vec outwards = Vec::Zero();  ///< unit, from the robot's middle axis along the limb
   Vec across = Vec::Zero();    ///< unit, along the drive's axis
   double radius = 0;           ///< of the elbow about the middle axis [m]
+  Vec drive = Vec::Zero();     ///< point of a revolute axis nearest to the elbow; the elbow of a carriage
+  double spacing = 0;          ///< of the two struts [m]
 };
 
 struct Attachments {
@@ -90,21 +92,17 @@ struct Attachments {
 [[nodiscard]] Attachments find_attachments(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options,
                                            const std::vector<LimbPlace>& limbs, const Vec& up);
 
-/// The frame of the robot's base and the geometry in it.
-struct Placed {
-  RobotDescription robot;
-  std::vector<AdoptedDrive> drives;
-  Pose X_RW = Pose::Identity();       ///< base frame in the root link's
-  Vec plate_centre = Vec::Zero();     ///< in the root link's frame
-  std::vector<std::size_t> order;     ///< limb k of the robot is limb order[k] of the parts
-  std::vector<Vec> strut_directions;  ///< unit, from elbow to plate as drawn, of the parts' limbs; root link's frame
-  std::vector<std::string> notes;
+/// The robot, and where its parts stand.
+struct Placed : AdoptedRobot {
+  Pose X_RW = Pose::Identity();    ///< base frame in the root link's
+  Attachments ends;                ///< of the parts' limbs, in the root link's frame
+  std::vector<std::size_t> order;  ///< limb k of the robot is limb order[k] of the parts
 };
 
+/// The frame of the robot's base and the geometry in it.
 [[nodiscard]] Placed place_parts(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options);
 
-/// Inertial parameters by name in the frames of the robot's bodies.
-[[nodiscard]] NamedValues inertial_values(const UrdfTree& tree, const Parts& parts, const Placed& placed,
-                                          std::vector<std::string>& notes);
+/// Fills in the inertial parameters, in the frames of the robot's bodies.
+void add_masses(const UrdfTree& tree, const Parts& parts, Placed& placed);
 
 }  // namespace deltadyn::cad

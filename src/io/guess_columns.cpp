@@ -129,10 +129,7 @@ class Guess {
  private:
   /// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
   [[nodiscard]] std::string unit_of(const Candidate& candidate, int drive) const {
-    static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit,
-                                                               nullptr, &MapDefaults::torque_unit};
-    const auto flag = kUnitFlags[static_cast<std::size_t>(quantity_)];
-    if (flag != nullptr && !(defaults_.*flag).empty()) return defaults_.*flag;
+    if (const std::string flag = defaults_.unit(quantity_); !flag.empty()) return flag;
     if (log_unit(candidate.words.unit)) return candidate.words.unit;
     const std::string stem = candidate.channel->quantity.empty() ? candidate.words.stem : "/";
     return customary_unit(stem, quantity_, robot_.kind_of_drive(drive));

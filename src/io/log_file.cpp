@@ -78,12 +78,8 @@ std::optional<Source> find_source(const CsvReader& reader, Quantity quantity, Dr
 
 /// Lower case without separators, so that "Q1", "q_1" and "q1" are alike.
 std::string simplified(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
+  std::string result = forms::lower(name);
+  std::erase_if(result, [](unsigned char c) { return std::isalnum(c) == 0; });
   return result;
 }
 
@@ -93,8 +89,7 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   for (const std::string& name : reader.columns()) {
     const std::string plain = simplified(name);
     const bool begins = plain.starts_with(stem);
-    const bool other_number =
-        plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
+    const bool other_number = plain.size() > stem.size() && forms::is_digit(plain[stem.size()]);
     if (begins && !other_number) found.push_back(name);
   }
   return found;

@@ -82,11 +82,9 @@ constexpr Entry kUnits[] = {
 
 /// Lower case, without brackets, blanks, products and powers; "_" as "/", "sec" as "s".
 std::string normalised(std::string_view text) {
-  std::string plain;
-  for (const char c : text) {
-    if (std::string_view(" []{}()*^.,").find(c) != std::string_view::npos) continue;
-    plain += c == '_' ? '/' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string plain = forms::lower(text);
+  std::erase_if(plain, [](char c) { return std::string_view(" []{}()*^.,").find(c) != std::string_view::npos; });
+  std::ranges::replace(plain, '_', '/');
   static constexpr std::pair<std::string_view, std::string_view> kPlain[] = {
       {"\xE2\x80\xB0", "permille"},  // before the degree sign of Latin-1, whose byte it holds
       {"\xC2\xB0", "deg"},           // degree sign
@@ -104,8 +102,7 @@ std::string normalised(std::string_view text) {
 }
 
 bool is_index(std::string_view text) {
-  return !text.empty() &&
-         std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+  return !text.empty() && std::ranges::all_of(text, forms::is_digit);
 }
 
 bool known(std::string_view unit) {

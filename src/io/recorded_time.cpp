@@ -10,6 +10,7 @@
 
 #include "common_grid.hpp"
 #include "header_words.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -23,10 +24,8 @@ struct TimeUnit {
 };
 
 std::string without_blanks(const std::string& name) {
-  std::string plain;
-  for (const char c : name) {
-    if (c != ' ' && c != '\t' && c != '"') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string plain = forms::lower(name);
+  std::erase_if(plain, [](char c) { return c == ' ' || c == '\t' || c == '"'; });
   return plain;
 }
 
@@ -97,11 +96,9 @@ std::optional<TimeUnit> unit_of(const RecordedChannel& channel, const ColumnMap&
 /// Without names, a first column of even steps can be nothing else.
 bool is_even(const Eigen::VectorXd& values) {
   const double step = usual_step(values);
-  if (!(step > 0)) return false;
-  for (Eigen::Index i = 0; i + 1 < values.size(); ++i) {
-    if (!(std::abs(values(i + 1) - values(i) - step) < 1e-2 * step)) return false;
-  }
-  return true;
+  const Eigen::Index n = values.size();
+  return step > 0 &&
+         ((values.tail(n - 1) - values.head(n - 1)).array() - step).abs().maxCoeff<Eigen::PropagateNaN>() < 1e-2 * step;
 }
 
 const RecordedChannel* guess_time(const Recording& recording) {

@@ -325,6 +325,9 @@ void refuse(const std::string& what, const std::string& where, const std::string
 std::string UrdfTree::at(const Joint& joint) const {
   return fmt::format("{}, line {}, joint {}", where, joint.line, joint.name);
 }
+std::string UrdfTree::at(const Loop& loop) const {
+  return fmt::format("{}, line {}, loop {}", where, loop.line, loop.name);
+}
 std::string UrdfTree::at(const std::string& link) const {
   return fmt::format("{}, link {}", where, link);
 }
@@ -362,8 +365,7 @@ double parse_number(const std::string& text, const std::string& where, const std
 }
 
 void require_metres(const UrdfTree& tree) {
-  const auto check = [&tree](const Eigen::Vector3d& origin, const char* kind, const std::string& name, int line) {
-    const std::string place = fmt::format("{}, line {}, {} {}", tree.where, line, kind, name);
+  const auto check = [&tree](const Eigen::Vector3d& origin, const std::string& place) {
     try {
       plausibility::require(plausibility::kOffset, origin.norm(), "its distance from the link's origin", place);
     } catch (const Error& e) {
@@ -375,11 +377,9 @@ void require_metres(const UrdfTree& tree) {
     }
   };
   for (const Joint& joint : tree.joints)
-    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), "joint", joint.name,
-          joint.line);
+    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), tree.at(joint));
   for (const Loop& loop : tree.loops)
-    for (const LoopEnd* end : {&loop.predecessor, &loop.successor})
-      check(end->X_LO.translation(), "loop", loop.name, loop.line);
+    for (const LoopEnd* end : {&loop.predecessor, &loop.successor}) check(end->X_LO.translation(), tree.at(loop));
 }
 
 UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, UrdfDialect dialect) {

@@ -91,6 +91,7 @@ struct UrdfTree {
   [[nodiscard]] const Joint& joint(int index) const { return joints[static_cast<std::size_t>(index)]; }
   /// "cad.urdf, line 12, joint J1", "cad.urdf, link arm".
   [[nodiscard]] std::string at(const Joint& joint) const;
+  [[nodiscard]] std::string at(const Loop& loop) const;
   [[nodiscard]] std::string at(const std::string& link) const;
 };
 

@@ -30,7 +30,8 @@ Step step(double x) {
   return {x3 * (10 - 15 * x + 6 * x2), 30 * x2 * (1 - x) * (1 - x), x2 * x2 * (2.5 - 3 * x + x2)};
 }
 
-/// The curve of the series up to phase `join`, with the speed rising from rest, or on from there, with the speed falling.
+/// The curve of the series up to phase `join`, with the speed rising from rest, or on from there, with the speed
+/// falling.
 SmoothMotion ramp(PartKind kind, const FourierSeries& series, double join, double duration) {
   const double omega = series.omega(), sense = kind == PartKind::run_in ? 1 : -1;
   return {duration, [=](double t) {

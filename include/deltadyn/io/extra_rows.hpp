@@ -2,8 +2,8 @@
 
 /// \file
 /// Rows of a parameter file that are no columns of the regressor: presliding, damping of bristles and ripple of the
-/// torque over the position. `drive1.presliding` [rad | m]; `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [waves/turn | waves/m] with
-/// `drive1.ripple1.cosine` and `.sine` [N m | N].
+/// torque over the position. `drive1.presliding` [rad | m]; `drive1.presliding_damping` [s]; `drive1.ripple1.waves`
+/// [waves/turn | waves/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
 
 #include <Eigen/Core>
 #include <string>

@@ -12,10 +12,6 @@
 namespace deltadyn::forms {
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Spellings of "no value" in exports of spreadsheets, MATLAB, Microsoft's C library and databases.
 bool is_missing_word(std::string_view field) {
   static constexpr std::array kWords = {

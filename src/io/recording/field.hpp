@@ -13,6 +13,9 @@
 namespace deltadyn::forms {
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
+[[nodiscard]] constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 [[nodiscard]] std::string lower(std::string_view text);
 /// The text with `to` in place of each `from`.
 [[nodiscard]] std::string with_each(std::string text, std::string_view from, std::string_view to);
