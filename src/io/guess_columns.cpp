@@ -93,7 +93,7 @@ class Guess {
   Guess(const Recording& recording, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults)
       : recording_(recording), robot_(robot), quantity_(quantity), defaults_(defaults) {}
 
-  std::optional<OpenQuestion> run(ColumnMap& map, std::vector<std::string>& notes) const {
+  std::optional<Error> run(ColumnMap& map, std::vector<std::string>& notes) const {
     const std::vector<Candidate> candidates = candidates_of(map);
     std::vector<Set> sets = sets_of(candidates);
     std::erase_if(sets, [&](const Set& set) { return contradicts(set, map); });
@@ -104,16 +104,15 @@ class Guess {
     std::ranges::stable_sort(sets, std::greater(), rank);
     const Set& best = sets.front();
     if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
-      return OpenQuestion{fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity_),
-                                      names_of(best.of_drive), names_of(sets[1].of_drive)),
-                          "say which in a column map (delta-log import --map-out map.toml begins one)\n" +
-                              example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0)};
+      return open(fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity_),
+                              names_of(best.of_drive), names_of(sets[1].of_drive)),
+                  "say which in a column map (delta-log import --map-out map.toml begins one)\n" +
+                      example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0));
     }
     if (best.origin == Origin::commanded && quantity_ != Quantity::torque) {
-      return OpenQuestion{
-          fmt::format("only a commanded {} is in the file: {}", word_of(quantity_), names_of(best.of_drive)),
-          "record the measured one; to take the command all the same, say so in a column map\n" +
-              example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0)};
+      return open(fmt::format("only a commanded {} is in the file: {}", word_of(quantity_), names_of(best.of_drive)),
+                  "record the measured one; to take the command all the same, say so in a column map\n" +
+                      example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0));
     }
     if (!best.has_unit) return without_unit(best);
     for (int drive = 0; drive < robot_.drives(); ++drive)
@@ -127,6 +126,10 @@ class Guess {
   }
 
  private:
+  [[nodiscard]] Error open(const std::string& what, const std::string& mend) const {
+    return {what, recording_.file, mend};
+  }
+
   /// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
   [[nodiscard]] std::string unit_of(const Candidate& candidate, int drive) const {
     if (const std::string flag = defaults_.unit(quantity_); !flag.empty()) return flag;
@@ -244,7 +247,7 @@ class Guess {
     return customary_unit("/", quantity_, robot_.kind_of_drive(drive));
   }
 
-  [[nodiscard]] OpenQuestion missing(const std::vector<Candidate>& candidates) const {
+  [[nodiscard]] Error missing(const std::vector<Candidate>& candidates) const {
     std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}",
                                    contract_name(robot_, 0, quantity_), word_of(quantity_), list_channels(recording_));
     if (!candidates.empty()) {
@@ -253,26 +256,27 @@ class Guess {
           word_of(quantity_), robot_.drives(), robot_.drives() == 1 ? "" : "s", names_of(candidates),
           list_channels(recording_));
     }
-    return {what,
-            "write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
-            "each drive\n" +
-                example("NAME", si_unit(0), 0)};
+    return open(
+        what,
+        "write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
+        "each drive\n" +
+            example("NAME", si_unit(0), 0));
   }
 
-  [[nodiscard]] OpenQuestion without_unit(const Set& set) const {
+  [[nodiscard]] Error without_unit(const Set& set) const {
     int drive = 0;
     while (!unit_of(set[drive], drive).empty()) ++drive;
     const std::string& name = set[drive].channel->name;
     const std::string wanted = contract_name(robot_, drive, quantity_);
     const bool angle = quantity_ == Quantity::position && robot_.kind_of_drive(drive) == DriveKind::revolute;
-    return {
+    return open(
         fmt::format(
             "the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
             wanted, name, word_of(quantity_), drive + 1),
         fmt::format(
             "name the column {}{}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}",
             wanted, angle ? fmt::format(" or q{}_deg", drive + 1) : "", word_of(quantity_), units_of(quantity_),
-            example(name, si_unit(drive), drive))};
+            example(name, si_unit(drive), drive)));
   }
 
   const Recording& recording_;
@@ -304,9 +308,8 @@ std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind
   return "";
 }
 
-std::optional<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
-                                           const MapDefaults& defaults, ColumnMap& map,
-                                           std::vector<std::string>& notes) {
+std::optional<Error> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
+                                    const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
   return Guess(recording, robot, quantity, defaults).run(map, notes);
 }
 

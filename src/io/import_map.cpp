@@ -133,9 +133,9 @@ std::string LogImport::map_text() const {
   }
   for (const std::string& constant : constants)
     remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
-  for (const Open& open : open_) {
-    remarks.push_back("STILL OPEN: " + open.what);
-    remarks.push_back("  " + forms::with_each(mend_in_map(open.mend, "this map"), "\n", "\n# "));
+  for (const Error& open : open_) {
+    remarks.push_back("STILL OPEN: " + open.problem());
+    remarks.push_back("  " + forms::with_each(mend_in_map(open.mend(), "this map"), "\n", "\n# "));
   }
   remarks.push_back("Every column of the recording, with its range:");
   for (const RecordedChannel& channel : recording_.channels) {

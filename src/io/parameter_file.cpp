@@ -17,6 +17,8 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 
+#include "recording/field.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -42,19 +44,9 @@ bool is_extra(const std::string& name) {
 
 /// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
 std::string canonical_unit(const std::string& unit) {
-  std::string result;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit.compare(i, 2, "²") == 0) {
-      result += '2';
-      ++i;
-    } else if (unit.compare(i, 2, "·") == 0) {
-      ++i;
-    } else if (unit[i] != ' ' && unit[i] != '*' && unit[i] != '^' && unit[i] != '(' && unit[i] != ')') {
-      result += unit[i];
-    }
-  }
-  const auto angle = result.find("/rad");
-  if (angle != std::string::npos) result.erase(angle, 4);
+  std::string result = forms::with_each(forms::with_each(unit, "²", "2"), "·", "");
+  std::erase_if(result, [](char c) { return std::string_view(" *^()").find(c) != std::string_view::npos; });
+  if (const auto angle = result.find("/rad"); angle != std::string::npos) result.erase(angle, 4);
   return result;
 }
 

@@ -39,6 +39,6 @@ void refuse_binary_form(const std::string& path, std::string_view head);
 
 /// Whether the file is an SQLite database, or a folder that holds one, and which.
 [[nodiscard]] std::optional<std::string> rosbag2_database(const std::string& path);
-[[nodiscard]] Recording read_rosbag2(const std::string& database, const RecordingOptions& options);
+[[nodiscard]] Recording read_rosbag2(const std::string& database, const std::string& wanted_topic);
 
 }  // namespace deltadyn::forms
