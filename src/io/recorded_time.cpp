@@ -15,8 +15,6 @@
 namespace deltadyn {
 namespace {
 
-constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
-
 struct TimeUnit {
   double seconds;
   std::int64_t origin_ns;  ///< of the channel's origin
@@ -141,8 +139,8 @@ void take_stamps(const Recording& recording, const RecordedChannel& channel, con
   timeline.unit = unit.name;
   timeline.t_s = unit.seconds * channel.values;
   if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
-  const bool filetime = unit.name == "filetime" && channel.origin > kFileTimeToUnixTicks;
-  const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
+  const bool filetime = unit.name == "filetime" && channel.origin > forms::kFileTimeToUnixTicks;
+  const std::int64_t origin = filetime ? channel.origin - forms::kFileTimeToUnixTicks : channel.origin;
   const double unit_ns = 1e9 * unit.seconds;
   // Stamps of other centuries have no date; their differences are all that counts.
   const bool dated = unit_ns * std::abs(static_cast<double>(origin)) < 9e18;

@@ -23,6 +23,9 @@ namespace deltadyn::forms {
 /// Stands for a number that is missing.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+/// From 1601, where Windows begins to count, to 1970 in ticks of 100 ns.
+inline constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;
+
 enum class Field { number, missing, date, text };
 
 /// What a field says. `value` is NaN for a missing number ("", "nan", "n/a", "-", ...); words of truth are 1 and 0.

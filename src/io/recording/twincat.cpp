@@ -11,8 +11,6 @@
 namespace deltadyn::forms {
 namespace {
 
-constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
-
 using Fields = std::vector<std::string>;
 
 /// The block of "Name", "SampleTime[ms]", "Unit", ... above the rows.
