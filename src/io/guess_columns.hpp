@@ -23,8 +23,8 @@ namespace deltadyn {
 [[nodiscard]] std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind kind);
 
 /// Adds the channels of one quantity to `map`, for every drive or for none. Never chooses between equals: where two
-/// sets of columns fit alike, a unit is not stated, or only commanded positions are there, nothing is added. Returns what
-/// could then not be decided, and how the user can.
+/// sets of columns fit alike, a unit is not stated, or only commanded positions are there, nothing is added. Returns
+/// what could then not be decided, and how the user can.
 /// \param notes  where the order of the drives rests on more than plain names, it is said here
 [[nodiscard]] std::optional<Error> guess_channels(const Recording& recording, const RobotDescription& robot,
                                                   Quantity quantity, const MapDefaults& defaults, ColumnMap& map,
