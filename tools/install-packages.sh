@@ -8,7 +8,7 @@ set -euo pipefail
 packages=(
   build-essential g++ cmake ninja-build ccache
   libeigen3-dev libceres-dev libnlopt-dev libnlopt-cxx-dev liburdfdom-dev libconsole-bridge-dev libtinyxml2-dev
-  libgtest-dev libgmock-dev libbenchmark-dev libcli11-dev libfmt-dev libfccp-dev libomp-dev
+  libgtest-dev libgmock-dev libbenchmark-dev libcli11-dev libfmt-dev libomp-dev
   libsqlite3-dev libtomlplusplus-dev
   gnuplot-nox python3-venv
 )

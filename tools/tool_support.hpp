@@ -22,7 +22,7 @@
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/summary.hpp"
 #include "deltadyn/runtime/error.hpp"
-#include "deltadyn/runtime/threads.hpp"
+#include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn::tools {
 

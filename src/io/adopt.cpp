@@ -8,6 +8,7 @@
 #include "deltadyn/runtime/plausibility.hpp"
 
 #include "adopt_parts.hpp"
+#include "robot_file_format.hpp"
 
 namespace deltadyn {
 namespace {
@@ -41,12 +42,8 @@ void to_si(robot_file::UrdfTree& tree, double metre, double kilogram) {
 void require_masses(const AdoptedRobot& adopted, const std::string& where) {
   for (const Body body :
        {Body::upper_arm, Body::strut, Body::platform, Body::tool, Body::telescope_upper, Body::telescope_lower}) {
-    InertialVector<double> p = InertialVector<double>::Zero();
     const std::string part = name(body);
-    for (int k = 0; k < kInertialParameters; ++k) {
-      const auto found = adopted.parameters.find(part + "." + kInertialNames[k]);
-      if (found != adopted.parameters.end()) p(k) = found->second;
-    }
+    const InertialVector<double> p = robot_file::body_of(adopted.parameters, part);
     plausibility::require_body(adopted.robot, body, p, part, where);
   }
 }
@@ -67,12 +64,8 @@ AdoptedRobot adopt_robot(const std::string& text, const std::string& where, cons
   robot_file::require_metres(tree);
   const cad::Parts parts = cad::find_parts(tree, options);
   cad::Placed placed = cad::place_parts(tree, parts, options);
-  AdoptedRobot adopted;
-  adopted.notes = parts.notes;
-  adopted.notes.insert(adopted.notes.end(), placed.notes.begin(), placed.notes.end());
-  adopted.parameters = cad::inertial_values(tree, parts, placed, adopted.notes);
-  adopted.robot = placed.robot;
-  adopted.drives = placed.drives;
+  cad::add_masses(tree, parts, placed);
+  AdoptedRobot& adopted = placed;
   require_masses(adopted, where);
   return adopted;
 }

@@ -1,11 +1,11 @@
-#include "adopt_attachments.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
 #include "deltadyn/runtime/dense.hpp"
+
+#include "adopt_parts.hpp"
 
 namespace deltadyn::cad {
 namespace {
@@ -48,8 +48,7 @@ class Solver {
     const double length = options_.strut ? *options_.strut : length_of_three();
     if (auto found = by_direction(length)) return *found;
     ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and with struts of {:.6g} m "
-                    "along their "
-                    "centres of mass the three limbs do not end alike",
+                    "along their centres of mass the three limbs do not end alike",
                     length),
         "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
   }
@@ -111,7 +110,7 @@ class Solver {
     if (found == tree_.links.end())
       throw Error(fmt::format("there is no link '{}'", link), "--plate-frame", "name a link of the plate",
                   ExitCode::usage);
-    return link_pose(tree_, zero_pose(tree_), link).translation();
+    return link_pose(tree_, parts_.X_R, link).translation();
   }
 
   [[nodiscard]] Attachments finish(const std::string& note) const {
@@ -233,11 +232,9 @@ class Solver {
     }
     if (how.empty())
       ask("the plate's radius cannot be found: the joints at zero are no pose of the robot that closes with three like "
-          "limbs, "
-          "and no link of the plate has its origin at the plate's centre",
+          "limbs, and no link of the plate has its origin at the plate's centre",
           "give --platform-radius (attachments of the limbs from the plate's centre, in metres), or name the link at "
-          "the centre "
-          "by --plate-frame, or export the robot assembled");
+          "the centre by --plate-frame, or export the robot assembled");
     Attachments result;
     result.assembled = false;
     result.plate_centre = end - radius * limbs_[k].outwards;
@@ -250,8 +247,7 @@ class Solver {
     }
     result.note = fmt::format(
         "the joints at zero are no pose of the robot; lengths are taken from the parts, the plate's radius {:.6g} m by "
-        "{}, and "
-        "up is z of the base's link",
+        "{}, and up is z of the base's link",
         radius, how);
     return result;
   }
@@ -266,8 +262,7 @@ class Solver {
       const auto line = direction_of(parts_.limbs[i]);
       if (!line)
         ask(fmt::format("the ends of the struts cannot be found: no strut carries the plate, and link {} has neither a "
-                        "frame at "
-                        "its end nor a centre of mass on its axis",
+                        "frame at its end nor a centre of mass on its axis",
                         parts_.limbs[i].struts.front().name),
             "give --platform-radius if the origin of the plate's link is its centre, or hang the plate on a strut");
       A.block<3, 1>(row, 0) = *line;

@@ -8,7 +8,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
-#include "adopt_attachments.hpp"
+#include "adopt_parts.hpp"
 #include "robot_file_format.hpp"
 
 namespace deltadyn::cad {
@@ -25,32 +25,25 @@ Vec tidy(const Vec& v) {
   return {tidy(v.x()), tidy(v.y()), tidy(v.z())};
 }
 
-/// One limb in the root link's frame.
-struct Limb3d : LimbPlace {
-  Vec drive = Vec::Zero();  ///< point of a revolute axis nearest to the elbow; the elbow of a carriage
-  double spacing = 0;
-};
-
 class Placer {
  public:
   Placer(const UrdfTree& tree, const Parts& parts, const AdoptOptions& options)
       : tree_(tree), parts_(parts), options_(options) {
     prismatic_ = parts.limbs.front().drive->prismatic;
+    out_.notes = parts.notes;
   }
 
   Placed run() {
     for (const Limb& limb : parts_.limbs) limbs_.push_back(elbow_of(limb));
     find_up();
     find_outwards();
-    ends_ = attachments();
-    if (!ends_.assembled && up_.dot(upright()) < 0) {
+    out_.ends = find_attachments(tree_, parts_, options_, limbs_, up_);
+    if (!out_.ends.assembled && up_.dot(upright()) < 0) {
       up_ = -up_;
       find_outwards();
-      ends_ = attachments();
+      out_.ends = find_attachments(tree_, parts_, options_, limbs_, up_);
     }
-    out_.strut_directions = ends_.directions;
-    out_.plate_centre = ends_.plate_centre;
-    if (!ends_.note.empty()) out_.notes.push_back(ends_.note);
+    if (!out_.ends.note.empty()) out_.notes.push_back(out_.ends.note);
     order_limbs();
     align_rails();
     place_frames();
@@ -60,22 +53,15 @@ class Placer {
   }
 
  private:
-  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
-
   /// z of the link that carries the drives, or of the root where that one lies.
   [[nodiscard]] Vec upright() const {
-    const Vec z = link_pose(tree_, zero_pose(tree_), parts_.limbs.front().drive->parent_link).linear().col(2);
+    const Vec z = link_pose(tree_, parts_.X_R, parts_.limbs.front().drive->parent_link).linear().col(2);
     return std::abs(z.dot(up_)) > 0.5 ? z : Vec(Vec::UnitZ());
   }
 
-  [[nodiscard]] Attachments attachments() const {
-    const std::vector<LimbPlace> limbs(limbs_.begin(), limbs_.end());
-    return find_attachments(tree_, parts_, options_, limbs, up_);
-  }
-
   // --- limbs in space -----------------------------------------------------------------------------
-  Limb3d elbow_of(const Limb& limb) const {
-    Limb3d out;
+  LimbPlace elbow_of(const Limb& limb) const {
+    LimbPlace out;
     Vec sum = Vec::Zero();
     for (const Strut& strut : limb.struts) sum += strut.elbow;
     out.elbow = sum / static_cast<double>(limb.struts.size());
@@ -84,8 +70,8 @@ class Placer {
       between = limb.struts[0].elbow - limb.struts[1].elbow;
       out.spacing = between.norm();
       if (out.spacing < kPoint)
-        refuse("the two struts of a limb lie apart, but their elbow joints are at the same point", at(*limb.drive),
-               "mend the origins of the joints between arm and struts");
+        refuse("the two struts of a limb lie apart, but their elbow joints are at the same point",
+               tree_.at(*limb.drive), "mend the origins of the joints between arm and struts");
       if (options_.strut_spacing && std::abs(*options_.strut_spacing - out.spacing) > 10 * kPoint)
         refuse(fmt::format("--strut-spacing is {:.6g} m, but the elbow joints of limb {} lie {:.6g} m apart",
                            *options_.strut_spacing, limb.drive->name, out.spacing),
@@ -105,14 +91,14 @@ class Placer {
     out.across = limb.axis;
     out.drive = limb.place + limb.axis * limb.axis.dot(out.elbow - limb.place);
     if ((out.elbow - out.drive).norm() < kPoint)
-      refuse("the elbow lies on the axis of the drive", at(*limb.drive),
+      refuse("the elbow lies on the axis of the drive", tree_.at(*limb.drive),
              "mend the origins of the joints between arm and struts");
     if (between.norm() > 0 && between.normalized().cross(limb.axis).norm() > kParallel)
       refuse(
           fmt::format(
               "the two struts of a limb lie apart along the axis of its drive, but here by ({:.6g}, {:.6g}, {:.6g}) m",
               between.x(), between.y(), between.z()),
-          at(*limb.drive), "mend the origins of the joints between arm and struts");
+          tree_.at(*limb.drive), "mend the origins of the joints between arm and struts");
     return out;
   }
 
@@ -132,7 +118,7 @@ class Placer {
         refuse(fmt::format("the axes of the three {} lie in parallel planes, but this one leaves the plane of the "
                            "others by {:.4g} rad",
                            prismatic_ ? "elbows" : "drives", std::abs(std::asin(limbs_[i].across.dot(up_)))),
-               at(*parts_.limbs[i].drive), "mend the joint's rpy or axis");
+               tree_.at(*parts_.limbs[i].drive), "mend the joint's rpy or axis");
     double down = 0;
     for (std::size_t i = 0; i < 3; ++i)
       for (const Strut& strut : parts_.limbs[i].struts) {
@@ -146,13 +132,13 @@ class Placer {
 
   void find_outwards() {
     std::vector<Vec> drives, across;
-    for (Limb3d& limb : limbs_) {
+    for (LimbPlace& limb : limbs_) {
       limb.across = (limb.across - up_ * up_.dot(limb.across)).normalized();
       drives.push_back(limb.drive);
       across.push_back(limb.across);
     }
     middle_ = middle_of(drives, across, up_);
-    for (Limb3d& limb : limbs_) {
+    for (LimbPlace& limb : limbs_) {
       limb.outwards = limb.across.cross(up_);
       const auto radial = [&](const Vec& point) { return (point - middle_).dot(limb.outwards); };
       const double side = std::abs(radial(limb.drive)) > 10 * kPoint ? radial(limb.drive) : radial(limb.elbow);
@@ -205,7 +191,7 @@ class Placer {
 
   // --- the robot ----------------------------------------------------------------------------------
   void place_frames() {
-    const Limb3d& first = limbs_[out_.order.front()];
+    const LimbPlace& first = limbs_[out_.order.front()];
     out_.X_RW.linear().col(0) = first.outwards;
     out_.X_RW.linear().col(1) = first.across;
     out_.X_RW.linear().col(2) = up_;
@@ -242,14 +228,14 @@ class Placer {
 
   void add_limb(std::size_t i) {
     const Limb& part = parts_.limbs[i];
-    const Limb3d& in = limbs_[i];
+    const LimbPlace& in = limbs_[i];
     LimbGeometry<double> limb;
     const Vec x = turned(in.outwards);
     limb.azimuth = std::atan2(x.y(), x.x());
     if (limb.azimuth < -1e-9) limb.azimuth += 2 * std::numbers::pi;
     limb.azimuth = tidy(limb.azimuth);
-    limb.p_BA = tidy(turned(ends_.offsets[i]));
-    limb.strut = tidy(ends_.lengths[i]);
+    limb.p_BA = tidy(turned(out_.ends.offsets[i]));
+    limb.strut = tidy(out_.ends.lengths[i]);
     limb.strut_spacing = tidy(in.spacing);
     AdoptedDrive drive;
     drive.joint = part.drive->name;
@@ -272,14 +258,15 @@ class Placer {
 
   void add_telescope(const Telescope& bar) {
     if (bar.axis.cross(up_).norm() > kParallel)
-      refuse("the telescope's drive turns about the robot's vertical axis, but this one leans", at(*bar.drive),
+      refuse("the telescope's drive turns about the robot's vertical axis, but this one leans", tree_.at(*bar.drive),
              "mend the joint's rpy or axis");
     if ((bar.upper_joint - bar.place).cross(bar.axis).norm() > kPoint)
-      refuse("the upper universal joint of the telescope bar must lie on the axis of its drive", at(*bar.drive),
+      refuse("the upper universal joint of the telescope bar must lie on the axis of its drive", tree_.at(*bar.drive),
              "mend the joints' origins");
     TelescopeGeometry<double> geometry;
     geometry.p_WU = tidy(in_base(bar.upper_joint));
-    geometry.p_BV = ends_.assembled ? tidy(turned(bar.lower_joint - out_.plate_centre)) : lower_joint_alone(bar);
+    geometry.p_BV =
+        out_.ends.assembled ? tidy(turned(bar.lower_joint - out_.ends.plate_centre)) : lower_joint_alone(bar);
     out_.robot.telescope = geometry;
     AdoptedDrive drive;
     drive.joint = bar.drive->name;
@@ -291,9 +278,8 @@ class Placer {
   /// drawn.
   Vec lower_joint_alone(const Telescope& bar) {
     double height = 0;
-    const std::vector<Pose> X_R = zero_pose(tree_);
     for (const std::string& link : tree_.body(bar.tool.back()).links) {
-      const Vec above = bar.lower_joint - link_pose(tree_, X_R, link).translation();
+      const Vec above = bar.lower_joint - link_pose(tree_, parts_.X_R, link).translation();
       if (above.cross(up_).norm() < kPoint) height = above.dot(up_);
     }
     out_.notes.push_back(
@@ -350,8 +336,7 @@ class Placer {
     if ((down + Vec::UnitZ()).norm() > kParallel)
       out_.notes.push_back(
           "gravity is taken from base to plate, though z of the root link points elsewhere; if the robot hangs or "
-          "leans, give "
-          "--gravity-direction");
+          "leans, give --gravity-direction");
     return {0, 0, -size};
   }
 
@@ -363,10 +348,10 @@ class Placer {
 
   /// Elbows outwards or inwards: the posture in which inverse kinematics gives the pose of the CAD.
   void find_postures() {
-    if (!ends_.assembled) return;  // elbows outwards, as nearly all
+    if (!out_.ends.assembled) return;  // elbows outwards, as nearly all
     RobotDescription& robot = out_.robot;
     Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
-    z.head<3>() = in_base(out_.plate_centre);
+    z.head<3>() = in_base(out_.ends.plate_centre);
     for (std::size_t k = 0; k < robot.limbs.size(); ++k) {
       const double drawn = out_.drives[k].offset;  // where the joint's zero is
       double best = std::numeric_limits<double>::infinity();
@@ -389,7 +374,7 @@ class Placer {
         refuse(fmt::format(
                    "the pose of the CAD does not close: limb {} would have to stand {:.4g} {} from where it is drawn",
                    k + 1, best, prismatic_ ? "m" : "rad"),
-               at(*parts_.limbs[out_.order[k]].drive),
+               tree_.at(*parts_.limbs[out_.order[k]].drive),
                "assemble the robot in the CAD before the export, or give --plate-frame");
     }
   }
@@ -398,9 +383,8 @@ class Placer {
   const Parts& parts_;
   const AdoptOptions& options_;
   bool prismatic_ = false;
-  std::vector<Limb3d> limbs_;
+  std::vector<LimbPlace> limbs_;
   Vec up_ = Vec::UnitZ(), middle_ = Vec::Zero();
-  Attachments ends_;
   std::vector<double> zero_;  ///< of each rail, in the CAD's coordinate
   Placed out_;
 };

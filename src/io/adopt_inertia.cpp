@@ -24,10 +24,9 @@ Pose frame(const Eigen::Matrix3d& R, const Vec& origin) {
 
 class Collector {
  public:
-  Collector(const UrdfTree& tree, const Parts& parts, const Placed& placed, std::vector<std::string>& notes)
-      : tree_(tree), parts_(parts), placed_(placed), notes_(notes), X_R_(zero_pose(tree)) {}
+  Collector(const UrdfTree& tree, const Parts& parts, Placed& placed) : tree_(tree), parts_(parts), placed_(placed) {}
 
-  NamedValues run() {
+  void run() {
     std::vector<Ten> arms, struts;
     for (std::size_t k = 0; k < placed_.order.size(); ++k) {
       arms.push_back(arm(k));
@@ -36,9 +35,8 @@ class Collector {
     shared("upper_arm", arms);
     shared("strut", struts);
     const Eigen::Matrix3d R_W = placed_.X_RW.linear();
-    put("platform", of_links(parts_.plate_links, frame(R_W, placed_.plate_centre)));
+    put("platform", of_links(parts_.plate_links, frame(R_W, placed_.ends.plate_centre)));
     if (parts_.telescope) telescope(*parts_.telescope, R_W);
-    return values_;
   }
 
  private:
@@ -47,7 +45,7 @@ class Collector {
     for (const std::string& link : links) {
       const auto found = tree_.inertials.find(link);
       if (found == tree_.inertials.end()) continue;
-      sum += found->second.in_frame(X_RF.inverse() * link_pose(tree_, X_R_, link));
+      sum += found->second.in_frame(X_RF.inverse() * link_pose(tree_, parts_.X_R, link));
     }
     return sum;
   }
@@ -80,7 +78,7 @@ class Collector {
     const std::size_t i = placed_.order[k];
     const Limb& part = parts_.limbs[i];
     const Eigen::Matrix3d R_L = limb_frame(k);
-    const Vec d = R_L.transpose() * placed_.strut_directions[i];
+    const Vec d = R_L.transpose() * placed_.ends.directions[i];
     const Eigen::Matrix3d R = R_L * (Eigen::AngleAxisd(std::atan2(-d.z(), d.x()), Vec::UnitY()) *
                                      Eigen::AngleAxisd(std::asin(std::clamp(d.y(), -1.0, 1.0)), Vec::UnitZ()))
                                         .toRotationMatrix();
@@ -110,22 +108,22 @@ class Collector {
     const Vec tool = bar.lower_joint - R_W * Vec(0, 0, placed_.robot.telescope->p_BV.z());
     put("tool", of_bodies(bar.tool, frame(R_W, tool)));
     const Ten yoke = of_bodies(bar.yoke, frame(R_W, bar.upper_joint));
-    if (yoke(inertial::kIzz) > 0) values_["drive4.rotor_inertia"] = yoke(inertial::kIzz);
+    if (yoke(inertial::kIzz) > 0) placed_.parameters["drive4.rotor_inertia"] = yoke(inertial::kIzz);
   }
 
   void put(const std::string& name, const Ten& p) {
     if (!(p(inertial::kM) > 0)) {
-      notes_.push_back(fmt::format("the links of {} have no mass", name));
+      placed_.notes.push_back(fmt::format("the links of {} have no mass", name));
       return;
     }
     if (!is_physically_consistent<double>(p)) {
-      notes_.push_back(
+      placed_.notes.push_back(
           fmt::format("mass and inertia of {} are not those of a body (no inertia, or one that breaks the triangle "
                       "rule); they are left out",
                       name));
       return;
     }
-    for (int k = 0; k < kInertialParameters; ++k) values_[name + "." + kInertialNames[k]] = p(k);
+    for (int k = 0; k < kInertialParameters; ++k) placed_.parameters[name + "." + kInertialNames[k]] = p(k);
   }
 
   /// The mean of three like limbs under the shared name, else each under its own.
@@ -137,23 +135,19 @@ class Collector {
     for (const Ten& p : limbs) worst = std::max(worst, (p - mean).cwiseAbs().maxCoeff());
     put(name, mean);
     if (worst <= kSame * scale || !(mean(inertial::kM) > 0)) return;
-    notes_.push_back(
+    placed_.notes.push_back(
         fmt::format("the limbs' {} are not alike; their mean stands for all", name == "strut" ? "struts" : "arms"));
   }
 
   const UrdfTree& tree_;
   const Parts& parts_;
-  const Placed& placed_;
-  std::vector<std::string>& notes_;
-  const std::vector<Pose> X_R_;
-  NamedValues values_;
+  Placed& placed_;
 };
 
 }  // namespace
 
-NamedValues inertial_values(const UrdfTree& tree, const Parts& parts, const Placed& placed,
-                            std::vector<std::string>& notes) {
-  return Collector(tree, parts, placed, notes).run();
+void add_masses(const UrdfTree& tree, const Parts& parts, Placed& placed) {
+  Collector(tree, parts, placed).run();
 }
 
 }  // namespace deltadyn::cad

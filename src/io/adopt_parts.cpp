@@ -17,7 +17,11 @@ constexpr int kFarthestRoot = 8;  // moving joints between the root and the base
 
 class Finder {
  public:
-  Finder(const UrdfTree& tree, const AdoptOptions& options) : tree_(tree), options_(options), X_R_(zero_pose(tree)) {}
+  Finder(const UrdfTree& tree, const AdoptOptions& options) : tree_(tree), options_(options) {
+    parts_.X_R.assign(tree.bodies.size(), Pose::Identity());
+    // A body stands behind its parent in the list.
+    for (const Joint& j : tree.joints) parts_.X_R[static_cast<std::size_t>(j.child)] = pose(j.parent) * j.X_PJ;
+  }
 
   Parts run() {
     find_base();
@@ -26,29 +30,25 @@ class Finder {
     const bool prismatic = parts_.limbs.front().drive->prismatic;
     for (const Limb& limb : parts_.limbs)
       if (limb.drive->prismatic != prismatic)
-        refuse("the drives of the limbs are of different kinds", at(*limb.drive), "name the drives by --drives");
+        refuse("the drives of the limbs are of different kinds", tree_.at(*limb.drive), "name the drives by --drives");
     if (parts_.telescope && prismatic)
-      refuse("a telescope bar with prismatic drives is not a known type", at(*parts_.telescope->drive),
+      refuse("a telescope bar with prismatic drives is not a known type", tree_.at(*parts_.telescope->drive),
              "name the drives by --drives");
     find_plate();
     return parts_;
   }
 
  private:
-  // --- messages and access ------------------------------------------------------------------------
-  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
-  [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
-  [[nodiscard]] const Body& body(int index) const { return tree_.body(index); }
-  [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
-  [[nodiscard]] const Pose& pose(int index) const { return X_R_[static_cast<std::size_t>(index)]; }
+  // --- access --------------------------------------------------------------------------------------
+  [[nodiscard]] const Pose& pose(int index) const { return parts_.X_R[static_cast<std::size_t>(index)]; }
   [[nodiscard]] Vec place(const Joint& j) const { return (pose(j.parent) * j.X_PJ).translation(); }
   [[nodiscard]] Vec axis(const Joint& j) const { return (pose(j.parent) * j.X_PJ).linear() * j.axis; }
 
   /// Joints to the children that hold something.
   [[nodiscard]] std::vector<const Joint*> children(int index) const {
     std::vector<const Joint*> list;
-    for (const int k : body(index).joints)
-      if (!joint(k).floating) list.push_back(&joint(k));
+    for (const int k : tree_.body(index).joints)
+      if (!tree_.joint(k).floating) list.push_back(&tree_.joint(k));
     return list;
   }
 
@@ -63,7 +63,7 @@ class Finder {
           base_ = index;
           return;
         }
-        for (const int k : body(index).joints) next.push_back(joint(k).child);
+        for (const int k : tree_.body(index).joints) next.push_back(tree_.joint(k).child);
       }
       level = next;
     }
@@ -91,9 +91,9 @@ class Finder {
       for (const std::string& name : options_.drives) {
         const auto found = std::ranges::find(candidates, name, &Joint::name);
         if (found == candidates.end())
-          refuse(
-              fmt::format("'{}' is no joint on the base, {}; these are: {}", name, body(base_).name, names(candidates)),
-              "--drives", "name three or four of them", ExitCode::usage);
+          refuse(fmt::format("'{}' is no joint on the base, {}; these are: {}", name, tree_.body(base_).name,
+                             names(candidates)),
+                 "--drives", "name three or four of them", ExitCode::usage);
         named.push_back(*found);
       }
       candidates = named;
@@ -125,11 +125,11 @@ class Finder {
     const std::string found = names(drives), all = names(children(base_));
     if (parts_.limbs.size() == 4)
       refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet", found),
-             at(body(base_).name),
+             tree_.at(tree_.body(base_).name),
              fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
     refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}",
                        drives.size(), drives.empty() ? "" : ": ", found),
-           at(body(base_).name),
+           tree_.at(tree_.body(base_).name),
            fmt::format("hang the struts on the arms, or name the drives: --drives A,B,C out of {}", all));
   }
 
@@ -139,7 +139,7 @@ class Finder {
     for (const Joint* j : children(drive.child)) collect_strut(*j, limb);
     if (limb.struts.empty() || limb.struts.size() > 2)
       refuse(fmt::format("an arm or carriage carries one strut or two, but this one carries {}", limb.struts.size()),
-             at(body(drive.child).name),
+             tree_.at(tree_.body(drive.child).name),
              "leave springs and covers between the struts out of the tree, or fix them to a strut");
     parts_.limbs.push_back(limb);
   }
@@ -162,17 +162,17 @@ class Finder {
       const Vec one = place(*next[0]), two = place(*next[1]);
       if (((one + two) / 2 - strut.elbow).norm() < kPoint && (one - two).norm() > kPoint) {
         limb.arm.insert(limb.arm.end(), strut.bodies.begin(), strut.bodies.end());
-        parts_.notes.push_back(
-            fmt::format("link {} joins the two struts at the elbow; its mass is counted to the arm", body(b).name));
+        parts_.notes.push_back(fmt::format("link {} joins the two struts at the elbow; its mass is counted to the arm",
+                                           tree_.body(b).name));
         for (const Joint* j : next) collect_strut(*j, limb);
         return;
       }
     }
-    strut.name = body(b).name;
+    strut.name = tree_.body(b).name;
     if (next.size() > 1)
       refuse(fmt::format("{} moving joints hang on this strut ({}), but it carries nothing but the plate", next.size(),
                          names(next)),
-             at(strut.name), "fix what belongs to the strut to it by fixed joints");
+             tree_.at(strut.name), "fix what belongs to the strut to it by fixed joints");
     if (next.size() == 1) {
       strut.end = place(*next.front());
       hung_plates_.push_back(next.front());
@@ -187,15 +187,15 @@ class Finder {
     Vec frame = Vec::Zero();
     InertialVector<double> sum = InertialVector<double>::Zero();
     double farthest = 10 * kPoint;
-    for (const std::string& link : body(rod).links) {
-      const Pose X_RL = link_pose(tree_, X_R_, link);
+    for (const std::string& link : tree_.body(rod).links) {
+      const Pose X_RL = link_pose(tree_, parts_.X_R, link);
       const auto inertial = tree_.inertials.find(link);
       if (inertial != tree_.inertials.end() && inertial->second.mass > 0) {
         sum += inertial->second.in_frame(X_RL);
         continue;
       }
       const double distance = (X_RL.translation() - strut.elbow).norm();
-      if (link == body(rod).name || distance < farthest || strut.end) continue;
+      if (link == tree_.body(rod).name || distance < farthest || strut.end) continue;
       farthest = distance;
       frame = X_RL.translation();
     }
@@ -203,17 +203,15 @@ class Finder {
     for (const robot_file::Loop& loop : tree_.loops)
       for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor})
         if (!strut.end && tree_.links.at(end->link).body == rod)
-          strut.end = (link_pose(tree_, X_R_, end->link) * end->X_LO).translation();
+          strut.end = (link_pose(tree_, parts_.X_R, end->link) * end->X_LO).translation();
     if (sum(0) > 0) strut.direction = direction_of(strut, sum);
   }
 
   [[nodiscard]] static std::optional<Vec> direction_of(const Strut& strut, const InertialVector<double>& p) {
-    const Vec c = p.segment<3>(inertial::kMcx) / p(0), arm = c - strut.elbow;
+    const robot_file::LinkInertial central = robot_file::central_inertial(p);
+    const Vec arm = central.X_LC.translation() - strut.elbow;
     if (arm.norm() < 10 * kPoint) return std::nullopt;
-    using namespace inertial;
-    Eigen::Matrix3d I;
-    I << p(kIxx), p(kIxy), p(kIxz), p(kIxy), p(kIyy), p(kIyz), p(kIxz), p(kIyz), p(kIzz);
-    I -= p(0) * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+    const Eigen::Matrix3d& I = central.I_C;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(I);
     // Where the tensor tells the rod's axis, it must be the line through the centre of mass: else that centre lies
     // beside the rod.
@@ -227,15 +225,15 @@ class Finder {
   // --- telescope bar ------------------------------------------------------------------------------
   void add_telescope(const Joint& drive, const std::vector<const Joint*>& below) {
     if (parts_.telescope)
-      refuse(fmt::format("joint {} carries a telescope bar, too", parts_.telescope->drive->name), at(drive),
+      refuse(fmt::format("joint {} carries a telescope bar, too", parts_.telescope->drive->name), tree_.at(drive),
              "name the four drives by --drives");
     const auto slide = std::ranges::find_if(below, &Joint::prismatic);
     if (slide == below.begin())
-      refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive", at(**slide),
-             "put two revolute joints (about x, then y) between drive and bar");
+      refuse("the telescope bar hangs on a universal joint, but here the sliding joint follows the drive",
+             tree_.at(**slide), "put two revolute joints (about x, then y) between drive and bar");
     if (slide + 1 == below.end())
       refuse("the telescope bar ends in a universal joint that carries the tool, but nothing follows the sliding joint",
-             at(**slide), "hang the tool on the bar's lower part by two revolute joints");
+             tree_.at(**slide), "hang the tool on the bar's lower part by two revolute joints");
     Telescope& bar = parts_.telescope.emplace();
     bar.drive = &drive;
     bar.axis = axis(drive);
@@ -247,7 +245,7 @@ class Finder {
         if ((place(**j) - point).norm() > kPoint)
           refuse(fmt::format("{}: its axes must meet, but this one lies {:.6g} beside it", what,
                              (place(**j) - point).norm()),
-                 at(**j), "mend the joint's origin");
+                 tree_.at(**j), "mend the joint's origin");
     };
     meet(below.begin(), slide, bar.upper_joint, "the upper universal joint");
     meet(slide + 1, below.end(), bar.lower_joint, "the lower universal joint");
@@ -259,7 +257,7 @@ class Finder {
 
   // --- plate --------------------------------------------------------------------------------------
   void add_with_children(int index, const Vec& ball) {
-    for (const std::string& link : body(index).links) parts_.plate_links.push_back(link);
+    for (const std::string& link : tree_.body(index).links) parts_.plate_links.push_back(link);
     for (const Joint* j : children(index)) {
       if ((place(*j) - ball).norm() > kPoint)
         parts_.notes.push_back(
@@ -283,11 +281,11 @@ class Finder {
       plate_by_name();
     } else if (loose_.size() == 1) {
       const int index = loose_.front();
-      parts_.plate_links = body(index).links;
+      parts_.plate_links = tree_.body(index).links;
       parts_.plate_place = pose(index).translation();
     } else {
       std::vector<std::string> found;
-      for (const int index : loose_) found.push_back(body(index).name);
+      for (const int index : loose_) found.push_back(tree_.body(index).name);
       refuse(loose_.empty()
                  ? std::string("no strut carries a plate, and no link hangs loose that could be it")
                  : fmt::format("no strut carries a plate, and several links hang loose: {}", fmt::join(found, ", ")),
@@ -309,12 +307,11 @@ class Finder {
         if (taken.count(place.parent) > 0 && taken.insert(link).second) more = true;
     }
     parts_.plate_links.assign(taken.begin(), taken.end());
-    parts_.plate_place = link_pose(tree_, X_R_, options_.plate).translation();
+    parts_.plate_place = link_pose(tree_, parts_.X_R, options_.plate).translation();
   }
 
   const UrdfTree& tree_;
   const AdoptOptions& options_;
-  const std::vector<Pose> X_R_;
   Parts parts_;
   int base_ = 0;
   std::vector<const Joint*> hung_plates_;  ///< joints at the far ends of struts
@@ -322,14 +319,6 @@ class Finder {
 };
 
 }  // namespace
-
-std::vector<Pose> zero_pose(const UrdfTree& tree) {
-  std::vector<Pose> X_R(tree.bodies.size(), Pose::Identity());
-  // A body stands behind its parent in the list.
-  for (const Joint& j : tree.joints)
-    X_R[static_cast<std::size_t>(j.child)] = X_R[static_cast<std::size_t>(j.parent)] * j.X_PJ;
-  return X_R;
-}
 
 Pose link_pose(const UrdfTree& tree, const std::vector<Pose>& X_R, const std::string& link) {
   const robot_file::LinkPlace& place = tree.links.at(link);

@@ -301,19 +301,22 @@ void MapDefaults::validate(int drives) const {
   demand(counts_per_turn, "--counts-per-turn");
   demand(lead, "--lead-m-turn");
   if (rate_hz) demand({*rate_hz}, "--rate-hz");
-  const auto demand_unit = [](const std::string& unit, Quantity quantity, const char* flag) {
-    const auto known = log_unit(unit);
-    if (unit.empty() || (known && known->quantity == quantity)) return;
-    throw Error(fmt::format("{} {} is no known unit of a {}", flag, unit, word_of(quantity)), "",
-                fmt::format("give one of {}", units_of(quantity)), ExitCode::usage);
-  };
-  demand_unit(position_unit, Quantity::position, "--position-unit");
-  demand_unit(velocity_unit, Quantity::velocity, "--velocity-unit");
-  demand_unit(torque_unit, Quantity::torque, "--torque-unit");
+  for (const Quantity quantity : {Quantity::position, Quantity::velocity, Quantity::torque}) {
+    const auto known = log_unit(unit(quantity));
+    if (unit(quantity).empty() || (known && known->quantity == quantity)) continue;
+    throw Error(
+        fmt::format("--{}-unit {} is no known unit of a {}", word_of(quantity), unit(quantity), word_of(quantity)), "",
+        fmt::format("give one of {}", units_of(quantity)), ExitCode::usage);
+  }
   if (!time_unit.empty() && !time_unit_s(time_unit)) {
     throw Error(fmt::format("--time-unit {} is no known unit", time_unit), "", "give s, ms, us, ns, min or filetime",
                 ExitCode::usage);
   }
+}
+
+std::string MapDefaults::unit(Quantity quantity) const {
+  const std::string units[] = {position_unit, velocity_unit, "", torque_unit};
+  return units[static_cast<std::size_t>(quantity)];
 }
 
 void MapDefaults::apply(ColumnMap& map) const {
@@ -326,12 +329,10 @@ void MapDefaults::apply(ColumnMap& map) const {
     if (channel.quantity == Quantity::torque) {
       set(torque_constant, channel.drive, channel.torque_constant);
       set(rated_torque, channel.drive, channel.rated_torque);
-      if (!torque_unit.empty()) channel.unit = torque_unit;
     } else {
       set(counts_per_turn, channel.drive, channel.counts_per_turn);
     }
-    if (channel.quantity == Quantity::position && !position_unit.empty()) channel.unit = position_unit;
-    if (channel.quantity == Quantity::velocity && !velocity_unit.empty()) channel.unit = velocity_unit;
+    if (const std::string given = unit(channel.quantity); !given.empty()) channel.unit = given;
   }
 }
 
@@ -359,13 +360,11 @@ std::string to_toml(const ColumnMap& map, const std::vector<std::string>& remark
       "# A channel at the drive in SI units is sign * (scale * recorded + offset) [unit], through its constants and "
       "its gear.\n"
       "# Further keys of a channel: scale, offset, sign (1 or -1), gear_ratio (motor turns per drive turn, where the "
-      "recording "
-      "is of\n"
+      "recording is of\n"
       "# the motor), torque_constant_Nm_A (unit A), rated_torque_Nm (unit % or permille), counts_per_turn (unit cnt), "
       "lead_m_turn\n"
       "# (motors of sliding drives), wrap (the number begins again after this much), delay_s (the value is older than "
-      "its "
-      "stamp).\n";
+      "its stamp).\n";
   for (const std::string& remark : remarks) text += "# " + remark + "\n";
   if (!map.topic.empty()) text += fmt::format("\ntopic = {}\n", quoted(map.topic));
   if (!map.time_source.empty() || map.rate_hz) {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "header_words.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -38,7 +39,7 @@ std::vector<Words> told_apart(const std::vector<std::string>& names) {
 }
 
 bool is_number(const std::string& word) {
-  return std::isdigit(static_cast<unsigned char>(word.front())) != 0;
+  return forms::is_digit(word.front());
 }
 bool is_letter(const std::string& word) {
   return word.size() == 1 && std::isalpha(static_cast<unsigned char>(word.front())) != 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "deltadyn/kinematics/forward.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -11,16 +10,18 @@
 #include "deltadyn/runtime/workspace.hpp"
 
 #include "export_parts.hpp"
-#include "robot_file_format.hpp"
+#include "xml_elements.hpp"
 
 namespace deltadyn {
 namespace {
 
 using model_export::Parts;
 using model_export::text;
-using tinyxml2::XMLElement;
 using Vec = Vector3<double>;
 using Rotation = Eigen::Matrix3d;
+using xml::child;
+using xml::set;
+using xml::XMLElement;
 
 // The stiffest that MuJoCo takes: impedance at its upper bound, time constant two steps.
 constexpr const char* kTimestep = "0.0005";
@@ -86,13 +87,10 @@ class Mjcf {
       : robot_(robot.description()), parts_(std::move(parts)), home_(find_home(robot)) {}
 
   ExportedModel run() {
-    root_ = document_.NewElement("mujoco");
-    document_.InsertEndChild(root_);
-    root_->SetAttribute("model", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
+    root_ = child(&document_, "mujoco", {{"model", robot_.name.empty() ? robot_.type : robot_.name}});
     const std::string words = fmt::format(
         "\n  {} written by deltadyn: identified parameters, loops closed by equality constraints.\n  SI units, angles "
-        "in rad. "
-        "Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
+        "in rad. Drive positions as in the robot file; at rest the file is assembled in the home pose.\n{}",
         robot_.type, model_export::left_out_comment(parts_.left_out, "  "));
     root_->InsertNewComment(words.c_str());
     settings();
@@ -105,103 +103,75 @@ class Mjcf {
       telescope();
     } else if (!robot_.parts.empty()) {
       XMLElement* plate = body(world_, "platform", home_.plate, Rotation::Identity());
-      child(plate, "freejoint")->SetAttribute("name", "platform");
+      child(plate, "freejoint", {{"name", "platform"}});
       fill_platform(plate);
     }
     if (equality_->FirstChild() != nullptr) root_->InsertEndChild(equality_);
     root_->InsertEndChild(actuator_);
-    tinyxml2::XMLPrinter printer;
-    document_.Print(&printer);
-    return {printer.CStr(), parts_.left_out, 0};
+    return {xml::text_of(document_), parts_.left_out, 0};
   }
 
  private:
-  static XMLElement* child(XMLElement* parent, const char* name) { return parent->InsertNewChildElement(name); }
-  static void set(XMLElement* element, const char* name, const std::string& value) {
-    element->SetAttribute(name, value.c_str());
-  }
-
   void settings() {
-    XMLElement* compiler = child(root_, "compiler");
-    set(compiler, "angle", "radian");
-    set(compiler, "autolimits", "true");
-    XMLElement* option = child(root_, "option");
+    child(root_, "compiler", {{"angle", "radian"}, {"autolimits", "true"}});
     // First-order integrators err by about 1 % of the torque when the fourth drive turns fast.
-    set(option, "integrator", "RK4");
-    set(option, "timestep", kTimestep);
-    set(option, "gravity", text(robot_.gravity));
-    set(option, "tolerance", "1e-12");
-    set(option, "iterations", "100");
+    child(root_, "option",
+          {{"integrator", "RK4"},
+           {"timestep", kTimestep},
+           {"gravity", text(robot_.gravity)},
+           {"tolerance", "1e-12"},
+           {"iterations", "100"}});
     XMLElement* defaults = child(root_, "default");
-    XMLElement* equality = child(defaults, "equality");
-    set(equality, "solref", kStiff);
-    set(equality, "solimp", kImpedance);
-    XMLElement* joint = child(defaults, "joint");
-    set(joint, "solreffriction", kStickingRate);
-    set(joint, "solimpfriction", kImpedance);
-    XMLElement* geom = child(defaults, "geom");  // to be looked at only
-    set(geom, "contype", "0");
-    set(geom, "conaffinity", "0");
-    set(geom, "mass", "0");
-    set(geom, "rgba", "0.6 0.65 0.7 1");
+    child(defaults, "equality", {{"solref", kStiff}, {"solimp", kImpedance}});
+    child(defaults, "joint", {{"solreffriction", kStickingRate}, {"solimpfriction", kImpedance}});
+    // Shapes are to be looked at only.
+    child(defaults, "geom", {{"contype", "0"}, {"conaffinity", "0"}, {"mass", "0"}, {"rgba", "0.6 0.65 0.7 1"}});
   }
 
   void light_and_base() {
-    XMLElement* light = child(world_, "light");
-    set(light, "pos", "0 -1 1.5");
-    set(light, "dir", "0 0.6 -1");
+    child(world_, "light", {{"pos", "0 -1 1.5"}, {"dir", "0 0.6 -1"}});
     double radius = 0;
     for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_WD.head<2>().norm());
-    if (radius <= 0) return;
-    XMLElement* plate = child(world_, "geom");
-    set(plate, "type", "cylinder");
-    set(plate, "fromto", fmt::format("0 0 0.02 0 0 0.04"));
-    set(plate, "size", text(radius));
+    if (radius > 0)
+      child(world_, "geom", {{"type", "cylinder"}, {"fromto", "0 0 0.02 0 0 0.04"}, {"size", text(radius)}});
   }
 
   static XMLElement* body(XMLElement* parent, const std::string& name, const Vec& place, const Rotation& R) {
-    XMLElement* element = child(parent, "body");
-    set(element, "name", name);
-    set(element, "pos", text(place));
+    XMLElement* element = child(parent, "body", {{"name", name}, {"pos", text(place)}});
     const Eigen::Quaterniond turn(R);
-    if (!R.isIdentity(0))
-      set(element, "quat", fmt::format("{} {} {} {}", text(turn.w()), text(turn.x()), text(turn.y()), text(turn.z())));
+    if (!R.isIdentity(0)) set(element, {{"quat", text(turn.w()) + " " + text(Vec(turn.vec()))}});
     return element;
   }
 
   static XMLElement* joint(XMLElement* parent, const std::string& name, const char* type, const Vec& axis,
                            double reference, const Vec& place = Vec::Zero()) {
-    XMLElement* element = child(parent, "joint");
-    set(element, "name", name);
-    set(element, "type", type);
-    set(element, "axis", text(axis));
-    if (place.norm() > 0) set(element, "pos", text(place));
-    if (reference != 0) set(element, "ref", text(reference));
+    XMLElement* element = child(parent, "joint", {{"name", name}, {"type", type}, {"axis", text(axis)}});
+    if (place.norm() > 0) set(element, {{"pos", text(place)}});
+    set_if_any(element, "ref", reference);
     return element;
   }
 
   void friction(XMLElement* element, const std::string& name) const {
-    if (const double viscous = parts_.value(name + ".viscous"); viscous != 0) set(element, "damping", text(viscous));
-    if (const double coulomb = parts_.value(name + ".coulomb"); coulomb != 0)
-      set(element, "frictionloss", text(coulomb));
+    set_if_any(element, "damping", parts_.value(name + ".viscous"));
+    set_if_any(element, "frictionloss", parts_.value(name + ".coulomb"));
+  }
+
+  static void set_if_any(XMLElement* element, const char* name, double value) {
+    if (value != 0) set(element, {{name, text(value)}});
   }
 
   void drive(XMLElement* element, std::size_t index) {
     const std::string name = robot_file::drive_name(index);
     friction(element, name);
-    if (const double rotor = parts_.value(name + ".rotor_inertia"); rotor != 0) set(element, "armature", text(rotor));
+    set_if_any(element, "armature", parts_.value(name + ".rotor_inertia"));
     const DriveLimits& limits = robot_.limits[index];
     if (std::isfinite(limits.lower) && std::isfinite(limits.upper))
-      set(element, "range", text(limits.lower) + " " + text(limits.upper));
+      set(element, {{"range", text(limits.lower) + " " + text(limits.upper)}});
     const double offset = parts_.value(name + ".offset");
-    XMLElement* motor = actuator_->InsertNewChildElement(offset != 0 ? "general" : "motor");
-    set(motor, "name", name);
-    set(motor, "joint", name);
-    if (offset != 0) {  // the measured torque holds the offset, the shaft does not feel it
-      set(motor, "biastype", "affine");
-      set(motor, "biasprm", text(-offset) + " 0 0");
-    }
-    if (std::isfinite(limits.effort)) set(motor, "ctrlrange", text(-limits.effort) + " " + text(limits.effort));
+    XMLElement* motor = child(actuator_, offset != 0 ? "general" : "motor", {{"name", name}, {"joint", name}});
+    if (offset != 0)  // the measured torque holds the offset, the shaft does not feel it
+      set(motor, {{"biastype", "affine"}, {"biasprm", text(-offset) + " 0 0"}});
+    if (std::isfinite(limits.effort)) set(motor, {{"ctrlrange", text(-limits.effort) + " " + text(limits.effort)}});
   }
 
   /// \param gyration  radius of gyration for a body whose parameters say nothing of its inertia [m]
@@ -222,27 +192,18 @@ class Mjcf {
     second =
         solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() * solver.eigenvectors().transpose();
     const Eigen::Matrix3d I = second.trace() * Eigen::Matrix3d::Identity() - second;
-    XMLElement* inertia = child(element, "inertial");
-    set(inertia, "pos", text(c));
-    set(inertia, "mass", text(p(0)));
-    set(inertia, "fullinertia",
-        fmt::format("{} {} {} {} {} {}", text(I(0, 0)), text(I(1, 1)), text(I(2, 2)), text(I(0, 1)), text(I(0, 2)),
-                    text(I(1, 2))));
+    const std::string about_axes = text(Vec(I.diagonal())), about_planes = text(Vec(I(0, 1), I(0, 2), I(1, 2)));
+    child(element, "inertial",
+          {{"pos", text(c)}, {"mass", text(p(0))}, {"fullinertia", about_axes + " " + about_planes}});
   }
 
   static void capsule(XMLElement* element, const Vec& from, const Vec& to, double radius) {
     if ((to - from).norm() <= radius) return;
-    XMLElement* geom = child(element, "geom");
-    set(geom, "type", "capsule");
-    set(geom, "fromto", text(from) + " " + text(to));
-    set(geom, "size", text(radius));
+    child(element, "geom", {{"type", "capsule"}, {"fromto", text(from) + " " + text(to)}, {"size", text(radius)}});
   }
 
   static void site(XMLElement* element, const std::string& name, const Vec& place) {
-    XMLElement* mark = child(element, "site");
-    set(mark, "name", name);
-    set(mark, "pos", text(place));
-    set(mark, "size", "0.005");
+    child(element, "site", {{"name", name}, {"pos", text(place)}, {"size", "0.005"}});
   }
 
   void limb(std::size_t i) {
@@ -260,19 +221,15 @@ class Mjcf {
     const double y_angle = home_.strut[i].x() - (revolute ? q : 0), z_angle = home_.strut[i].y();
     for (const bool first : {true, false}) {
       const std::string name = robot_file::strut_name(i, first);
-      const Vec elbow = limb.p_DE_0 + Vec(0, (first ? 0.5 : -0.5) * limb.strut_spacing, 0);
       const Rotation turn = about(Vec::UnitZ(), z_angle);
-      XMLElement* strut = body(upper, name, elbow, about(Vec::UnitY(), y_angle) * turn);
+      XMLElement* strut = body(upper, name, robot_file::strut_elbow(limb, first), about(Vec::UnitY(), y_angle) * turn);
       joint(strut, name + "_y", "hinge", turn.transpose() * Vec::UnitY(), y_angle);
       joint(strut, name + "_z", "hinge", Vec::UnitZ(), z_angle);
       inertial(strut, parts_.body("strut", fmt::format("strut{}", i + 1)), name);
       const Vec end(limb.strut, 0, 0);
       capsule(strut, Vec::Zero(), end, 0.008);
       site(strut, name + "_end", end);
-      XMLElement* connect = equality_->InsertNewChildElement("connect");
-      set(connect, "name", name);
-      set(connect, "site1", name + "_end");
-      set(connect, "site2", "platform_" + name);
+      child(equality_, "connect", {{"name", name}, {"site1", name + "_end"}, {"site2", "platform_" + name}});
     }
   }
 
@@ -281,17 +238,10 @@ class Mjcf {
     for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.norm());
     // The plate never turns, so its inertia moves nothing; the simulation needs one all the same: a disc of its size.
     inertial(plate, platform_parameters(), "platform", std::max(0.02, radius) / 2);
-    XMLElement* geom = child(plate, "geom");
-    set(geom, "type", "cylinder");
-    set(geom, "size", text(std::max(0.02, radius)) + " 0.01");
-    for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
-      const LimbGeometry<double>& limb = robot_.limbs[i];
-      for (const bool first : {true, false}) {
-        const Vec across =
-            (first ? 0.5 : -0.5) * limb.strut_spacing * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
-        site(plate, "platform_" + robot_file::strut_name(i, first), limb.p_BA + across);
-      }
-    }
+    child(plate, "geom", {{"type", "cylinder"}, {"size", text(std::max(0.02, radius)) + " 0.01"}});
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i)
+      for (const bool first : {true, false})
+        site(plate, "platform_" + robot_file::strut_name(i, first), robot_file::strut_end(robot_.limbs[i], first));
   }
 
   /// A robot without a tool still has a body that turns at the bar's end: a tenth of the plate's mass, which moves

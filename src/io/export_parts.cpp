@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/model/inertial_parameters.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn::model_export {
@@ -23,16 +22,9 @@ bool add_as_parameter(const Effect& effect, NamedValues& values) {
 
 }  // namespace
 
-double Parts::value(const std::string& name) const {
-  const auto found = values.find(name);
-  return found == values.end() ? 0.0 : found->second;
-}
-
 InertialVector<double> Parts::body(const std::string& shared, const std::string& own) const {
   const bool individual = !own.empty() && values.count(own + ".m") != 0;
-  InertialVector<double> p;
-  for (int k = 0; k < kInertialParameters; ++k) p(k) = value((individual ? own : shared) + "." + kInertialNames[k]);
-  return p;
+  return robot_file::body_of(values, individual ? own : shared);
 }
 
 Parts collect(const Robot& robot, const Eigen::VectorXd& p, const std::vector<Effect>& effects) {
@@ -71,13 +63,6 @@ void leave_effects_out(const RobotDescription& robot, Parts& parts) {
   for (const Effect& effect : parts.effects)
     parts.left_out.push_back(describe(effect, robot) +
                              ": the format holds viscous and Coulomb friction, offsets and rotors only");
-}
-
-std::string text(double value) {
-  return value == 0 ? "0" : fmt::format("{}", value);
-}
-std::string text(const Eigen::Vector3d& v) {
-  return fmt::format("{} {} {}", text(v.x()), text(v.y()), text(v.z()));
 }
 
 std::string left_out_comment(const std::vector<std::string>& left_out, const std::string& prefix) {

@@ -3,13 +3,12 @@
 /// \file
 /// What all exporters share: the parameters by name with the effects that are parameters worked in, and what is left.
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "deltadyn/io/model_export.hpp"
-#include "deltadyn/io/robot_file.hpp"
-#include "deltadyn/model/inertial_parameters.hpp"
+
+#include "robot_file_format.hpp"
 
 namespace deltadyn::model_export {
 
@@ -18,7 +17,7 @@ struct Parts {
   std::vector<Effect> effects;        ///< those that are no parameter
   std::vector<std::string> left_out;  ///< what the format does not hold, one line each
 
-  [[nodiscard]] double value(const std::string& name) const;
+  [[nodiscard]] double value(const std::string& name) const { return robot_file::value_of(values, name); }
   /// The ten parameters of a body: of its own name ("strut2") if the set has individual limbs, else of the shared one
   /// ("strut").
   [[nodiscard]] InertialVector<double> body(const std::string& shared, const std::string& own = {}) const;
@@ -33,9 +32,7 @@ struct Parts {
 /// For a format that has no place for effects: adds them all to what is left out.
 void leave_effects_out(const RobotDescription& robot, Parts& parts);
 
-/// The number of a text that reads back exactly; no "-0" in a file that people read.
-[[nodiscard]] std::string text(double value);
-[[nodiscard]] std::string text(const Eigen::Vector3d& v);
+using robot_file::text;
 
 /// Lines of a comment with what the format does not hold; empty if nothing.
 [[nodiscard]] std::string left_out_comment(const std::vector<std::string>& left_out, const std::string& prefix);

@@ -2,8 +2,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/runtime/error.hpp"
-
 #include "export_parts.hpp"
 #include "robot_file_format.hpp"
 

@@ -6,13 +6,45 @@
 #include <numbers>
 #include <optional>
 
+#include "deltadyn/io/csv.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 namespace deltadyn {
 namespace {
 
-std::string place_of(const ParameterTable& table, const ParameterEntry& entry, const char* column) {
-  return fmt::format("{}, line {}, column {}", table.file, entry.line, column);
+/// A row that each joint with friction may have, and the words of its messages.
+struct JointRow {
+  const char *name, *owner, *quantity, *mend;
+};
+
+constexpr JointRow kDisplacement{".presliding", "a joint", "displacement",
+                                 "give the displacement over which the friction builds up after a reversal, or 0"};
+constexpr JointRow kDamping{".presliding_damping", "of a joint", "damping",
+                            "give the time by which the friction is ahead of its bristles after a reversal, or 0"};
+
+std::string name_of(const RobotDescription& robot, int joint, const JointRow& row) {
+  return (joint < robot.drives() ? fmt::format("drive{}", joint + 1) : "telescope") + row.name;
+}
+
+/// Its values, drives first, then the telescope; 0 where the file has no such row.
+Eigen::VectorXd of_joints(const ParameterTable& table, const RobotDescription& robot, const JointRow& row) {
+  const int joints = robot.drives() + (robot.telescope ? 1 : 0);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(joints);
+  for (const ParameterEntry& entry : table.entries) {
+    if (!entry.name.ends_with(row.name)) continue;
+    int joint = 0;
+    while (joint < joints && entry.name != name_of(robot, joint, row)) ++joint;
+    if (joint == joints) {
+      throw Error(fmt::format("{} is not {} with friction of this robot", entry.name, row.owner),
+                  place(table.file, entry.line, "name"), "remove the row, or give the parameter file of this robot");
+    }
+    if (!(entry.value >= 0)) {
+      throw Error(fmt::format("the {} {} is negative", row.quantity, entry.value),
+                  place(table.file, entry.line, "value"), row.mend);
+    }
+    values(joint) = entry.value;
+  }
+  return values;
 }
 
 /// Drive (from 0) and number of "drive2.ripple1.waves"; nothing for other rows.
@@ -40,28 +72,20 @@ double rad_of_waves(const std::string& unit) {
 
 }  // namespace
 
-std::string presliding_damping_name(const RobotDescription& robot, int joint) {
-  return presliding_name(robot, joint) + "_damping";
+Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot) {
+  return of_joints(table, robot, kDisplacement);
+}
+
+std::string presliding_name(const RobotDescription& robot, int joint) {
+  return name_of(robot, joint, kDisplacement);
 }
 
 Eigen::VectorXd presliding_damping_of(const ParameterTable& table, const RobotDescription& robot) {
-  const int joints = robot.drives() + (robot.telescope ? 1 : 0);
-  Eigen::VectorXd damping = Eigen::VectorXd::Zero(joints);
-  for (const ParameterEntry& entry : table.entries) {
-    if (!entry.name.ends_with(".presliding_damping")) continue;
-    int joint = 0;
-    while (joint < joints && entry.name != presliding_damping_name(robot, joint)) ++joint;
-    if (joint == joints) {
-      throw Error(fmt::format("{} is not of a joint with friction of this robot", entry.name),
-                  place_of(table, entry, "name"), "remove the row, or give the parameter file of this robot");
-    }
-    if (!(entry.value >= 0)) {
-      throw Error(fmt::format("the damping {} is negative", entry.value), place_of(table, entry, "value"),
-                  "give the time by which the friction is ahead of its bristles after a reversal, or 0");
-    }
-    damping(joint) = entry.value;
-  }
-  return damping;
+  return of_joints(table, robot, kDamping);
+}
+
+std::string presliding_damping_name(const RobotDescription& robot, int joint) {
+  return name_of(robot, joint, kDamping);
 }
 
 std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescription& robot) {
@@ -71,10 +95,10 @@ std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescripti
     if (!of) continue;
     if ((*of)[0] < 0 || (*of)[0] >= robot.drives()) {
       throw Error(fmt::format("{} is of a drive that this robot does not have", entry.name),
-                  place_of(table, entry, "name"), "remove the row, or give the parameter file of this robot");
+                  place(table.file, entry.line, "name"), "remove the row, or give the parameter file of this robot");
     }
     if (!(entry.value > 0)) {
-      throw Error(fmt::format("{} waves are none", entry.value), place_of(table, entry, "value"),
+      throw Error(fmt::format("{} waves are none", entry.value), place(table.file, entry.line, "value"),
                   "give the waves a turn (or a metre), or remove the ripple's three rows");
     }
     Ripple ripple;
@@ -84,7 +108,7 @@ std::vector<Ripple> ripples_of(const ParameterTable& table, const RobotDescripti
     const ParameterEntry *cosine = table.find(stem + "cosine"), *sine = table.find(stem + "sine");
     if (cosine == nullptr || sine == nullptr) {
       throw Error(fmt::format("{} has no {}", entry.name, stem + (cosine == nullptr ? "cosine" : "sine")),
-                  place_of(table, entry, "name"), "give waves, cosine and sine of each ripple");
+                  place(table.file, entry.line, "name"), "give waves, cosine and sine of each ripple");
     }
     ripple.cosine = cosine->value;
     ripple.sine = sine->value;
@@ -101,13 +125,7 @@ std::vector<ParameterEntry> ripple_rows(const std::vector<Ripple>& ripples, cons
     const std::string stem =
         fmt::format("drive{}.ripple{}.", ripple.drive + 1, ++count[static_cast<std::size_t>(ripple.drive)]);
     const auto add = [&](const char* quantity, double value, const char* unit, double std) {
-      ParameterEntry entry;
-      entry.name = stem + quantity;
-      entry.value = value;
-      entry.unit = unit;
-      entry.std = std;
-      entry.data_share = 1;
-      rows.push_back(std::move(entry));
+      rows.push_back({.name = stem + quantity, .value = value, .unit = unit, .std = std, .data_share = 1});
     };
     const char* unit = turns ? "waves/turn" : "waves/m";
     add("waves", ripple.n / rad_of_waves(unit), unit, ripple.n_std / rad_of_waves(unit));

@@ -12,6 +12,7 @@
 #include "drive_order.hpp"
 #include "header_words.hpp"
 #include "recorded_time.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -33,40 +34,12 @@ bool is_direct(const std::string& unit) {
 struct Set {
   std::vector<Candidate> of_drive;
   Origin origin = Origin::unstated;
-  bool has_unit = false;
+  bool has_unit = true;
   bool direct = true;  ///< needs no constant of the motor or encoder to become SI
   std::string doubt;   ///< what the order of the drives rests on, if not on plain names
+
+  [[nodiscard]] const Candidate& operator[](int drive) const { return of_drive[static_cast<std::size_t>(drive)]; }
 };
-
-std::string flag_unit(const MapDefaults& defaults, Quantity quantity) {
-  static constexpr std::string MapDefaults::*kUnitFlags[] = {&MapDefaults::position_unit, &MapDefaults::velocity_unit,
-                                                             nullptr, &MapDefaults::torque_unit};
-  const auto unit = kUnitFlags[static_cast<std::size_t>(quantity)];
-  return unit == nullptr ? "" : defaults.*unit;
-}
-
-/// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
-std::string unit_of(const Candidate& candidate, Quantity quantity, DriveKind kind, const MapDefaults& defaults) {
-  if (const std::string flag = flag_unit(defaults, quantity); !flag.empty()) return flag;
-  if (log_unit(candidate.words.unit)) return candidate.words.unit;
-  const std::string stem = candidate.channel->quantity.empty() ? candidate.words.stem : "/";
-  return customary_unit(stem, quantity, kind);
-}
-
-std::vector<Candidate> candidates_of(const Recording& recording, Quantity quantity, const ColumnMap& map) {
-  std::vector<Candidate> found;
-  for (const RecordedChannel& channel : recording.channels) {
-    if (channel.clock || channel.name == map.time_source || channel.name == recording.timelines[channel.timeline].name)
-      continue;
-    Candidate candidate{&channel, read_header_words(channel.name, channel.unit)};
-    if (!channel.quantity.empty()) {
-      candidate.words.quantity = quantity_of_word(channel.quantity);
-      candidate.words.excluded = false;
-    }
-    if (!candidate.words.excluded && candidate.words.quantity == quantity) found.push_back(std::move(candidate));
-  }
-  return found;
-}
 
 /// Named as in a log of these tools, q1_rad, tau1_Nm: the number is the drive, and those beyond the robot's are not
 /// used.
@@ -91,63 +64,6 @@ std::vector<Candidate> drives_among(const std::vector<Candidate>& members, int d
   return found.size() == static_cast<std::size_t>(drives) ? found : members;
 }
 
-/// Drive of each member; what of it is a conclusion, or the bare order of the message, is said in `set.doubt`.
-std::vector<long> places_of(const std::vector<Candidate>& members, const RobotDescription& robot, Set& set) {
-  std::vector<std::string> names;
-  bool message = true;
-  for (const Candidate& member : members) {
-    message = message && member.channel->place > 0;
-    names.push_back(member.channel->joint.empty() ? member.words.stem : member.channel->joint);
-  }
-  const DriveOrder order = order_by_names(names, robot.telescope.has_value());
-  if (!message) return order.doubt.empty() ? order.places : std::vector<long>{};
-  std::vector<long> places = order.places;
-  std::string why = order.doubt;
-  if (places.empty()) {
-    for (const Candidate& member : members) places.push_back(member.channel->place);
-    why = "their names tell no order, so that of the message is taken";
-  }
-  if (why.empty()) return places;
-  std::vector<std::string> taken;
-  for (std::size_t k = 0; k < names.size(); ++k) taken.push_back(fmt::format("'{}' as drive {}", names[k], places[k]));
-  set.doubt = fmt::format(
-      "the joints {}: {}; check it, and where it is wrong set drive = in a column map (--map-out writes one)",
-      fmt::join(taken, ", "), why);
-  return places;
-}
-
-/// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six
-/// joints and four drives nobody but the user knows which are meant.
-std::optional<Set> set_of(std::vector<Candidate> members, const RobotDescription& robot, Quantity quantity,
-                          const MapDefaults& defaults) {
-  const auto drives = static_cast<std::size_t>(robot.drives());
-  Set set;
-  std::vector<long> places;
-  if (members.size() > drives) members = drives_among(members, robot.drives());
-  if (std::ranges::all_of(members, is_log_name)) {
-    for (const Candidate& member : members) places.push_back(member.words.numbers.back());
-  } else if (members.size() != drives) {
-    return std::nullopt;
-  } else {
-    places = drives == 1 ? std::vector<long>{1} : places_of(members, robot, set);
-  }
-  set.of_drive.resize(drives, {nullptr, {}});
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    if (places[k] >= 1 && places[k] <= robot.drives())
-      set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
-  }
-  set.has_unit = true;
-  for (std::size_t drive = 0; drive < drives; ++drive) {
-    const Candidate& member = set.of_drive[drive];
-    if (member.channel == nullptr) return std::nullopt;
-    set.origin = member.words.origin;
-    const std::string unit = unit_of(member, quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults);
-    set.has_unit = set.has_unit && !unit.empty();
-    set.direct = set.direct && is_direct(unit);
-  }
-  return set;
-}
-
 /// What the members of a group have in common, from the narrowest to the widest.
 enum class Alike { words_and_unit, words, unit, quantity };
 
@@ -165,102 +81,209 @@ std::string key_of(const Candidate& candidate, Alike alike) {
   return "";
 }
 
-/// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other units),
-/// all. Where no names are alike (x axis, y axis, z axis; limb 1, limb 2, limb 3, yaw), their differences may still
-/// tell the drives.
-std::vector<Set> sets_of(const std::vector<Candidate>& candidates, const RobotDescription& robot, Quantity quantity,
-                         const MapDefaults& defaults) {
-  std::vector<Set> sets;
-  for (const Alike alike : {Alike::words_and_unit, Alike::words, Alike::unit, Alike::quantity}) {
-    if (robot.drives() == 1 && alike > Alike::words) break;  // there only the names can tell which is meant
-    std::map<std::string, std::vector<Candidate>> groups;
-    for (const Candidate& candidate : candidates) groups[key_of(candidate, alike)].push_back(candidate);
-    for (const auto& [key, members] : groups) {
-      if (auto set = set_of(members, robot, quantity, defaults)) sets.push_back(*std::move(set));
-    }
-    if (!sets.empty()) break;
-  }
-  return sets;
-}
-
 std::string names_of(const std::vector<Candidate>& members) {
   std::vector<std::string> names;
   for (const Candidate& member : members) names.push_back("'" + member.channel->name + "'");
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string example(Quantity quantity, const std::string& source, const std::string& unit, int drive) {
-  std::string text = to_toml(ChannelMap{.drive = drive, .quantity = quantity, .source = source, .unit = unit});
-  text.pop_back();
-  for (auto at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 5)) text.replace(at, 1, "\n    ");
-  return "    " + text;
-}
+/// The guess for one quantity of one recording.
+class Guess {
+ public:
+  Guess(const Recording& recording, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults)
+      : recording_(recording), robot_(robot), quantity_(quantity), defaults_(defaults) {}
 
-std::string si_unit(Quantity quantity, DriveKind kind) {
-  return customary_unit("/", quantity, kind);
-}
-
-OpenQuestion missing(const Recording& recording, const RobotDescription& robot, Quantity quantity,
-                     const std::vector<Candidate>& candidates) {
-  const std::string wanted = contract_name(robot, 0, quantity);
-  std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}",
-                                 wanted, word_of(quantity), list_channels(recording));
-  if (!candidates.empty()) {
-    what =
-        fmt::format("the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
-                    word_of(quantity), robot.drives(), robot.drives() == 1 ? "" : "s", names_of(candidates),
-                    list_channels(recording));
+  std::optional<Error> run(ColumnMap& map, std::vector<std::string>& notes) const {
+    const std::vector<Candidate> candidates = candidates_of(map);
+    std::vector<Set> sets = sets_of(candidates);
+    std::erase_if(sets, [&](const Set& set) { return contradicts(set, map); });
+    if (sets.empty()) return missing(candidates);
+    // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a
+    // current.
+    const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
+    std::ranges::stable_sort(sets, std::greater(), rank);
+    const Set& best = sets.front();
+    if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
+      return open(fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity_),
+                              names_of(best.of_drive), names_of(sets[1].of_drive)),
+                  "say which in a column map (delta-log import --map-out map.toml begins one)\n" +
+                      example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0));
+    }
+    if (best.origin == Origin::commanded && quantity_ != Quantity::torque) {
+      return open(fmt::format("only a commanded {} is in the file: {}", word_of(quantity_), names_of(best.of_drive)),
+                  "record the measured one; to take the command all the same, say so in a column map\n" +
+                      example(best.of_drive[0].channel->name, unit_of(best.of_drive[0], 0), 0));
+    }
+    if (!best.has_unit) return without_unit(best);
+    for (int drive = 0; drive < robot_.drives(); ++drive)
+      map.channels.push_back({.drive = drive + 1,
+                              .quantity = quantity_,
+                              .source = best[drive].channel->name,
+                              .unit = unit_of(best[drive], drive)});
+    const std::string note = recording_.file + ": " + best.doubt;
+    if (!best.doubt.empty() && std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    return std::nullopt;
   }
-  return {
-      quantity, what,
-      fmt::format(
-          "write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
-          "each drive\n{}",
-          example(quantity, "NAME", si_unit(quantity, robot.kind_of_drive(0)), 1))};
-}
 
-OpenQuestion without_unit(const Set& set, const RobotDescription& robot, Quantity quantity,
-                          const MapDefaults& defaults) {
-  int drive = 0;
-  while (
-      !unit_of(set.of_drive[static_cast<std::size_t>(drive)], quantity, robot.kind_of_drive(drive), defaults).empty())
-    ++drive;
-  const std::string& name = set.of_drive[static_cast<std::size_t>(drive)].channel->name;
-  const std::string si = si_unit(quantity, robot.kind_of_drive(drive));
-  std::string named = contract_name(robot, drive, quantity);
-  if (quantity == Quantity::position && robot.kind_of_drive(drive) == DriveKind::revolute) {
-    named += fmt::format(" or q{}_deg", drive + 1);
+ private:
+  [[nodiscard]] Error open(const std::string& what, const std::string& mend) const {
+    return {what, recording_.file, mend};
   }
-  return {
-      quantity,
-      fmt::format("the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
-                  contract_name(robot, drive, quantity), name, word_of(quantity), drive + 1),
-      fmt::format(
-          "name the column {}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}", named,
-          word_of(quantity), units_of(quantity), example(quantity, name, si, drive + 1))};
-}
 
-/// On a robot of one drive its number is not asked for, but position and torque of one drive do not carry different
-/// ones.
-bool contradicts(const Set& set, const ColumnMap& map, int drives) {
-  const ChannelMap* position = map.find(Quantity::position, 1);
-  if (drives != 1 || position == nullptr) return false;
-  const std::vector<long> theirs = read_header_words(position->source, "").numbers;
-  const std::vector<long>& ours = set.of_drive[0].words.numbers;
-  const auto shared = [&](long number) { return std::ranges::find(theirs, number) != theirs.end(); };
-  return !theirs.empty() && !ours.empty() && std::ranges::none_of(ours, shared);
-}
-
-void add_set(const Set& set, const RobotDescription& robot, Quantity quantity, const MapDefaults& defaults,
-             ColumnMap& map) {
-  for (std::size_t drive = 0; drive < set.of_drive.size(); ++drive) {
-    map.channels.push_back(
-        {.drive = static_cast<int>(drive) + 1,
-         .quantity = quantity,
-         .source = set.of_drive[drive].channel->name,
-         .unit = unit_of(set.of_drive[drive], quantity, robot.kind_of_drive(static_cast<int>(drive)), defaults)});
+  /// A flag wins over the header, the header over what is custom, and messages of fixed meaning are SI.
+  [[nodiscard]] std::string unit_of(const Candidate& candidate, int drive) const {
+    if (const std::string flag = defaults_.unit(quantity_); !flag.empty()) return flag;
+    if (log_unit(candidate.words.unit)) return candidate.words.unit;
+    const std::string stem = candidate.channel->quantity.empty() ? candidate.words.stem : "/";
+    return customary_unit(stem, quantity_, robot_.kind_of_drive(drive));
   }
-}
+
+  [[nodiscard]] std::vector<Candidate> candidates_of(const ColumnMap& map) const {
+    std::vector<Candidate> found;
+    for (const RecordedChannel& channel : recording_.channels) {
+      if (channel.clock || channel.name == map.time_source ||
+          channel.name == recording_.timelines[channel.timeline].name)
+        continue;
+      Candidate candidate{&channel, read_header_words(channel.name, channel.unit)};
+      if (!channel.quantity.empty()) {
+        candidate.words.quantity = quantity_of_word(channel.quantity);
+        candidate.words.excluded = false;
+      }
+      if (!candidate.words.excluded && candidate.words.quantity == quantity_) found.push_back(std::move(candidate));
+    }
+    return found;
+  }
+
+  /// Drive of each member; what of it is a conclusion, or the bare order of the message, is said in `set.doubt`.
+  std::vector<long> places_of(const std::vector<Candidate>& members, Set& set) const {
+    std::vector<std::string> names;
+    bool message = true;
+    for (const Candidate& member : members) {
+      message = message && member.channel->place > 0;
+      names.push_back(member.channel->joint.empty() ? member.words.stem : member.channel->joint);
+    }
+    const DriveOrder order = order_by_names(names, robot_.telescope.has_value());
+    if (!message) return order.doubt.empty() ? order.places : std::vector<long>{};
+    std::vector<long> places = order.places;
+    std::string why = order.doubt;
+    if (places.empty()) {
+      for (const Candidate& member : members) places.push_back(member.channel->place);
+      why = "their names tell no order, so that of the message is taken";
+    }
+    if (why.empty()) return places;
+    std::vector<std::string> taken;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      taken.push_back(fmt::format("'{}' as drive {}", names[k], places[k]));
+    set.doubt = fmt::format(
+        "the joints {}: {}; check it, and where it is wrong set drive = in a column map (--map-out writes one)",
+        fmt::join(taken, ", "), why);
+    return places;
+  }
+
+  /// The set that a group of like-named columns makes, if it has one column for every drive and none beyond: of six
+  /// joints and four drives nobody but the user knows which are meant.
+  [[nodiscard]] std::optional<Set> set_of(std::vector<Candidate> members) const {
+    const auto drives = static_cast<std::size_t>(robot_.drives());
+    Set set;
+    std::vector<long> places;
+    if (members.size() > drives) members = drives_among(members, robot_.drives());
+    if (std::ranges::all_of(members, is_log_name)) {
+      for (const Candidate& member : members) places.push_back(member.words.numbers.back());
+    } else if (members.size() != drives) {
+      return std::nullopt;
+    } else {
+      places = drives == 1 ? std::vector<long>{1} : places_of(members, set);
+    }
+    set.of_drive.resize(drives, {nullptr, {}});
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (places[k] >= 1 && places[k] <= robot_.drives())
+        set.of_drive[static_cast<std::size_t>(places[k] - 1)] = members[k];
+    }
+    for (int drive = 0; drive < robot_.drives(); ++drive) {
+      if (set[drive].channel == nullptr) return std::nullopt;
+      set.origin = set[drive].words.origin;
+      const std::string unit = unit_of(set[drive], drive);
+      set.has_unit = set.has_unit && !unit.empty();
+      set.direct = set.direct && is_direct(unit);
+    }
+    return set;
+  }
+
+  /// Like-named columns: first those with one unit, and where that leaves no whole set (the fourth drive in other
+  /// units), all. Where no names are alike (x axis, y axis, z axis; limb 1, limb 2, limb 3, yaw), their differences may
+  /// still tell the drives.
+  [[nodiscard]] std::vector<Set> sets_of(const std::vector<Candidate>& candidates) const {
+    std::vector<Set> sets;
+    for (const Alike alike : {Alike::words_and_unit, Alike::words, Alike::unit, Alike::quantity}) {
+      if (robot_.drives() == 1 && alike > Alike::words) break;  // there only the names can tell which is meant
+      std::map<std::string, std::vector<Candidate>> groups;
+      for (const Candidate& candidate : candidates) groups[key_of(candidate, alike)].push_back(candidate);
+      for (const auto& [key, members] : groups) {
+        if (auto set = set_of(members)) sets.push_back(*std::move(set));
+      }
+      if (!sets.empty()) break;
+    }
+    return sets;
+  }
+
+  /// On a robot of one drive its number is not asked for, but position and torque of one drive do not carry different
+  /// ones.
+  [[nodiscard]] bool contradicts(const Set& set, const ColumnMap& map) const {
+    const ChannelMap* position = map.find(Quantity::position, 1);
+    if (robot_.drives() != 1 || position == nullptr) return false;
+    const std::vector<long> theirs = read_header_words(position->source, "").numbers;
+    const std::vector<long>& ours = set.of_drive[0].words.numbers;
+    return !theirs.empty() && !ours.empty() && std::ranges::find_first_of(ours, theirs) == ours.end();
+  }
+
+  /// The lines of a map that would answer the question.
+  [[nodiscard]] std::string example(const std::string& source, const std::string& unit, int drive) const {
+    std::string text = to_toml(ChannelMap{.drive = drive + 1, .quantity = quantity_, .source = source, .unit = unit});
+    text.pop_back();
+    return "    " + forms::with_each(std::move(text), "\n", "\n    ");
+  }
+
+  [[nodiscard]] std::string si_unit(int drive) const {
+    return customary_unit("/", quantity_, robot_.kind_of_drive(drive));
+  }
+
+  [[nodiscard]] Error missing(const std::vector<Candidate>& candidates) const {
+    std::string what = fmt::format("the column {} is missing: no column is known as the {} of drive 1; the file has {}",
+                                   contract_name(robot_, 0, quantity_), word_of(quantity_), list_channels(recording_));
+    if (!candidates.empty()) {
+      what = fmt::format(
+          "the {} of the robot's {} drive{} cannot be told from the names: {} may be meant; the file has {}",
+          word_of(quantity_), robot_.drives(), robot_.drives() == 1 ? "" : "s", names_of(candidates),
+          list_channels(recording_));
+    }
+    return open(
+        what,
+        "write a column map (delta-log import --map-out map.toml begins one) and give it with --map; it needs for "
+        "each drive\n" +
+            example("NAME", si_unit(0), 0));
+  }
+
+  [[nodiscard]] Error without_unit(const Set& set) const {
+    int drive = 0;
+    while (!unit_of(set[drive], drive).empty()) ++drive;
+    const std::string& name = set[drive].channel->name;
+    const std::string wanted = contract_name(robot_, drive, quantity_);
+    const bool angle = quantity_ == Quantity::position && robot_.kind_of_drive(drive) == DriveKind::revolute;
+    return open(
+        fmt::format(
+            "the column {} is missing; the file has {}, which looks like the {} of drive {}, but states no unit",
+            wanted, name, word_of(quantity_), drive + 1),
+        fmt::format(
+            "name the column {}{}; or give delta-log import --{}-unit, one of {}; or write a column map (--map)\n{}",
+            wanted, angle ? fmt::format(" or q{}_deg", drive + 1) : "", word_of(quantity_), units_of(quantity_),
+            example(name, si_unit(drive), drive)));
+  }
+
+  const Recording& recording_;
+  const RobotDescription& robot_;
+  const Quantity quantity_;
+  const MapDefaults& defaults_;
+};
 
 }  // namespace
 
@@ -285,39 +308,9 @@ std::string customary_unit(const std::string& stem, Quantity quantity, DriveKind
   return "";
 }
 
-std::vector<OpenQuestion> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
-                                         const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
-  const std::vector<Candidate> candidates = candidates_of(recording, quantity, map);
-  std::vector<Set> sets = sets_of(candidates, robot, quantity, defaults);
-  std::erase_if(sets, [&](const Set& set) { return contradicts(set, map, robot.drives()); });
-  if (sets.empty()) return {missing(recording, robot, quantity, candidates)};
-  // Measured before unstated before commanded; among alike, those that state a unit, and of these a torque before a
-  // current.
-  const auto rank = [](const Set& set) { return std::tuple(static_cast<int>(set.origin), set.has_unit, set.direct); };
-  std::ranges::stable_sort(sets, std::greater(), rank);
-  const Set& best = sets.front();
-  if (sets.size() > 1 && rank(sets[1]) == rank(best)) {
-    return {{quantity,
-             fmt::format("two sets of columns may be the {}: {} or {}", word_of(quantity), names_of(best.of_drive),
-                         names_of(sets[1].of_drive)),
-             fmt::format("say which in a column map (delta-log import --map-out map.toml begins one)\n{}",
-                         example(quantity, best.of_drive[0].channel->name,
-                                 unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
-  }
-  if (best.origin == Origin::commanded && quantity != Quantity::torque) {
-    return {{quantity,
-             fmt::format("only a commanded {} is in the file: {}", word_of(quantity), names_of(best.of_drive)),
-             fmt::format("record the measured one; to take the command all the same, say so in a column map\n{}",
-                         example(quantity, best.of_drive[0].channel->name,
-                                 unit_of(best.of_drive[0], quantity, robot.kind_of_drive(0), defaults), 1))}};
-  }
-  if (!best.has_unit) return {without_unit(best, robot, quantity, defaults)};
-  add_set(best, robot, quantity, defaults, map);
-  if (!best.doubt.empty()) {
-    const std::string note = recording.file + ": " + best.doubt;
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
-  }
-  return {};
+std::optional<Error> guess_channels(const Recording& recording, const RobotDescription& robot, Quantity quantity,
+                                    const MapDefaults& defaults, ColumnMap& map, std::vector<std::string>& notes) {
+  return Guess(recording, robot, quantity, defaults).run(map, notes);
 }
 
 }  // namespace deltadyn

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "recording/field.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -38,10 +40,6 @@ const Vocabulary kExcluded{
      "bias"},
     {"error", "limit", "cartesian", "temperature", "voltage", "fehler", "schlepp", "following", "momentum"}};
 
-bool is_whole_number(const std::string& word) {
-  return std::isdigit(static_cast<unsigned char>(word.front())) != 0;
-}
-
 /// The quantity of the words. Two of them: the unit decides, then "current position" (the present one) and like
 /// adjectives give way to the noun behind them.
 std::optional<Quantity> quantity_of(const std::vector<std::string>& words, const std::optional<LogUnit>& unit) {
@@ -68,7 +66,7 @@ std::vector<std::string> words_of(const std::string& name) {
   enum class Kind { mark, small, capital, digit };
   const auto kind_of = [](char c) {
     const auto u = static_cast<unsigned char>(c);
-    if (std::isdigit(u) != 0) return Kind::digit;
+    if (forms::is_digit(c)) return Kind::digit;
     if (std::isupper(u) != 0) return Kind::capital;
     return std::isalpha(u) != 0 || u >= 0x80 ? Kind::small : Kind::mark;
   };
@@ -106,8 +104,9 @@ HeaderWords read_header_words(const std::string& column, const std::string& unit
   if (any(kMeasured)) header.origin = Origin::measured;
   if (any(kCommanded)) header.origin = Origin::commanded;
   for (const std::string& word : words) {
-    if (is_whole_number(word)) header.numbers.push_back(std::strtol(word.c_str(), nullptr, 10));
-    header.pattern += (header.pattern.empty() ? "" : " ") + (is_whole_number(word) ? std::string("#") : word);
+    const bool number = forms::is_digit(word.front());
+    if (number) header.numbers.push_back(std::strtol(word.c_str(), nullptr, 10));
+    header.pattern += (header.pattern.empty() ? "" : " ") + (number ? std::string("#") : word);
   }
   return header;
 }

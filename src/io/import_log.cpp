@@ -335,12 +335,12 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
   std::vector<Recording> recordings;
   ColumnMap found = map_;
   for (const std::string& file : files) {
-    recordings.push_back(read_recording(file, {map_.topic}));
+    recordings.push_back(read_recording(file, map_.topic));
     ColumnMap of_file = map_;  // each file may name its time otherwise
     try {
       resolve_time(recordings.back(), of_file);
     } catch (const Error& e) {
-      ask(e.problem(), e.mend(), e.where());
+      open_.push_back(e);
     }
     if (recordings.size() == 1) found = of_file;
   }
@@ -349,24 +349,20 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
   const bool nameless = recording_.headerless && map_.channels.empty();
   if (nameless) {
     open_.clear();  // the one cause of all that is open
-    ask("the header line is missing: the first line holds numbers only",
+    open_.emplace_back(
+        "the header line is missing: the first line holds numbers only", place(recording_.file, 1),
         "add a first line with the column names; or write a column map (delta-log import --map-out map.toml begins "
-        "one) with the "
-        "numbers of the columns as source,\n"
+        "one) with the numbers of the columns as source,\n"
         "    [time]\n    source = 1        # or rate_hz = 1000\n    unit = \"s\"\n    [[channel]]\n    drive = 1\n    "
-        "quantity = "
-        "\"position\"\n    source = 2\n"
-        "    unit = \"rad\"",
-        place(recording_.file, 1));
+        "quantity = \"position\"\n    source = 2\n"
+        "    unit = \"rad\"");
   }
   for (const Quantity quantity : {Quantity::position, Quantity::velocity, Quantity::acceleration, Quantity::torque}) {
     if (nameless || map_.has(quantity)) continue;
     const bool needed = quantity == Quantity::position ||
                         (quantity == Quantity::torque ? options_.need_torque : options_.need_derivatives);
-    for (const OpenQuestion& question :
-         guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes)) {
-      if (needed) ask(question.what, question.mend);
-    }
+    const auto open = guess_channels(recording_, robot_, quantity, defaults, map_, recording_.notes);
+    if (open && needed) open_.push_back(*open);
     note_joints_beyond(quantity);
     const ChannelMap* guessed = map_.find(quantity, 1);
     if (guessed != nullptr && read_header_words(guessed->source, "").origin == Origin::commanded) {
@@ -387,12 +383,8 @@ LogImport::LogImport(const std::vector<std::string>& files, const RobotDescripti
   defaults.apply(map_);
 }
 
-void LogImport::ask(const std::string& what, const std::string& mend, const std::string& where) {
-  open_.push_back({what, mend, where.empty() ? recording_.file : where});
-}
-
 ImportedLog LogImport::log() const {
-  if (!open_.empty()) throw Error(open_.front().what, open_.front().where, open_.front().mend);
+  if (!open_.empty()) throw open_.front();
   const auto demand = [&](Quantity quantity) {
     for (int drive = 1; drive <= robot_.drives(); ++drive) {
       if (map_.find(quantity, drive) != nullptr) continue;

@@ -12,6 +12,7 @@
 #include "common_grid.hpp"
 #include "guess_columns.hpp"
 #include "header_words.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -87,16 +88,13 @@ std::string LogImport::map_of_the_rest() const {
     if (!quantity) replace(fmt::format("\"{}\"", word_of(one.quantity)), "QUANTITY");
     if (one.unit.empty()) lines += "unit = \"UNIT\"\n";
     lines.pop_back();
-    for (auto at = lines.find('\n'); at != std::string::npos; at = lines.find('\n', at + 3))
-      lines.replace(at, 1, "\n# ");
-    text += "\n# " + lines + "\n" + fmt::format("{}", fmt::join(open_constants(one, kind), ""));
+    text += "\n# " + forms::with_each(lines, "\n", "\n# ") + "\n" +
+            fmt::format("{}", fmt::join(open_constants(one, kind), ""));
   }
   if (text.empty()) return text;
   return "\n# Columns that are not taken. To take one, uncomment its lines and fill in DRIVE (from 1), QUANTITY "
-         "(\"position\", "
-         "\"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s rpm; Nm mNm N A "
-         "mA % "
-         "permille).\n" +
+         "(\"position\", \"velocity\",\n# \"acceleration\", \"torque\") and UNIT (rad deg turns m mm cnt; rad/s deg/s "
+         "rpm; Nm mNm N A mA % permille).\n" +
          text;
 }
 
@@ -106,8 +104,7 @@ std::string LogImport::open_time() const {
   if (known) return "";
   if (map_.time_source.empty()) {
     return "\n[time]\n# source = NUMBER_OR_NAME   # STILL OPEN: the column of the time and its unit = \"ms\", or "
-           "rate_hz = "
-           "1000\n";
+           "rate_hz = 1000\n";
   }
   return "# unit = \"UNIT\"   # STILL OPEN: s, ms, us, ns, min or filetime; or tick_s = seconds of a tick\n";
 }
@@ -136,11 +133,9 @@ std::string LogImport::map_text() const {
   }
   for (const std::string& constant : constants)
     remarks.push_back("STILL OPEN below: " + constant.substr(0, constant.find(' ')));
-  for (const Open& open : open_) {
-    remarks.push_back("STILL OPEN: " + open.what);
-    std::string mend = "  " + mend_in_map(open.mend, "this map");
-    for (auto at = mend.find('\n'); at != std::string::npos; at = mend.find('\n', at + 3)) mend.replace(at, 1, "\n# ");
-    remarks.push_back(mend);
+  for (const Error& open : open_) {
+    remarks.push_back("STILL OPEN: " + open.problem());
+    remarks.push_back("  " + forms::with_each(mend_in_map(open.mend(), "this map"), "\n", "\n# "));
   }
   remarks.push_back("Every column of the recording, with its range:");
   for (const RecordedChannel& channel : recording_.channels) {

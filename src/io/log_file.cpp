@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/import_log.hpp"
+#include "deltadyn/io/log_units.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 
@@ -22,44 +22,32 @@
 namespace deltadyn {
 namespace {
 
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
-constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;
-
 constexpr const char* kPrefix[] = {"q", "qd", "qdd", "tau"};
 
-struct Spelling {
-  Quantity quantity;
-  DriveKind kind;
-  const char* suffix;
-  double factor;  ///< to SI
-};
-
-/// Accepted units, of each quantity the SI one first.
-constexpr Spelling kSpellings[] = {
-    {Quantity::position, DriveKind::revolute, "_rad", 1.0},
-    {Quantity::position, DriveKind::revolute, "_deg", kRadPerDegree},
-    {Quantity::position, DriveKind::prismatic, "_m", 1.0},
-    {Quantity::velocity, DriveKind::revolute, "_rad_s", 1.0},
-    {Quantity::velocity, DriveKind::revolute, "_deg_s", kRadPerDegree},
-    {Quantity::velocity, DriveKind::revolute, "_rpm", kRpm},
-    {Quantity::velocity, DriveKind::prismatic, "_m_s", 1.0},
-    {Quantity::acceleration, DriveKind::revolute, "_rad_s2", 1.0},
-    {Quantity::acceleration, DriveKind::revolute, "_deg_s2", kRadPerDegree},
-    {Quantity::acceleration, DriveKind::prismatic, "_m_s2", 1.0},
-    {Quantity::torque, DriveKind::revolute, "_Nm", 1.0},
-    {Quantity::torque, DriveKind::prismatic, "_N", 1.0},
-};
-
-std::vector<Spelling> spellings(Quantity quantity, DriveKind kind) {
-  std::vector<Spelling> fitting;
-  std::ranges::copy_if(kSpellings, std::back_inserter(fitting),
-                       [&](const Spelling& one) { return one.quantity == quantity && one.kind == kind; });
-  return fitting;
-}
+/// Units in the names of columns, of each quantity and kind of drive the SI one first.
+constexpr const char* kUnitEnds[] = {"_rad", "_deg",    "_m",      "_rad_s", "_deg_s", "_rpm",
+                                     "_m_s", "_rad_s2", "_deg_s2", "_m_s2",  "_Nm",    "_N"};
 
 /// "q1", from drive 0 on.
 std::string stem_of(Quantity quantity, int drive) {
   return fmt::format("{}{}", kPrefix[static_cast<std::size_t>(quantity)], drive + 1);
+}
+
+/// A name that a column may have.
+struct Spelling {
+  std::string name;
+  double factor;  ///< to SI
+};
+
+std::vector<Spelling> spellings(Quantity quantity, DriveKind kind, int drive) {
+  std::vector<Spelling> fitting;
+  for (const char* end : kUnitEnds) {
+    const LogUnit unit = log_unit(end + 1).value();
+    const bool turns = unit.dimension == Dimension::angle || unit.dimension == Dimension::moment;
+    if (unit.quantity == quantity && turns == (kind == DriveKind::revolute))
+      fitting.push_back({stem_of(quantity, drive) + end, unit.factor});
+  }
+  return fitting;
 }
 
 struct Source {
@@ -68,22 +56,16 @@ struct Source {
 };
 
 std::optional<Source> find_source(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
-  for (const Spelling& spelling : spellings(quantity, kind)) {
-    if (const auto column = reader.find(stem_of(quantity, drive) + spelling.suffix)) {
-      return Source{*column, spelling.factor};
-    }
+  for (const Spelling& spelling : spellings(quantity, kind, drive)) {
+    if (const auto column = reader.find(spelling.name)) return Source{*column, spelling.factor};
   }
   return std::nullopt;
 }
 
 /// Lower case without separators, so that "Q1", "q_1" and "q1" are alike.
 std::string simplified(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
+  std::string result = forms::lower(name);
+  std::erase_if(result, [](unsigned char c) { return std::isalnum(c) == 0; });
   return result;
 }
 
@@ -93,31 +75,29 @@ std::vector<std::string> similar_columns(const CsvReader& reader, const std::str
   for (const std::string& name : reader.columns()) {
     const std::string plain = simplified(name);
     const bool begins = plain.starts_with(stem);
-    const bool other_number =
-        plain.size() > stem.size() && std::isdigit(static_cast<unsigned char>(plain[stem.size()])) != 0;
+    const bool other_number = plain.size() > stem.size() && forms::is_digit(plain[stem.size()]);
     if (begins && !other_number) found.push_back(name);
   }
   return found;
 }
 
 [[noreturn]] void refuse_missing(const CsvReader& reader, Quantity quantity, DriveKind kind, int drive) {
-  const std::string stem = stem_of(quantity, drive), wanted = stem + spellings(quantity, kind).front().suffix;
-  const auto similar = similar_columns(reader, stem);
+  std::vector<std::string> accepted;
+  for (const Spelling& spelling : spellings(quantity, kind, drive)) accepted.push_back(spelling.name);
+  const std::string& wanted = accepted.front();
+  const auto similar = similar_columns(reader, stem_of(quantity, drive));
   if (similar.empty()) {
     throw Error(fmt::format("the column {} is missing; the file has {}", wanted, fmt::join(reader.columns(), ", ")),
                 reader.path(), fmt::format("add the column {}, or give the robot file that fits the log", wanted));
   }
   const DriveKind other = kind == DriveKind::revolute ? DriveKind::prismatic : DriveKind::revolute;
+  const auto others = spellings(quantity, other, drive);
   std::string why;
-  for (const Spelling& spelling : spellings(quantity, other)) {
-    if (similar.front() == stem + spelling.suffix) {
-      why = fmt::format(", which is for a {} drive, but drive {} of the robot is {}",
-                        other == DriveKind::revolute ? "revolute" : "prismatic", drive + 1,
-                        kind == DriveKind::revolute ? "revolute" : "prismatic");
-    }
+  if (std::ranges::find(others, similar.front(), &Spelling::name) != others.end()) {
+    why = fmt::format(", which is for a {} drive, but drive {} of the robot is {}",
+                      other == DriveKind::revolute ? "revolute" : "prismatic", drive + 1,
+                      kind == DriveKind::revolute ? "revolute" : "prismatic");
   }
-  std::vector<std::string> accepted;
-  for (const Spelling& spelling : spellings(quantity, kind)) accepted.push_back(stem + spelling.suffix);
   throw Error(
       fmt::format("the column {} is missing; the file has {}{}", wanted, fmt::join(similar, ", "), why), reader.path(),
       why.empty() ? fmt::format("name the column {}", fmt::join(accepted, " or "))
@@ -195,15 +175,9 @@ std::vector<std::string> positions_beyond(const CsvReader& reader, int drives) {
 
 /// Whether the header is one of these tools' logs: t_s and a position, separated by commas.
 bool is_contract_header(std::string_view line) {
-  bool time = false, position = false;
-  for (;;) {
-    const auto comma = line.find(',');
-    const std::string_view name = forms::trimmed(line.substr(0, comma));
-    time = time || name == "t_s";
-    position = position || is_position_name(name);
-    if (comma == std::string_view::npos) return time && position;
-    line.remove_prefix(comma + 1);
-  }
+  std::vector<std::string_view> names;
+  forms::split_at_commas(line, names);
+  return std::ranges::find(names, "t_s") != names.end() && std::ranges::any_of(names, is_position_name);
 }
 
 /// Whether the columns that are needed have the names of the contract.

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "recording/field.hpp"
+
 namespace deltadyn {
 namespace {
 
@@ -78,35 +80,29 @@ constexpr Entry kUnits[] = {
     {"pu", {torque, share_of_rated, 1.0}},
 };
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
 /// Lower case, without brackets, blanks, products and powers; "_" as "/", "sec" as "s".
 std::string normalised(std::string_view text) {
-  std::string plain;
-  for (const char c : text) {
-    if (std::string_view(" []{}()*^.,").find(c) != std::string_view::npos) continue;
-    plain += c == '_' ? '/' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  replace_all(plain, "\xE2\x80\xB0", "permille");  // before the degree sign of Latin-1, whose byte it holds
-  replace_all(plain, "\xC2\xB0", "deg");           // degree sign
-  replace_all(plain, "\xB0", "deg");               // the same in Latin-1
-  replace_all(plain, "\xC2\xB2", "2");             // superscript 2
-  replace_all(plain, "\xC2\xB5", "u");             // micro
-  replace_all(plain, "\xCE\xBC", "u");             // Greek mu
-  replace_all(plain, "\xC2\xB7", "");              // middle dot
-  replace_all(plain, "\xE2\x8B\x85", "");          // dot operator
-  replace_all(plain, "sec", "s");
-  replace_all(plain, "/s/s", "/s2");
-  replace_all(plain, "radians", "rad");
+  std::string plain = forms::lower(text);
+  std::erase_if(plain, [](char c) { return std::string_view(" []{}()*^.,").find(c) != std::string_view::npos; });
+  std::ranges::replace(plain, '_', '/');
+  static constexpr std::pair<std::string_view, std::string_view> kPlain[] = {
+      {"\xE2\x80\xB0", "permille"},  // before the degree sign of Latin-1, whose byte it holds
+      {"\xC2\xB0", "deg"},           // degree sign
+      {"\xB0", "deg"},               // the same in Latin-1
+      {"\xC2\xB2", "2"},             // superscript 2
+      {"\xC2\xB5", "u"},             // micro
+      {"\xCE\xBC", "u"},             // Greek mu
+      {"\xC2\xB7", ""},              // middle dot
+      {"\xE2\x8B\x85", ""},          // dot operator
+      {"sec", "s"},
+      {"/s/s", "/s2"},
+      {"radians", "rad"}};
+  for (const auto& [from, to] : kPlain) plain = forms::with_each(std::move(plain), from, to);
   return plain;
 }
 
 bool is_index(std::string_view text) {
-  return !text.empty() &&
-         std::ranges::all_of(text, [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+  return !text.empty() && std::ranges::all_of(text, forms::is_digit);
 }
 
 bool known(std::string_view unit) {

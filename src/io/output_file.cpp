@@ -115,22 +115,16 @@ void write_file(const std::string& path, std::string_view bytes) {
 
 void write_table(const std::string& path, const std::string& header, const Eigen::VectorXd& t_s,
                  const std::vector<const Eigen::MatrixXd*>& blocks) {
-  constexpr std::size_t kChunk = 1 << 16;
   OutputFile file(path);
-  std::string text = header + "\n";
+  file.write(header + "\n");
   for (Eigen::Index row = 0; row < t_s.size(); ++row) {
-    fmt::format_to(std::back_inserter(text), "{}", t_s(row));
+    std::string text = fmt::format("{}", t_s(row));
     for (const Eigen::MatrixXd* block : blocks) {
       for (Eigen::Index k = 0; k < block->cols(); ++k)
         fmt::format_to(std::back_inserter(text), ",{}", (*block)(row, k));
     }
-    text += '\n';
-    if (text.size() >= kChunk) {
-      file.write(text);
-      text.clear();
-    }
+    file.write(text + "\n");
   }
-  file.write(text);
   file.commit();
 }
 

@@ -10,13 +10,14 @@
 #include <iterator>
 #include <map>
 #include <optional>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "deltadyn/io/csv.hpp"
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
+
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
@@ -35,31 +36,17 @@ std::string seen_from(const std::string& path, const std::string& file) {
   return relative.empty() ? file : relative.generic_string();
 }
 
-bool is_presliding(const std::string& name) {
-  return name.ends_with("." + kPresliding);
-}
-
-/// Rows that are no parameter of the regressor and that nobody misses there (presliding_of(), extra_rows.hpp).
+/// Rows that are no parameter of the regressor and that nobody misses there (extra_rows.hpp).
 bool is_extra(const std::string& name) {
-  return is_presliding(name) || name.ends_with("." + kPresliding + "_damping") ||
+  return name.ends_with("." + kPresliding) || name.ends_with("." + kPresliding + "_damping") ||
          name.find(".ripple") != std::string::npos;
 }
 
 /// One spelling for "kg*m^2", "kg m2" and "kgm²"; an angle in rad counts as a pure number.
 std::string canonical_unit(const std::string& unit) {
-  std::string result;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit.compare(i, 2, "²") == 0) {
-      result += '2';
-      ++i;
-    } else if (unit.compare(i, 2, "·") == 0) {
-      ++i;
-    } else if (unit[i] != ' ' && unit[i] != '*' && unit[i] != '^' && unit[i] != '(' && unit[i] != ')') {
-      result += unit[i];
-    }
-  }
-  const auto angle = result.find("/rad");
-  if (angle != std::string::npos) result.erase(angle, 4);
+  std::string result = forms::with_each(forms::with_each(unit, "²", "2"), "·", "");
+  std::erase_if(result, [](char c) { return std::string_view(" *^()").find(c) != std::string_view::npos; });
+  if (const auto angle = result.find("/rad"); angle != std::string::npos) result.erase(angle, 4);
   return result;
 }
 
@@ -94,8 +81,7 @@ std::string shared_name(const std::string& name) {
 }  // namespace
 
 const ParameterEntry* ParameterTable::find(const std::string& name) const {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const ParameterEntry& entry) { return entry.name == name; });
+  const auto found = std::ranges::find(entries, name, &ParameterEntry::name);
   return found == entries.end() ? nullptr : &*found;
 }
 
@@ -117,7 +103,6 @@ ParameterTable read_parameters(const std::string& path) {
   table.file = path;
   if (const auto effects = csv.comment(kEffects); effects && !effects->empty())
     table.effects = *effects == kEffectsNotWritten ? *effects : (fs::path(path).parent_path() / *effects).string();
-  std::unordered_map<std::string, long> seen;
   for (std::size_t row = 0; row < csv.rows(); ++row) {
     ParameterEntry entry;
     entry.line = csv.line(row);
@@ -125,9 +110,8 @@ ParameterTable read_parameters(const std::string& path) {
     entry.unit = csv.text(row, unit_column);
     if (entry.name.empty())
       throw Error("the name is empty", place(path, entry.line, "name"), "name the parameter or remove the row");
-    const auto [first, fresh] = seen.emplace(entry.name, entry.line);
-    if (!fresh) {
-      throw Error(fmt::format("the parameter {} was already given in line {}", entry.name, first->second),
+    if (const ParameterEntry* first = table.find(entry.name)) {
+      throw Error(fmt::format("the parameter {} was already given in line {}", entry.name, first->line),
                   place(path, entry.line, "name"), "keep one of the two rows");
     }
     entry.value = csv.number(row, value_column);
@@ -136,7 +120,7 @@ ParameterTable read_parameters(const std::string& path) {
     entry.data_share = optional_number(row, share_column);
     const auto units = plausible_units(entry.name);
     if (!units.empty() &&
-        std::none_of(units.begin(), units.end(), [&](const auto& unit) { return same_unit(unit, entry.unit); })) {
+        std::ranges::none_of(units, [&](const std::string& unit) { return same_unit(unit, entry.unit); })) {
       throw Error(fmt::format("the unit '{}' does not fit {}", entry.unit, entry.name), place(path, entry.line, "unit"),
                   fmt::format("give the value in {}", fmt::join(units, " or ")));
     }
@@ -180,8 +164,7 @@ std::string missing_effects(const ParameterTable& table, const std::string& effe
   if (table.effects == kEffectsNotWritten) {
     return table.file +
            " holds only together with effects that were not written: run delta-diagnose again with --effects-out FILE, "
-           "and give "
-           "--effects FILE";
+           "and give --effects FILE";
   }
   std::error_code ignored;
   const std::string text = fmt::format("{} holds only together with the effects of {}", table.file, table.effects);
@@ -200,8 +183,8 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
                                   {"prior", &ParameterEntry::prior, false},
                                   {"data_share", &ParameterEntry::data_share, false}}};
   for (Extra& extra : extras) {
-    extra.used = std::any_of(table.entries.begin(), table.entries.end(),
-                             [&](const ParameterEntry& entry) { return !std::isnan(entry.*extra.member); });
+    extra.used = std::ranges::any_of(
+        table.entries, [](double value) { return !std::isnan(value); }, extra.member);
   }
   std::string text = table.remark.empty() ? "" : "# " + table.remark + "\n";
   if (!table.effects.empty()) text += fmt::format("# {} {}\n", kEffects, seen_from(path, table.effects));
@@ -230,26 +213,20 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
   if (!units.empty() && units.size() != names.size()) {
     throw Error("as many units as names are needed", table.file, "", ExitCode::usage);
   }
-  std::unordered_map<std::string, const ParameterEntry*> by_name;
-  for (const ParameterEntry& entry : table.entries) by_name.emplace(entry.name, &entry);
-
   const auto count = static_cast<Eigen::Index>(names.size());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   ParameterMatch match;
   match.value = Eigen::VectorXd::Zero(count);
-  match.std = match.prior = match.data_share = Eigen::VectorXd::Constant(count, nan);
+  match.std = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
   std::unordered_set<const ParameterEntry*> used;
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
-    auto found = by_name.find(name);
-    if (found == by_name.end()) {
-      if (const std::string shared = shared_name(name); !shared.empty()) found = by_name.find(shared);
-    }
-    if (found == by_name.end()) {
+    const ParameterEntry* found = table.find(name);
+    if (found == nullptr) found = table.find(shared_name(name));
+    if (found == nullptr) {
       match.missing.push_back(name);
       continue;
     }
-    const ParameterEntry& entry = *found->second;
+    const ParameterEntry& entry = *found;
     if (!units.empty() && !same_unit(entry.unit, units[static_cast<std::size_t>(i)])) {
       throw Error(fmt::format("the unit '{}' does not fit {} of this robot", entry.unit, name),
                   place(table.file, entry.line, "unit"),
@@ -258,18 +235,16 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     used.insert(&entry);
     match.value(i) = entry.value;
     match.std(i) = entry.std;
-    match.prior(i) = entry.prior;
-    match.data_share(i) = entry.data_share;
   }
   if (used.empty() && !names.empty()) {
     throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()),
                 table.file, "check that this is the parameter file of this robot");
   }
-  const std::unordered_set<std::string> missing(match.missing.begin(), match.missing.end());
   for (const ParameterEntry& entry : table.entries) {
     if (used.count(&entry) != 0 || is_extra(entry.name)) continue;
     // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
-    if (const std::string shared = shared_name(entry.name); !shared.empty() && missing.count(shared) != 0) {
+    if (const std::string shared = shared_name(entry.name);
+        std::ranges::find(match.missing, shared) != match.missing.end()) {
       throw Error(
           fmt::format("the file gives {} of one limb, but {} shared by all limbs is needed", entry.name, shared),
           place(table.file, entry.line, "name"), "use --individual-limbs, or give the shared value");
@@ -281,9 +256,8 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
 }
 
 ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot) {
-  const auto any = [&table](auto&& of_it) {
-    return std::any_of(table.entries.begin(), table.entries.end(),
-                       [&](const ParameterEntry& entry) { return of_it(entry.name); });
+  const auto any = [&table](const auto& of_it) {
+    return std::ranges::any_of(table.entries, of_it, &ParameterEntry::name);
   };
   ParameterOptions options;
   options.individual_limbs = any([](const std::string& name) { return !shared_name(name).empty(); });
@@ -296,30 +270,6 @@ ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDe
     options.offset = options.offset || table.find(fmt::format("drive{}.offset", drive)) != nullptr;
   }
   return options;
-}
-
-Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot) {
-  const int joints = robot.drives() + (robot.telescope ? 1 : 0);
-  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(joints);
-  for (const ParameterEntry& entry : table.entries) {
-    if (!is_presliding(entry.name)) continue;
-    int joint = 0;
-    while (joint < joints && entry.name != presliding_name(robot, joint)) ++joint;
-    if (joint == joints) {
-      throw Error(fmt::format("{} is not a joint with friction of this robot", entry.name),
-                  place(table.file, entry.line, "name"), "remove the row, or give the parameter file of this robot");
-    }
-    if (!(entry.value >= 0)) {
-      throw Error(fmt::format("the displacement {} is negative", entry.name), place(table.file, entry.line, "value"),
-                  "give the displacement over which the friction builds up after a reversal, or 0");
-    }
-    displacement(joint) = entry.value;
-  }
-  return displacement;
-}
-
-std::string presliding_name(const RobotDescription& robot, int joint) {
-  return (joint < robot.drives() ? fmt::format("drive{}.", joint + 1) : std::string("telescope.")) + kPresliding;
 }
 
 Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,

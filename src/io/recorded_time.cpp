@@ -10,11 +10,10 @@
 
 #include "common_grid.hpp"
 #include "header_words.hpp"
+#include "recording/field.hpp"
 
 namespace deltadyn {
 namespace {
-
-constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
 
 struct TimeUnit {
   double seconds;
@@ -23,10 +22,8 @@ struct TimeUnit {
 };
 
 std::string without_blanks(const std::string& name) {
-  std::string plain;
-  for (const char c : name) {
-    if (c != ' ' && c != '\t' && c != '"') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string plain = forms::lower(name);
+  std::erase_if(plain, [](char c) { return c == ' ' || c == '\t' || c == '"'; });
   return plain;
 }
 
@@ -97,11 +94,9 @@ std::optional<TimeUnit> unit_of(const RecordedChannel& channel, const ColumnMap&
 /// Without names, a first column of even steps can be nothing else.
 bool is_even(const Eigen::VectorXd& values) {
   const double step = usual_step(values);
-  if (!(step > 0)) return false;
-  for (Eigen::Index i = 0; i + 1 < values.size(); ++i) {
-    if (!(std::abs(values(i + 1) - values(i) - step) < 1e-2 * step)) return false;
-  }
-  return true;
+  const Eigen::Index n = values.size();
+  return step > 0 &&
+         ((values.tail(n - 1) - values.head(n - 1)).array() - step).abs().maxCoeff<Eigen::PropagateNaN>() < 1e-2 * step;
 }
 
 const RecordedChannel* guess_time(const Recording& recording) {
@@ -144,8 +139,8 @@ void take_stamps(const Recording& recording, const RecordedChannel& channel, con
   timeline.unit = unit.name;
   timeline.t_s = unit.seconds * channel.values;
   if (usual_step(timeline.t_s) > 0) refuse_step(recording, timeline);
-  const bool filetime = unit.name == "filetime" && channel.origin > kFileTimeToUnixTicks;
-  const std::int64_t origin = filetime ? channel.origin - kFileTimeToUnixTicks : channel.origin;
+  const bool filetime = unit.name == "filetime" && channel.origin > forms::kFileTimeToUnixTicks;
+  const std::int64_t origin = filetime ? channel.origin - forms::kFileTimeToUnixTicks : channel.origin;
   const double unit_ns = 1e9 * unit.seconds;
   // Stamps of other centuries have no date; their differences are all that counts.
   const bool dated = unit_ns * std::abs(static_cast<double>(origin)) < 9e18;
@@ -160,8 +155,7 @@ void take_column(Recording& recording, const RecordedChannel& channel, ColumnMap
                             usual_step(channel.values)),
                 recording.file,
                 "name it time_ms, time_us or t_s; or give delta-log import --time-unit, or --rate-hz if it only counts "
-                "rows; or "
-                "unit or rate_hz below [time] in a column map (--map)");
+                "rows; or unit or rate_hz below [time] in a column map (--map)");
   }
   take_stamps(recording, channel, *unit, recording.timelines[channel.timeline]);
   if (!channel.clock && !map.tick_s) map.time_unit = unit->name;

@@ -51,7 +51,7 @@ class Reader {
     sort_drives();
     robot_.name = tree_.name;
     robot_.gravity = tree_.gravity;
-    if (drives_.size() == 1 && body(drives_[0]->child).joints.empty()) {
+    if (drives_.size() == 1 && tree_.body(drives_[0]->child).joints.empty()) {
       axis();
     } else {
       delta();
@@ -64,31 +64,21 @@ class Reader {
   }
 
  private:
-  // --- messages -------------------------------------------------------------------------------
-  [[nodiscard]] std::string at(const Joint& joint) const { return tree_.at(joint); }
-  [[nodiscard]] std::string at(const Loop& loop) const {
-    return fmt::format("{}, line {}, loop {}", tree_.where, loop.line, loop.name);
-  }
-  [[nodiscard]] std::string at(const std::string& link) const { return tree_.at(link); }
-
-  // --- access and rules for single joints -------------------------------------------------------
-  [[nodiscard]] const robot_file::Body& body(int index) const { return tree_.body(index); }
-  [[nodiscard]] const Joint& joint(int index) const { return tree_.joint(index); }
-
   /// The only moving joint below a body.
   const Joint& only_joint(int index, const std::string& rule) const {
-    const robot_file::Body& b = body(index);
+    const robot_file::Body& b = tree_.body(index);
     if (b.joints.size() != 1)
-      refuse(fmt::format("{} moving joints hang on this link, but {}", b.joints.size(), rule), at(b.name), kMendTree);
-    return joint(b.joints[0]);
+      refuse(fmt::format("{} moving joints hang on this link, but {}", b.joints.size(), rule), tree_.at(b.name),
+             kMendTree);
+    return tree_.joint(b.joints[0]);
   }
 
   void require_axis(const Joint& j, const Vec& axis, bool prismatic, const std::string& what) const {
     if (j.prismatic != prismatic)
-      refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), at(j),
+      refuse(fmt::format("{} must be {}", what, prismatic ? "prismatic" : "revolute"), tree_.at(j),
              "mend the joint's type, or take the file of a CAD program by delta-model adopt");
     if ((j.axis - axis).norm() > kTolerance)
-      refuse(fmt::format("wrong axis: {} has axis {}, but must have {}", what, words(j.axis), words(axis)), at(j),
+      refuse(fmt::format("wrong axis: {} has axis {}, but must have {}", what, words(j.axis), words(axis)), tree_.at(j),
              "turn the joint's origin, or swap the signs");
   }
 
@@ -96,7 +86,7 @@ class Reader {
   void require_passive(const Joint& j, const Vec& axis, const std::string& what) const {
     require_axis(j, axis, false, what);
     if ((j.X_PJ.linear() * axis - axis).norm() > kTolerance)
-      refuse(fmt::format("wrong axis: the origin of {} is turned about another axis than its own", what), at(j),
+      refuse(fmt::format("wrong axis: the origin of {} is turned about another axis than its own", what), tree_.at(j),
              "set the origin's rpy to 0 0 0");
   }
 
@@ -104,7 +94,7 @@ class Reader {
     if (j.X_PJ.translation().norm() > kTolerance)
       refuse(fmt::format("{}: its axis must meet the one before, but lies {:.6g} m beside it", what,
                          j.X_PJ.translation().norm()),
-             at(j), "set the origin's xyz to 0 0 0");
+             tree_.at(j), "set the origin's xyz to 0 0 0");
   }
 
   void require_parallel(const Eigen::Matrix3d& R, const std::string& where, const std::string& what) const {
@@ -115,20 +105,21 @@ class Reader {
 
   // --- drives -----------------------------------------------------------------------------------
   void sort_drives() {
-    const robot_file::Body& base = body(0);
+    const robot_file::Body& base = tree_.body(0);
     drives_.assign(base.joints.size(), nullptr);
     if (drives_.empty())
-      refuse("no moving joint hangs on the base link", at(base.name), "the drives are the joints drive1, drive2, ...");
+      refuse("no moving joint hangs on the base link", tree_.at(base.name),
+             "the drives are the joints drive1, drive2, ...");
     for (const int index : base.joints) {
-      const Joint& j = joint(index);
+      const Joint& j = tree_.joint(index);
       std::size_t k = 0;
       while (k < drives_.size() && j.name != robot_file::drive_name(k)) ++k;
       if (k == drives_.size())
         refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}",
                            drives_.size(), drives_.size()),
-               at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
+               tree_.at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
       drives_[k] = &j;
-      if (j.mimic) refuse("a drive cannot mimic another joint", at(j), "remove the <mimic> element");
+      if (j.mimic) refuse("a drive cannot mimic another joint", tree_.at(j), "remove the <mimic> element");
     }
   }
 
@@ -136,7 +127,7 @@ class Reader {
   double azimuth(const Joint& drive) const {
     const Eigen::Matrix3d& R = drive.X_PJ.linear();
     if (std::abs(R(2, 2) - 1) > kTolerance * kTolerance && std::hypot(R(0, 2), R(1, 2)) > kTolerance)
-      refuse("the limb frame must be turned about z of the base only", at(drive),
+      refuse("the limb frame must be turned about z of the base only", tree_.at(drive),
              "write the azimuth as the third number of rpy");
     const double angle = std::atan2(R(1, 0), R(0, 0));
     return angle < -1e-9 ? angle + 2 * std::numbers::pi : angle;
@@ -155,25 +146,25 @@ class Reader {
     robot_.type = "axis";
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
     LimbGeometry<double> limb = limb_of(*drives_[0]);
-    const robot_file::Body& arm = body(drives_[0]->child);
+    const robot_file::Body& arm = tree_.body(drives_[0]->child);
     for (const std::string& link : arm.links)
       if (link == arm.name + "_tip") limb.p_DE_0 = tree_.links.at(link).X_BL.translation();
     robot_.limbs.push_back(limb);
     if (!tree_.loops.empty())
-      refuse("an axis has no loops", at(tree_.loops[0]), "remove the loop, or give the whole robot");
+      refuse("an axis has no loops", tree_.at(tree_.loops[0]), "remove the loop, or give the whole robot");
   }
 
   // --- Delta --------------------------------------------------------------------------------------
   /// The telescope's drive turns about z and carries one chain; a limb's carries two struts.
   [[nodiscard]] bool is_telescope(const Joint& drive) const {
-    return !drive.prismatic && body(drive.child).joints.size() == 1 && std::abs(drive.axis.z()) > 0.5;
+    return !drive.prismatic && tree_.body(drive.child).joints.size() == 1 && std::abs(drive.axis.z()) > 0.5;
   }
 
   void delta() {
     std::size_t limbs = 0;
     while (limbs < drives_.size() && !is_telescope(*drives_[limbs])) ++limbs;
     if (drives_.size() - limbs > 1)
-      refuse("the telescope's drive must be the last one", at(*drives_[limbs]),
+      refuse("the telescope's drive must be the last one", tree_.at(*drives_[limbs]),
              "call the limbs' drives drive1 to drive3");
     if (limbs != 3)
       refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
@@ -185,13 +176,13 @@ class Reader {
     robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
     for (std::size_t i = 0; i < limbs; ++i) {
       if (drives_[i]->prismatic != drives_[0]->prismatic)
-        refuse("the drives of the limbs are of different kinds", at(*drives_[i]),
+        refuse("the drives of the limbs are of different kinds", tree_.at(*drives_[i]),
                "make all of them revolute or all prismatic");
       robot_.limbs.push_back(limb_of(*drives_[i]));
       find_struts(*drives_[i]);
     }
     if (telescope && drives_[0]->prismatic)
-      refuse("a telescope bar with prismatic drives is not a known type", at(*drives_[limbs]),
+      refuse("a telescope bar with prismatic drives is not a known type", tree_.at(*drives_[limbs]),
              "use revolute drives (delta4)");
     find_plate();
     for (const Loop& loop : tree_.loops) close(loop);
@@ -200,32 +191,33 @@ class Reader {
     if (telescope) {
       find_telescope(*drives_[limbs]);
     } else if (!tool_loops_.empty()) {
-      refuse(fmt::format("link {} is not a strut", tool_loops_[0].other->link), at(*tool_loops_[0].loop),
+      refuse(fmt::format("link {} is not a strut", tool_loops_[0].other->link), tree_.at(*tool_loops_[0].loop),
              "the loops of a Delta without telescope bar join struts and plate");
     }
   }
 
   void find_struts(const Joint& drive) {
-    const robot_file::Body& arm = body(drive.child);
+    const robot_file::Body& arm = tree_.body(drive.child);
     if (arm.joints.size() != 2)
       refuse(fmt::format("{} moving joints hang on this link, but an upper arm or carriage carries two struts",
                          arm.joints.size()),
-             at(arm.name), kMendTree);
+             tree_.at(arm.name), kMendTree);
     std::vector<Strut> pair;
     for (const int index : arm.joints) {
-      const Joint& about_y = joint(index);
+      const Joint& about_y = tree_.joint(index);
       require_passive(about_y, Vec::UnitY(), "a strut's first joint");
       const Joint& about_z = only_joint(about_y.child, "a strut's first joint carries its second");
       require_passive(about_z, Vec::UnitZ(), "a strut's second joint");
       require_no_offset(about_z, "a strut's second joint");
-      pair.push_back({.body = about_z.child, .name = body(about_z.child).name, .elbow = about_y.X_PJ.translation()});
+      pair.push_back(
+          {.body = about_z.child, .name = tree_.body(about_z.child).name, .elbow = about_y.X_PJ.translation()});
     }
     if (pair[0].elbow.y() < pair[1].elbow.y()) std::swap(pair[0], pair[1]);
     const Vec across = pair[0].elbow - pair[1].elbow;
     if (across.y() < kTolerance || std::hypot(across.x(), across.z()) > kTolerance)
       refuse(fmt::format("the elbow joints of its two struts must lie apart along y of the limb, but they are {} apart",
                          words(across)),
-             at(arm.name), "mend the origins of the struts' first joints");
+             tree_.at(arm.name), "mend the origins of the struts' first joints");
     struts_.insert(struts_.end(), pair.begin(), pair.end());
   }
 
@@ -233,9 +225,9 @@ class Reader {
   void find_plate() {
     std::size_t carrier = struts_.size();
     for (std::size_t k = 0; k < struts_.size(); ++k) {
-      if (body(struts_[k].body).joints.empty()) continue;
+      if (tree_.body(struts_[k].body).joints.empty()) continue;
       if (carrier < struts_.size())
-        refuse(fmt::format("the plate hangs on this strut and on {}", struts_[carrier].name), at(struts_[k].name),
+        refuse(fmt::format("the plate hangs on this strut and on {}", struts_[carrier].name), tree_.at(struts_[k].name),
                "a tree has one path to the plate; close the other by a <loop>");
       carrier = k;
     }
@@ -248,8 +240,8 @@ class Reader {
     require_passive(about_y, Vec::UnitY(), "the plate's second joint");
     require_no_offset(about_y, "the plate's second joint");
     plate_ = about_y.child;
-    if (!body(plate_).joints.empty())
-      refuse("a Delta's plate carries no moving joint", at(joint(body(plate_).joints[0])),
+    if (!tree_.body(plate_).joints.empty())
+      refuse("a Delta's plate carries no moving joint", tree_.at(tree_.joint(tree_.body(plate_).joints[0])),
              "the tool hangs on the telescope bar");
 
     // The loops say which link of the plate has its frame at the plate's centre.
@@ -258,16 +250,16 @@ class Reader {
       for (const robot_file::LoopEnd* end : {&loop.predecessor, &loop.successor}) {
         if (tree_.links.at(end->link).body != plate_) continue;
         if (!frame.empty() && frame != end->link)
-          refuse(fmt::format("it ends on {}, but another loop on {}", end->link, frame), at(loop),
+          refuse(fmt::format("it ends on {}, but another loop on {}", end->link, frame), tree_.at(loop),
                  "let all loops name the same link of the plate");
         frame = end->link;
       }
     if (frame.empty())
-      refuse(fmt::format("missing loop: no loop ends on the plate ({})", body(plate_).name), tree_.where,
+      refuse(fmt::format("missing loop: no loop ends on the plate ({})", tree_.body(plate_).name), tree_.where,
              "add a spherical <loop> for each other strut");
     X_MB_ = tree_.links.at(frame).X_BL;
     const double angle = robot_.limbs[carrier / 2].azimuth;
-    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), at(frame),
+    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), tree_.at(frame),
                      "the plate's frame");
     strut.closed = true;
     strut.end = about_z.X_PJ.translation();
@@ -279,7 +271,7 @@ class Reader {
     const robot_file::LoopEnd* other = &loop.successor;
     if (tree_.links.at(on_plate->link).body != plate_) std::swap(on_plate, other);
     if (tree_.links.at(on_plate->link).body != plate_)
-      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), at(loop),
+      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), tree_.at(loop),
              "a Delta's loops end on the plate");
     const robot_file::LinkPlace& place = tree_.links.at(other->link);
     const auto strut = std::ranges::find_if(struts_, [&](const Strut& s) { return s.body == place.body; });
@@ -288,10 +280,10 @@ class Reader {
       return;
     }
     if (loop.type != "spherical")
-      refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), at(loop),
+      refuse(fmt::format("a strut ends in a ball joint, but the loop's type is {}", loop.type), tree_.at(loop),
              "write type=\"spherical\"");
     if (strut->closed)
-      refuse(fmt::format("the end of {} is closed already", strut->name), at(loop), "remove one of the two");
+      refuse(fmt::format("the end of {} is closed already", strut->name), tree_.at(loop), "remove one of the two");
     strut->closed = true;
     strut->end = (place.X_BL * other->X_LO).translation();
     strut->p_BE = on_plate->X_LO.translation();
@@ -303,16 +295,16 @@ class Reader {
     const Strut& b = struts_[2 * index + 1];
     for (const Strut* strut : {&a, &b}) {
       if (!strut->closed)
-        refuse("missing loop: the end of this strut is not joined to the plate", at(strut->name),
+        refuse("missing loop: the end of this strut is not joined to the plate", tree_.at(strut->name),
                fmt::format("add a spherical <loop> between {} and the plate", strut->name));
       if (strut->end.x() < kTolerance || strut->end.tail<2>().norm() > kTolerance)
         refuse(fmt::format("the strut's end is at {}, but must lie on +x of the strut", words(strut->end)),
-               at(strut->name), "the strut's frame is at the elbow with x along the strut");
+               tree_.at(strut->name), "the strut's frame is at the elbow with x along the strut");
     }
     if (std::abs(a.end.x() - b.end.x()) > kTolerance)
       refuse(fmt::format("unequal struts of limb {}: {} is {:.9g} m long, {} is {:.9g} m", index + 1, a.name, a.end.x(),
                          b.name, b.end.x()),
-             at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
+             tree_.at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
     const Vec at_elbow = a.elbow - b.elbow;
     const Vec y_L(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
     const Vec at_plate = a.p_BE - b.p_BE;
@@ -320,12 +312,13 @@ class Reader {
       refuse(fmt::format("limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both "
                          "in the base frame)",
                          index + 1, words(at_elbow.y() * y_L), words(at_plate)),
-             at(b.name), "mend the origins in its loops");
+             tree_.at(b.name), "mend the origins in its loops");
     limb.p_DE_0 = (a.elbow + b.elbow) / 2;
     if (robot_.drive_kind == DriveKind::revolute) {
       if (limb.p_DE_0.x() < kTolerance || limb.p_DE_0.tail<2>().norm() > kTolerance)
         refuse(fmt::format("the elbow is at {}, but must lie on +x of the upper arm", words(limb.p_DE_0)),
-               at(body(drives_[index]->child).name), "turn the zero of the drive, so that 0 is horizontal outwards");
+               tree_.at(tree_.body(drives_[index]->child).name),
+               "turn the zero of the drive, so that 0 is horizontal outwards");
       limb.p_DE_0.tail<2>().setZero();
     }
     limb.strut = (a.end.x() + b.end.x()) / 2;
@@ -346,46 +339,48 @@ class Reader {
 
   void find_telescope(const Joint& drive) {
     require_axis(drive, Vec::UnitZ(), false, "the telescope's drive");
-    require_parallel(drive.X_PJ.linear(), at(drive), "the telescope drive's frame");
+    require_parallel(drive.X_PJ.linear(), tree_.at(drive), "the telescope drive's frame");
     const Joint& y = universal(only_joint(drive.child, "the drive carries the joint about x"), Vec::UnitX(),
                                Vec::UnitY(), "the upper universal joint", "the joint about x carries the one about y");
     const Joint& slide = only_joint(y.child, "the upper part of the bar carries the lower part");
     require_axis(slide, slide.axis.z() > 0 ? Vec(Vec::UnitZ()) : Vec(-Vec::UnitZ()), true, "the telescope joint");
-    require_parallel(slide.X_PJ.linear(), at(slide), "the lower part of the bar");
+    require_parallel(slide.X_PJ.linear(), tree_.at(slide), "the lower part of the bar");
     if (slide.X_PJ.translation().head<2>().norm() > kTolerance)
-      refuse("the lower part of the bar must lie on z of the upper part", at(slide), "set x and y of the origin to 0");
+      refuse("the lower part of the bar must lie on z of the upper part", tree_.at(slide),
+             "set x and y of the origin to 0");
     const Joint& x2 =
         universal(only_joint(slide.child, "the lower part of the bar carries the lower universal joint"), Vec::UnitY(),
                   Vec::UnitX(), "the lower universal joint", "the joint about y carries the one about x");
-    const robot_file::Body& tool = body(x2.child);
+    const robot_file::Body& tool = tree_.body(x2.child);
     if (!tool.joints.empty())
-      refuse("the tool carries no moving joint", at(joint(tool.joints[0])), "fix to the tool what moves with it");
+      refuse("the tool carries no moving joint", tree_.at(tree_.joint(tool.joints[0])),
+             "fix to the tool what moves with it");
 
     const ToolLoop* closure = nullptr;
     for (const ToolLoop& candidate : tool_loops_) {
       if (tree_.links.at(candidate.other->link).body != x2.child)
-        refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), at(*candidate.loop),
+        refuse(fmt::format("link {} is neither a strut nor the tool", candidate.other->link), tree_.at(*candidate.loop),
                "let the loop join the plate with a strut or the tool");
       if (closure != nullptr)
-        refuse("the tool is joined to the plate twice", at(*candidate.loop), "remove one of the two");
+        refuse("the tool is joined to the plate twice", tree_.at(*candidate.loop), "remove one of the two");
       closure = &candidate;
     }
     if (closure == nullptr)
-      refuse("missing loop: the tool is not joined to the plate", at(tool.name),
+      refuse("missing loop: the tool is not joined to the plate", tree_.at(tool.name),
              "add a revolute <loop> about z between plate and tool");
     const Loop& loop = *closure->loop;
     if (loop.type != "revolute" && loop.type != "continuous")
-      refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), at(loop),
+      refuse(fmt::format("the tool turns on the plate, but the loop's type is {}", loop.type), tree_.at(loop),
              "write type=\"revolute\"");
     if (std::abs(std::abs(loop.axis.z()) - 1) > kTolerance)
       refuse(fmt::format("wrong axis: the tool turns about {} of the plate, but must turn about z", words(loop.axis)),
-             at(loop), "write <axis xyz=\"0 0 1\"/>");
+             tree_.at(loop), "write <axis xyz=\"0 0 1\"/>");
     const Pose& X_MT = tree_.links.at(closure->other->link).X_BL;
-    require_parallel(X_MT.linear(), at(closure->other->link), "the tool's frame");
+    require_parallel(X_MT.linear(), tree_.at(closure->other->link), "the tool's frame");
     const Vec p_TV = X_MT.inverse().translation();
     const Vec p_TO = closure->other->X_LO.translation();
     if (p_TV.head<2>().norm() > kTolerance || p_TO.head<2>().norm() > kTolerance)
-      refuse("the tool's axis must pass through the lower universal joint of the bar", at(loop),
+      refuse("the tool's axis must pass through the lower universal joint of the bar", tree_.at(loop),
              "set x and y of the tool's origins to 0");
     TelescopeGeometry<double>& bar = robot_.telescope.emplace();
     bar.p_WU = drive.X_PJ.translation();

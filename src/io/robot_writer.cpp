@@ -1,33 +1,26 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
-#include <tinyxml2.h>
 
 #include "deltadyn/io/output_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
-#include "deltadyn/model/body.hpp"
 #include "deltadyn/runtime/error.hpp"
 
 #include "robot_file_format.hpp"
+#include "urdf_tree.hpp"
+#include "xml_elements.hpp"
 
 namespace deltadyn {
 namespace {
 
+using robot_file::text;
 using Vec = Vector3<double>;
-using tinyxml2::XMLElement;
+using xml::child;
+using xml::XMLElement;
 
 constexpr double kPi = std::numbers::pi;
-
-/// Shortest text that reads back to the same number; no "-0" in a file that people read.
-std::string number_text(double value) {
-  return value == 0 ? "0" : fmt::format("{}", value);
-}
-std::string number_text(const Vec& v) {
-  return fmt::format("{} {} {}", number_text(v.x()), number_text(v.y()), number_text(v.z()));
-}
 
 /// URDF has no word for "unlimited" and its readers do not take "inf".
 double finite(double limit) {
@@ -40,9 +33,7 @@ class Writer {
 
   std::string run() {
     document_.InsertEndChild(document_.NewDeclaration());
-    root_ = document_.NewElement("robot");
-    document_.InsertEndChild(root_);
-    root_->SetAttribute("name", robot_.name.empty() ? robot_.type.c_str() : robot_.name.c_str());
+    root_ = child(&document_, "robot", {{"name", robot_.name.empty() ? robot_.type : robot_.name}});
     const std::string words = fmt::format(
         " {} written by deltadyn. Lengths in m, angles in rad. The tree is plain URDF; <loop> closes it (URDF+). ",
         robot_.type);
@@ -57,22 +48,13 @@ class Writer {
       loops();
     }
     extension();
-    tinyxml2::XMLPrinter printer;
-    document_.Print(&printer);
-    return printer.CStr();
+    return xml::text_of(document_);
   }
 
  private:
   // --- elements -------------------------------------------------------------------------------
-  using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
-  static XMLElement* child(XMLElement* parent, const char* name, const Attributes& attributes = {}) {
-    XMLElement* element = parent->InsertNewChildElement(name);
-    for (const auto& [key, value] : attributes) element->SetAttribute(key, value.c_str());
-    return element;
-  }
-
   static void origin(XMLElement* parent, const Vec& xyz, const Vec& rpy = Vec::Zero()) {
-    child(parent, "origin", {{"xyz", number_text(xyz)}, {"rpy", number_text(rpy)}});
+    child(parent, "origin", {{"xyz", text(xyz)}, {"rpy", text(rpy)}});
   }
 
   XMLElement* link(const std::string& name) { return child(root_, "link", {{"name", name}}); }
@@ -86,15 +68,12 @@ class Writer {
     return element;
   }
 
-  static void axis_of(XMLElement* element, const Vec& axis) { child(element, "axis", {{"xyz", number_text(axis)}}); }
+  static void axis_of(XMLElement* element, const Vec& axis) { child(element, "axis", {{"xyz", text(axis)}}); }
 
   static void limit_of(XMLElement* element, const DriveLimits& limits, bool with_range) {
-    const auto text = [](double limit) { return number_text(finite(limit)); };
-    XMLElement* limit = with_range
-                            ? child(element, "limit", {{"lower", text(limits.lower)}, {"upper", text(limits.upper)}})
-                            : child(element, "limit");
-    limit->SetAttribute("effort", text(limits.effort).c_str());
-    limit->SetAttribute("velocity", text(limits.velocity).c_str());
+    XMLElement* limit = child(element, "limit");
+    if (with_range) xml::set(limit, {{"lower", text(finite(limits.lower))}, {"upper", text(finite(limits.upper))}});
+    xml::set(limit, {{"effort", text(finite(limits.effort))}, {"velocity", text(finite(limits.velocity))}});
   }
 
   /// A passive joint: no effort, half a turn to both sides.
@@ -124,16 +103,13 @@ class Writer {
     dynamics_of(element, robot_file::drive_name(index));
   }
 
-  [[nodiscard]] double value(const std::string& name) const {
-    const auto found = parameters_.find(name);
-    return found == parameters_.end() ? 0.0 : found->second;
-  }
+  [[nodiscard]] double value(const std::string& name) const { return robot_file::value_of(parameters_, name); }
 
   /// Friction of a joint; plain URDF's `friction` is the Coulomb part.
   void dynamics_of(XMLElement* element, const std::string& name) const {
     const double viscous = value(name + ".viscous"), coulomb = value(name + ".coulomb");
     if (viscous == 0 && coulomb == 0) return;
-    child(element, "dynamics", {{"damping", number_text(viscous)}, {"friction", number_text(coulomb)}});
+    child(element, "dynamics", {{"damping", text(viscous)}, {"friction", text(coulomb)}});
   }
 
   static void mimic(XMLElement* element, const std::string& other) {
@@ -149,45 +125,46 @@ class Writer {
     const Vec z = (to - from) / length;
     // Rz(yaw) Ry(pitch) turns the cylinder's z into the direction wanted.
     origin(element, (from + to) / 2, Vec(0, std::atan2(std::hypot(z.x(), z.y()), z.z()), std::atan2(z.y(), z.x())));
-    child(child(element, "geometry"), "cylinder", {{"radius", number_text(radius)}, {"length", number_text(length)}});
+    child(child(element, "geometry"), "cylinder", {{"radius", text(radius)}, {"length", text(length)}});
   }
 
   /// \param shared the body's name in a parameter set with equal limbs, \param own the name of this limb's copy (or
   ///               empty)
   void inertial(XMLElement* body, const std::string& shared, const std::string& own = {}) {
-    std::array<double, kInertialParameters> p{};
+    InertialVector<double> p = InertialVector<double>::Zero();
     bool given = false;
-    for (std::size_t k = 0; k < p.size(); ++k) {
+    for (int k = 0; k < kInertialParameters; ++k) {
       auto found = own.empty() ? parameters_.end() : parameters_.find(own + "." + kInertialNames[k]);
       if (found == parameters_.end()) found = parameters_.find(shared + "." + kInertialNames[k]);
       if (found == parameters_.end()) continue;
       given = true;
-      p[k] = found->second;
-      if (!std::isfinite(p[k]))
+      p(k) = found->second;
+      if (!std::isfinite(p(k)))
         throw Error(fmt::format("parameter {}.{} is not finite", shared, kInertialNames[k]), "",
                     "mend the parameter file");
     }
     if (!given) return;
-    if (!(p[0] > 0))
+    if (!(p(0) > 0))
       throw Error(
-          fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p[0]),
+          fmt::format("body {} has mass {} kg, which a URDF <inertial> cannot hold", own.empty() ? shared : own, p(0)),
           "", "give the body a positive mass, or leave its parameters out");
     set_inertial(body, p);
   }
 
-  static void set_inertial(XMLElement* body, const std::array<double, kInertialParameters>& p) {
-    const Vec c(p[1] / p[0], p[2] / p[0], p[3] / p[0]);
-    Matrix3<double> I;
-    I << p[4], p[7], p[9], p[7], p[5], p[8], p[9], p[8], p[6];
-    // URDF wants the inertia about the centre of mass, the paper's parameters are about the frame's origin.
-    I -= p[0] * (c.squaredNorm() * Matrix3<double>::Identity() - c * c.transpose());
+  /// URDF wants the inertia about the centre of mass, the paper's parameters are about the frame's origin.
+  static void set_inertial(XMLElement* body, const InertialVector<double>& p) {
+    const robot_file::LinkInertial central = robot_file::central_inertial(p);
+    const Eigen::Matrix3d& I = central.I_C;
     XMLElement* element = child(body, "inertial");
-    origin(element, c);
-    child(element, "mass", {{"value", number_text(p[0])}});
-    XMLElement* inertia = child(element, "inertia");
-    const char* names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
-    const double values[] = {I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)};
-    for (int k = 0; k < 6; ++k) inertia->SetAttribute(names[k], number_text(values[k]).c_str());
+    origin(element, central.X_LC.translation());
+    child(element, "mass", {{"value", text(p(0))}});
+    child(element, "inertia",
+          {{"ixx", text(I(0, 0))},
+           {"ixy", text(I(0, 1))},
+           {"ixz", text(I(0, 2))},
+           {"iyy", text(I(1, 1))},
+           {"iyz", text(I(1, 2))},
+           {"izz", text(I(2, 2))}});
   }
 
   // --- the mechanism --------------------------------------------------------------------------
@@ -224,21 +201,13 @@ class Writer {
     for (const bool first : {true, false}) {
       const std::string name = robot_file::strut_name(index, first);
       const std::string arm = fmt::format("upper_arm{}", index + 1);
-      const Vec elbow = limb.p_DE_0 + Vec(0, (first ? 0.5 : -0.5) * limb.strut_spacing, 0);
-      passive(name + "_y", arm, name + "_knuckle", Vec::UnitY(), elbow);
+      passive(name + "_y", arm, name + "_knuckle", Vec::UnitY(), robot_file::strut_elbow(limb, first));
       link(name + "_knuckle");
       passive(name + "_z", name + "_knuckle", name, Vec::UnitZ(), Vec::Zero());
       XMLElement* body = link(name);
       visual(body, Vec::Zero(), Vec(limb.strut, 0, 0), 0.01);
       inertial(body, "strut", fmt::format("strut{}", index + 1));
     }
-  }
-
-  /// Attachment of one strut on the plate, from the plate's centre.
-  [[nodiscard]] Vec strut_end(std::size_t index, bool first) const {
-    const LimbGeometry<double>& limb = robot_.limbs[index];
-    const double half = (first ? 0.5 : -0.5) * limb.strut_spacing;
-    return limb.p_BA + half * Vec(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
   }
 
   void platform() {
@@ -249,7 +218,7 @@ class Writer {
     passive("platform_y", "platform_knuckle", "platform_mount", Vec::UnitY(), Vec::Zero());
     link("platform_mount");
     const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
-    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * strut_end(0, true)),
+    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * robot_file::strut_end(limb, true)),
           Vec(0, 0, -limb.azimuth));
     XMLElement* body = link("platform");
     double radius = 0.02;
@@ -269,7 +238,9 @@ class Writer {
     XMLElement* yoke = link("telescope_yoke");
     if (const double rotor = value(robot_file::drive_name(robot_.limbs.size()) + ".rotor_inertia"); rotor > 0) {
       // A ring of radius 0.1 m about the drive's axis. Its mass rests on the base and moves nothing.
-      set_inertial(yoke, {100 * rotor, 0, 0, 0, rotor / 2, rotor / 2, rotor, 0, 0, 0});
+      InertialVector<double> ring;
+      ring << 100 * rotor, 0, 0, 0, rotor / 2, rotor / 2, rotor, 0, 0, 0;
+      set_inertial(yoke, ring);
     }
     passive("telescope_x", "telescope_yoke", "telescope_cross", Vec::UnitX(), Vec::Zero());
     link("telescope_cross");
@@ -312,7 +283,8 @@ class Writer {
       for (const bool first : {true, false}) {
         if (i == 0 && first) continue;  // this strut carries the plate in the tree
         const std::string name = robot_file::strut_name(i, first);
-        loop(name + "_end", "spherical", name, Vec(robot_.limbs[i].strut, 0, 0), "platform", strut_end(i, first));
+        loop(name + "_end", "spherical", name, Vec(robot_.limbs[i].strut, 0, 0), "platform",
+             robot_file::strut_end(robot_.limbs[i], first));
       }
     if (robot_.telescope) {
       // The bar's lower joint sits on the tool's axis; where that axis meets the plate is the loop's place on the
@@ -324,7 +296,7 @@ class Writer {
 
   void extension() {
     XMLElement* element = child(root_, "deltadyn", {{"version", "1"}, {"type", robot_.type}});
-    child(element, "gravity", {{"xyz_m_s2", number_text(robot_.gravity)}});
+    child(element, "gravity", {{"xyz_m_s2", text(robot_.gravity)}});
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
       XMLElement* entry = child(element, "drive", {{"joint", robot_file::drive_name(i)}});
       if (i < robot_.limbs.size() && !robot_.parts.empty())
@@ -332,7 +304,7 @@ class Writer {
       if (std::isfinite(robot_.limits[i].acceleration))
         entry->SetAttribute(
             robot_file::acceleration_attribute(robot_.kind_of_drive(static_cast<int>(i)) == DriveKind::prismatic),
-            number_text(robot_.limits[i].acceleration).c_str());
+            text(robot_.limits[i].acceleration).c_str());
     }
   }
 

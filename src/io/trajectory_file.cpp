@@ -21,11 +21,15 @@ namespace {
 constexpr Eigen::Index kStencil = 7;     // points of a difference of sixth order
 constexpr double kLargestJitter = 0.02;  // of the stamps, share of the sample time, where differences still make sense
 
-/// The named columns if the file has all of them, else nothing.
-Eigen::MatrixXd read_block(const CsvTable& table, const std::vector<std::string>& names) {
-  if (!std::ranges::all_of(names, [&](const std::string& name) { return table.find(name).has_value(); })) return {};
-  Eigen::MatrixXd block(static_cast<Eigen::Index>(table.rows()), static_cast<Eigen::Index>(names.size()));
-  for (std::size_t k = 0; k < names.size(); ++k) block.col(static_cast<Eigen::Index>(k)) = table.numbers(names[k]);
+/// One column for each coordinate if the file has all of them, else nothing.
+Eigen::MatrixXd read_block(const CsvTable& table, const std::vector<TaskColumns>& columns,
+                           std::string TaskColumns::*name) {
+  if (!std::ranges::all_of(
+          columns, [&](const std::string& one) { return table.find(one).has_value(); }, name))
+    return {};
+  Eigen::MatrixXd block(static_cast<Eigen::Index>(table.rows()), static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index k = 0; k < block.cols(); ++k)
+    block.col(k) = table.numbers(columns[static_cast<std::size_t>(k)].*name);
   return block;
 }
 
@@ -87,25 +91,20 @@ TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
   samples.file = path;
   samples.t_s = read_times(table);
 
-  std::vector<std::string> z, zd, zdd;
-  for (const TaskColumns& column : task_columns(description)) {
-    z.push_back(column.z);
-    zd.push_back(column.zd);
-    zdd.push_back(column.zdd);
-  }
-  const bool has_task = !description.parts.empty() &&
-                        std::ranges::all_of(z, [&](const std::string& name) { return table.find(name).has_value(); });
+  const std::vector<TaskColumns> columns = task_columns(description);
+  if (!description.parts.empty()) samples.z = read_block(table, columns, &TaskColumns::z);
+  const bool has_task = samples.z.size() > 0;
   const bool has_drives = has_drive_columns(table);
   if (!has_task && !has_drives) {
-    const std::string wanted = description.parts.empty() ? z.front() : fmt::format("{}", fmt::join(z, ", "));
+    std::string wanted = columns.front().z;
+    for (std::size_t k = 1; k < columns.size() && !description.parts.empty(); ++k) wanted += ", " + columns[k].z;
     throw Error(fmt::format("the file has neither the columns {} nor those of the drives; it has {}", wanted,
                             fmt::join(table.columns(), ", ")),
                 path, "name the columns of the motion with their units, e.g. " + wanted);
   }
   if (has_task) {
-    samples.z = read_block(table, z);
-    samples.zd = read_block(table, zd);
-    samples.zdd = read_block(table, zdd);
+    samples.zd = read_block(table, columns, &TaskColumns::zd);
+    samples.zdd = read_block(table, columns, &TaskColumns::zdd);
     fill_derivatives(path, samples.t_s, samples.z, samples.zd, samples.zdd);
   }
   if (has_drives) {

@@ -16,6 +16,7 @@
 #include "deltadyn/runtime/plausibility.hpp"
 
 #include "robot_file_format.hpp"
+#include "xml_elements.hpp"
 
 namespace deltadyn::robot_file {
 namespace {
@@ -141,9 +142,8 @@ std::string completed(tinyxml2::XMLDocument& document, XMLElement* robot, XmlFac
     const char* type = joint->Attribute("type");
     const bool limited = type != nullptr && (std::string(type) == "revolute" || std::string(type) == "prismatic");
     if (!limited || joint->FirstChildElement("limit") != nullptr) continue;
-    XMLElement* limit = joint->InsertNewChildElement("limit");
-    limit->SetAttribute("lower", -kUnlimited);
-    for (const char* name : {"upper", "effort", "velocity"}) limit->SetAttribute(name, kUnlimited);
+    const std::string most = text(kUnlimited);
+    xml::child(joint, "limit", {{"lower", "-" + most}, {"upper", most}, {"effort", most}, {"velocity", most}});
   }
   std::vector<std::string> roots;
   for (const auto& [link, line] : facts.link_lines)
@@ -151,17 +151,13 @@ std::string completed(tinyxml2::XMLDocument& document, XMLElement* robot, XmlFac
   const auto size = [&](const std::string& link) { return size_below(link, children); };
   if (!roots.empty()) std::swap(roots.front(), *std::ranges::max_element(roots, {}, size));
   for (std::size_t k = 1; k < roots.size(); ++k) {
-    XMLElement* joint = robot->InsertNewChildElement("joint");
     const std::string name = "loose_" + roots[k];
-    joint->SetAttribute("name", name.c_str());
-    joint->SetAttribute("type", "floating");
-    joint->InsertNewChildElement("parent")->SetAttribute("link", roots.front().c_str());
-    joint->InsertNewChildElement("child")->SetAttribute("link", roots[k].c_str());
+    XMLElement* joint = xml::child(robot, "joint", {{"name", name}, {"type", "floating"}});
+    xml::child(joint, "parent", {{"link", roots.front()}});
+    xml::child(joint, "child", {{"link", roots[k]}});
     facts.joint_lines.emplace(name, facts.link_lines.at(roots[k]));
   }
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
-  return printer.CStr();
+  return xml::text_of(document);
 }
 
 /// urdfdom reports through console_bridge; this keeps its words for our message and off the terminal.
@@ -329,6 +325,9 @@ void refuse(const std::string& what, const std::string& where, const std::string
 std::string UrdfTree::at(const Joint& joint) const {
   return fmt::format("{}, line {}, joint {}", where, joint.line, joint.name);
 }
+std::string UrdfTree::at(const Loop& loop) const {
+  return fmt::format("{}, line {}, loop {}", where, loop.line, loop.name);
+}
 std::string UrdfTree::at(const std::string& link) const {
   return fmt::format("{}, link {}", where, link);
 }
@@ -341,6 +340,16 @@ InertialVector<double> LinkInertial::in_frame(const Pose& X_FL) const {
   InertialVector<double> p;
   p << mass, mass * c, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(1, 2), I(0, 2);
   return p;
+}
+
+LinkInertial central_inertial(const InertialVector<double>& p) {
+  using namespace inertial;
+  const Eigen::Vector3d c = p.segment<3>(kMcx) / p(kM);
+  LinkInertial out{.mass = p(kM)};
+  out.X_LC.translation() = c;
+  out.I_C << p(kIxx), p(kIxy), p(kIxz), p(kIxy), p(kIyy), p(kIyz), p(kIxz), p(kIyz), p(kIzz);
+  out.I_C -= p(kM) * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+  return out;
 }
 
 double parse_number(const std::string& text, const std::string& where, const std::string& attribute_name) {
@@ -356,8 +365,7 @@ double parse_number(const std::string& text, const std::string& where, const std
 }
 
 void require_metres(const UrdfTree& tree) {
-  const auto check = [&tree](const Eigen::Vector3d& origin, const char* kind, const std::string& name, int line) {
-    const std::string place = fmt::format("{}, line {}, {} {}", tree.where, line, kind, name);
+  const auto check = [&tree](const Eigen::Vector3d& origin, const std::string& place) {
     try {
       plausibility::require(plausibility::kOffset, origin.norm(), "its distance from the link's origin", place);
     } catch (const Error& e) {
@@ -369,11 +377,9 @@ void require_metres(const UrdfTree& tree) {
     }
   };
   for (const Joint& joint : tree.joints)
-    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), "joint", joint.name,
-          joint.line);
+    check((tree.links.at(joint.parent_link).X_BL.inverse() * joint.X_PJ).translation(), tree.at(joint));
   for (const Loop& loop : tree.loops)
-    for (const LoopEnd* end : {&loop.predecessor, &loop.successor})
-      check(end->X_LO.translation(), "loop", loop.name, loop.line);
+    for (const LoopEnd* end : {&loop.predecessor, &loop.successor}) check(end->X_LO.translation(), tree.at(loop));
 }
 
 UrdfTree parse_urdf_tree(const std::string& text, const std::string& where, UrdfDialect dialect) {

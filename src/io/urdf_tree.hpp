@@ -64,6 +64,9 @@ struct LinkInertial {
   [[nodiscard]] InertialVector<double> in_frame(const Pose& X_FL) const;
 };
 
+/// From the ten parameters of a body with mass, in the axes of its frame.
+[[nodiscard]] LinkInertial central_inertial(const InertialVector<double>& p);
+
 /// One `<drive>` of the `<deltadyn>` element; attributes as written.
 struct DriveNote {
   int line = 0;
@@ -88,6 +91,7 @@ struct UrdfTree {
   [[nodiscard]] const Joint& joint(int index) const { return joints[static_cast<std::size_t>(index)]; }
   /// "cad.urdf, line 12, joint J1", "cad.urdf, link arm".
   [[nodiscard]] std::string at(const Joint& joint) const;
+  [[nodiscard]] std::string at(const Loop& loop) const;
   [[nodiscard]] std::string at(const std::string& link) const;
 };
 

@@ -1,7 +1,6 @@
 #include "deltadyn/runtime/effect_states.hpp"
 
 #include "deltadyn/kinematics/passive_joints.hpp"
-#include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 
 namespace deltadyn {
@@ -47,14 +46,9 @@ class EffectStatesOf final : public EffectStates {
 }  // namespace
 
 std::unique_ptr<EffectStates> make_effect_states(const RobotDescription& description) {
-  const bool revolute = description.drive_kind == DriveKind::revolute;
-  if (description.type == Delta4::kName) return std::make_unique<EffectStatesOf<Delta4>>(description);
-  if (description.type == Delta3::kName) return std::make_unique<EffectStatesOf<Delta3>>(description);
-  if (description.type == LinearDelta3::kName) return std::make_unique<EffectStatesOf<LinearDelta3>>(description);
-  if (description.type == Axis::kName && revolute) return std::make_unique<EffectStatesOf<Axis>>(description);
-  if (description.type == Axis::kName) return std::make_unique<EffectStatesOf<LinearAxis>>(description);
-  throw Error("effects are not known for robots of type " + description.type, description.name,
-              "use delta3, linear-delta3, delta4 or axis");
+  return with_robot_type(description, [&](auto type) -> std::unique_ptr<EffectStates> {
+    return std::make_unique<EffectStatesOf<decltype(type)>>(description);
+  });
 }
 
 }  // namespace deltadyn

@@ -3,11 +3,23 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <fmt/format.h>
 #include <limits>
 #include <mutex>
 #include <omp.h>
 
-namespace deltadyn::detail {
+#include "deltadyn/runtime/error.hpp"
+
+namespace deltadyn {
+
+void set_threads(int threads) {
+  if (threads < 0)
+    throw Error(fmt::format("{} threads were asked for", threads), "", "give 1 or more, or 0 for all of the machine",
+                ExitCode::usage);
+  omp_set_num_threads(threads == 0 ? omp_get_num_procs() : threads);
+}
+
+namespace detail {
 
 namespace {
 
@@ -80,4 +92,5 @@ void run_in_order(std::size_t count, const std::function<std::function<void()>(s
   failure.rethrow();
 }
 
-}  // namespace deltadyn::detail
+}  // namespace detail
+}  // namespace deltadyn

@@ -23,13 +23,13 @@ constexpr double kPaperPlate = 0.05;
   throw Error(what, "", mend, ExitCode::usage);
 }
 
-void require_positive(double value, const char* what) {
+void require_positive(double value, const std::string& what) {
   if (!(std::isfinite(value) && value > 0))
     refuse(fmt::format("{} is {}, but must be positive", what, value),
            "give a value above 0, or leave it to the default");
 }
 
-void require_not_negative(double value, const char* what) {
+void require_not_negative(double value, const std::string& what) {
   if (!(std::isfinite(value) && value >= 0))
     refuse(fmt::format("{} is {}, but must not be negative", what, value),
            "give 0 or more, or leave it to the default");
@@ -51,32 +51,30 @@ void require_thin(double thickness, double length, const std::string& what) {
 }
 
 /// Tube from its density.
-Ten tube(double density, double diameter, double wall, const Vec& from, const Vec& to, const char* what) {
-  require_positive(density, fmt::format("the density of the {}", what).c_str());
-  require_positive(diameter, fmt::format("the diameter of the {}", what).c_str());
-  require_positive(wall, fmt::format("the wall of the {}", what).c_str());
-  plausibility::require(plausibility::kDensity, density, fmt::format("the density of the {}", what), "",
-                        ExitCode::usage);
-  require_thin(diameter, (to - from).norm(), fmt::format("the diameter of the {}", what));
+Ten tube(double density, double diameter, double wall, const Vec& from, const Vec& to, const std::string& part) {
+  require_positive(density, "the density of the " + part);
+  require_positive(diameter, "the diameter of the " + part);
+  require_positive(wall, "the wall of the " + part);
+  plausibility::require(plausibility::kDensity, density, "the density of the " + part, "", ExitCode::usage);
+  require_thin(diameter, (to - from).norm(), "the diameter of the " + part);
   const double outer = diameter / 2;
   if (wall > outer)
-    refuse(fmt::format("the wall of the {}, {} m, is thicker than half its diameter {} m", what, wall, diameter),
+    refuse(fmt::format("the wall of the {}, {} m, is thicker than half its diameter {} m", part, wall, diameter),
            "give it in metres");
   return shapes::hollow_cylinder<double>(shapes::cylinder_mass(density, outer, outer - wall, (to - from).norm()), outer,
                                          outer - wall, from, to);
 }
 
-Ten round(double mass, double outer_diameter, double inner_diameter, const Vec& from, const Vec& to, const char* what) {
-  require_positive(mass, fmt::format("the mass of the {}", what).c_str());
-  require_positive(outer_diameter, fmt::format("the diameter of the {}", what).c_str());
-  require_not_negative(inner_diameter, fmt::format("the inner diameter of the {}", what).c_str());
-  plausibility::require(plausibility::kDiameter, outer_diameter, fmt::format("the diameter of the {}", what), "",
-                        ExitCode::usage);
-  plausibility::require(plausibility::kLength, (to - from).norm(), fmt::format("the length of the {}", what), "",
-                        ExitCode::usage);
+Ten round(double mass, double outer_diameter, double inner_diameter, const Vec& from, const Vec& to,
+          const std::string& part) {
+  const double length = (to - from).norm();
+  require_positive(mass, "the mass of the " + part);
+  require_positive(outer_diameter, "the diameter of the " + part);
+  require_not_negative(inner_diameter, "the inner diameter of the " + part);
+  plausibility::require(plausibility::kDiameter, outer_diameter, "the diameter of the " + part, "", ExitCode::usage);
+  plausibility::require(plausibility::kLength, length, "the length of the " + part, "", ExitCode::usage);
   if (inner_diameter >= outer_diameter)
-    refuse(fmt::format("the inner diameter of the {} is not below the outer one", what), "swap them");
-  require_positive((to - from).norm(), fmt::format("the length of the {}", what).c_str());
+    refuse(fmt::format("the inner diameter of the {} is not below the outer one", part), "swap them");
   return shapes::hollow_cylinder<double>(mass, outer_diameter / 2, inner_diameter / 2, from, to);
 }
 

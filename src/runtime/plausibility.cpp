@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numbers>
+#include <vector>
 
 namespace deltadyn::plausibility {
 namespace {
@@ -87,20 +87,34 @@ double size_of(const RobotDescription& robot) {
   return longest_arm(robot) + longest_strut(robot);
 }
 
-/// Largest and smallest of one length of all limbs.
-template <class Length>
-void require_alike(const RobotDescription& robot, Length length, const char* what, const std::string& where,
-                   ExitCode code) {
-  std::size_t least = 0, most = 0;
-  for (std::size_t i = 1; i < robot.limbs.size(); ++i) {
-    if (length(robot.limbs[i]) < length(robot.limbs[least])) least = i;
-    if (length(robot.limbs[i]) > length(robot.limbs[most])) most = i;
-  }
-  const double small = length(robot.limbs[least]), large = length(robot.limbs[most]);
-  if (large <= kAlike * small) return;
+/// The same length of all limbs.
+void require_alike(const std::vector<double>& lengths, const char* what, const std::string& where) {
+  const auto least = std::ranges::min_element(lengths), most = std::ranges::max_element(lengths);
+  if (*most <= kAlike * *least) return;
   throw Error(fmt::format("{} of limb {} is {:.6g} m, but that of limb {} is {:.6g} m: one of them is in another unit",
-                          what, most + 1, large, least + 1, small),
-              where, "give all lengths in metres", code);
+                          what, most - lengths.begin() + 1, *most, least - lengths.begin() + 1, *least),
+              where, "give all lengths in metres");
+}
+
+/// The lengths of one limb beside one another. \param arms  the drives have arms, else they slide
+void require_one_size(const LimbGeometry<double>& limb, std::size_t number, bool arms, const std::string& where) {
+  const double arm = arms ? limb.p_DE_0.norm() : 0, reach = arm + limb.strut;
+  const auto beside = [&](const char* what, double value, double largest) {
+    if (value <= largest) return;
+    throw Error(fmt::format("limb {}: the {} is {:.6g} m, which does not go with arm and strut of {:.6g} m: one of "
+                            "them is in another unit",
+                            number, what, value, reach),
+                where, "give all lengths in metres");
+  };
+  if (arms && (limb.strut > kStrutToArm * arm || arm > kStrutToArm * limb.strut))
+    throw Error(fmt::format("limb {}: an upper arm of {:.6g} m does not go with struts of {:.6g} m: one of them is in "
+                            "another unit",
+                            number, arm, limb.strut),
+                where, "give all lengths in metres");
+  beside("distance of the two struts", limb.strut_spacing, kSpacingShare * limb.strut);
+  beside("distance of the attachment from the plate's centre", limb.p_BA.norm(), kReachShare * reach);
+  // A rail may be long, and its zero anywhere on it.
+  if (arms) beside("distance of the drive from the base's origin", limb.p_WD.norm(), kReachShare * reach);
 }
 
 void require_rate(const Rule& rule, double value, const std::string& what, const std::string& where, ExitCode code) {
@@ -176,53 +190,28 @@ void require(const Rule& rule, double value, const std::string& what, const std:
   refuse(rule, value, what, rule.reason, where, code);
 }
 
-void require_geometry(const RobotDescription& robot, const std::string& where, ExitCode code) {
-  require(kGravity, robot.gravity.norm(), "the size of gravity", where, code);
-  const bool plate = !robot.parts.empty();
+void require_geometry(const RobotDescription& robot, const std::string& where) {
+  require(kGravity, robot.gravity.norm(), "the size of gravity", where);
+  const bool plate = !robot.parts.empty(), arms = robot.drive_kind == DriveKind::revolute;
+  std::vector<double> arm_lengths, struts, spacings;
   for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
     const LimbGeometry<double>& limb = robot.limbs[i];
     const auto name = [i](const char* what) { return fmt::format("limb {}: the {}", i + 1, what); };
-    require(kOffset, limb.p_WD.norm(), name("distance of the drive from the base's origin"), where, code);
-    if (limb.p_DE_0.norm() > 0) require(kLength, limb.p_DE_0.norm(), name("length of the upper arm"), where, code);
+    require(kOffset, limb.p_WD.norm(), name("distance of the drive from the base's origin"), where);
+    if (limb.p_DE_0.norm() > 0) require(kLength, limb.p_DE_0.norm(), name("length of the upper arm"), where);
     if (!plate) continue;
-    require(kLength, limb.strut, name("strut length"), where, code);
-    require(kLength, limb.strut_spacing, name("distance of the two struts"), where, code);
-    require(kOffset, limb.p_BA.norm(), name("distance of the attachment from the plate's centre"), where, code);
+    require(kLength, limb.strut, name("strut length"), where);
+    require(kLength, limb.strut_spacing, name("distance of the two struts"), where);
+    require(kOffset, limb.p_BA.norm(), name("distance of the attachment from the plate's centre"), where);
+    arm_lengths.push_back(limb.p_DE_0.norm());
+    struts.push_back(limb.strut);
+    spacings.push_back(limb.strut_spacing);
   }
   if (!plate) return;
-  const bool arms = robot.drive_kind == DriveKind::revolute;
-  if (arms)
-    require_alike(
-        robot, [](const auto& limb) { return limb.p_DE_0.norm(); }, "the upper arm", where, code);
-  require_alike(
-      robot, [](const auto& limb) { return limb.strut; }, "the strut", where, code);
-  require_alike(
-      robot, [](const auto& limb) { return limb.strut_spacing; }, "the distance of the two struts", where, code);
-  for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
-    const LimbGeometry<double>& limb = robot.limbs[i];
-    const double arm = arms ? limb.p_DE_0.norm() : 0, reach = arm + limb.strut;
-    const auto beside = [&](const char* what, double value, double largest, const char* other) {
-      if (value <= largest) return;
-      throw Error(
-          fmt::format(
-              "limb {}: the {} is {:.6g} m, which does not go with {} of {:.6g} m: one of them is in another unit",
-              i + 1, what, value, other, reach),
-          where, "give all lengths in metres", code);
-    };
-    if (arms && (limb.strut > kStrutToArm * arm || arm > kStrutToArm * limb.strut))
-      throw Error(
-          fmt::format(
-              "limb {}: an upper arm of {:.6g} m does not go with struts of {:.6g} m: one of them is in another "
-              "unit",
-              i + 1, arm, limb.strut),
-          where, "give all lengths in metres", code);
-    beside("distance of the two struts", limb.strut_spacing, kSpacingShare * limb.strut, "arm and strut");
-    beside("distance of the attachment from the plate's centre", limb.p_BA.norm(), kReachShare * reach,
-           "arm and strut");
-    // A rail may be long, and its zero anywhere on it.
-    if (arms)
-      beside("distance of the drive from the base's origin", limb.p_WD.norm(), kReachShare * reach, "arm and strut");
-  }
+  if (arms) require_alike(arm_lengths, "the upper arm", where);
+  require_alike(struts, "the strut", where);
+  require_alike(spacings, "the distance of the two struts", where);
+  for (std::size_t i = 0; i < robot.limbs.size(); ++i) require_one_size(robot.limbs[i], i + 1, arms, where);
   if (!robot.telescope) return;
   const double reach = kReachShare * size_of(robot);
   for (const auto& [what, place] : {std::pair{"upper", robot.telescope->p_WU}, {"lower", robot.telescope->p_BV}})
@@ -231,7 +220,7 @@ void require_geometry(const RobotDescription& robot, const std::string& where, E
           fmt::format("telescope: the {} joint lies {:.6g} m from the origin, which does not go with arm and strut of "
                       "{:.6g} m: one of them is in another unit",
                       what, place.norm(), size_of(robot)),
-          where, "give all lengths in metres", code);
+          where, "give all lengths in metres");
 }
 
 void require_limits(const RobotDescription& robot, int drive, const DriveLimits& limits, const std::string& where,

@@ -3,7 +3,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <vector>
 
 #include "deltadyn/runtime/error.hpp"
@@ -12,6 +11,8 @@
 
 namespace deltadyn {
 namespace {
+
+constexpr double kLargestReachCondition = 50;  // of the Jacobian dr/dq; poses beyond it count as singular
 
 /// Condition number of dr/dq where the pose is allowed, infinity elsewhere.
 class PoseCheck {
@@ -60,23 +61,17 @@ Eigen::Vector3d bound(const RobotDescription& robot, const Eigen::Vector3d& home
 
 }  // namespace
 
-Reach find_reach(const Robot& robot, const ReachOptions& options) {
+Reach find_reach(const Robot& robot, int cells) {
   const RobotDescription& description = robot.description();
   if (description.parts.empty())
     throw Error("an axis has no plate and so no workspace", description.name, "give a Delta");
-  if (options.cells < 5 || options.cells > 400)
-    throw Error(fmt::format("{} cells for the workspace grid", options.cells), "", "give 5 to 400", ExitCode::usage);
-  if (!(options.largest_condition > 1))
-    throw Error("the largest condition number of the workspace must be above 1", "", "50 is usual", ExitCode::usage);
-
   Reach reach;
   reach.home = WorkspaceSampler(robot).ball().centre;
   const Eigen::Vector3d size = bound(description, reach.home);
-  const int n = options.cells;
-  reach.cell = 2 * size(0) / n;
+  reach.cell = 2 * size(0) / cells;
   const Eigen::Vector3d corner = Eigen::Vector3d::Constant(-size(0));
-  const auto index = [n](const Eigen::Vector3i& c) {
-    return static_cast<std::size_t>((c.x() * n + c.y()) * n + c.z());
+  const auto index = [cells](const Eigen::Vector3i& c) {
+    return static_cast<std::size_t>((c.x() * cells + c.y()) * cells + c.z());
   };
   const auto centre = [&](const Eigen::Vector3i& c) -> Eigen::Vector3d {
     return corner + reach.cell * (c.cast<double>().array() + 0.5).matrix();
@@ -84,14 +79,14 @@ Reach find_reach(const Robot& robot, const ReachOptions& options) {
 
   // Grow from the home pose through regular cells, so that the mirrored workspace beyond a singular pose is left out.
   PoseCheck check(robot);
-  std::vector<char> seen(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
+  std::vector<char> seen(static_cast<std::size_t>(cells * cells * cells), 0);
   std::vector<Eigen::Vector3i> open, found;
   std::vector<double> conditions;
   const auto visit = [&](const Eigen::Vector3i& c) {
-    if ((c.array() < 0).any() || (c.array() >= n).any() || seen[index(c)] != 0) return;
+    if ((c.array() < 0).any() || (c.array() >= cells).any() || seen[index(c)] != 0) return;
     seen[index(c)] = 1;
     const double condition = check.condition(centre(c));
-    if (!(condition <= options.largest_condition)) return;
+    if (!(condition <= kLargestReachCondition)) return;
     open.push_back(c);
     found.push_back(c);
     conditions.push_back(condition);

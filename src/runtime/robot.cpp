@@ -1,10 +1,17 @@
 #include "deltadyn/runtime/robot.hpp"
 
 #include "deltadyn/runtime/error.hpp"
-
-#include "robot_of.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 
 namespace deltadyn {
+
+namespace detail {
+
+/// In robot_of.hpp, with one translation unit for each type, so that they build side by side.
+template <class R>
+std::unique_ptr<Robot> make_robot_of(const RobotDescription& description, const ParameterOptions& options);
+
+}  // namespace detail
 
 std::vector<Eigen::Index> coulomb_columns(const Robot& robot) {
   std::vector<Eigen::Index> columns;
@@ -21,16 +28,8 @@ std::unique_ptr<Robot> make_robot(const RobotDescription& description, const Par
                   "the robot has drives 1 to " + std::to_string(description.drives()), ExitCode::usage);
     }
   }
-  const bool prismatic = description.drive_kind == DriveKind::prismatic;
-  if (description.type == Delta3::kName) return detail::make_robot_of<Delta3>(description, options);
-  if (description.type == LinearDelta3::kName) return detail::make_robot_of<LinearDelta3>(description, options);
-  if (description.type == Delta4::kName) return detail::make_robot_of<Delta4>(description, options);
-  if (description.type == Axis::kName) {
-    return prismatic ? detail::make_robot_of<LinearAxis>(description, options)
-                     : detail::make_robot_of<Axis>(description, options);
-  }
-  throw Error("robot type '" + description.type + "' is not known", description.name,
-              "use one of delta3, linear-delta3, delta4, axis");
+  return with_robot_type(description,
+                         [&](auto type) { return detail::make_robot_of<decltype(type)>(description, options); });
 }
 
 }  // namespace deltadyn

@@ -240,16 +240,9 @@ class RobotOf final : public Robot {
   std::vector<std::string> names_, units_;
 };
 
-/// One translation unit for each type, so that they build side by side.
 template <class R>
 std::unique_ptr<Robot> make_robot_of(const RobotDescription& description, const ParameterOptions& options) {
   if (options.individual_limbs) return std::make_unique<RobotOf<R, Limbs::individual>>(description, options);
   return std::make_unique<RobotOf<R, Limbs::shared>>(description, options);
 }
-extern template std::unique_ptr<Robot> make_robot_of<Delta3>(const RobotDescription&, const ParameterOptions&);
-extern template std::unique_ptr<Robot> make_robot_of<LinearDelta3>(const RobotDescription&, const ParameterOptions&);
-extern template std::unique_ptr<Robot> make_robot_of<Delta4>(const RobotDescription&, const ParameterOptions&);
-extern template std::unique_ptr<Robot> make_robot_of<Axis>(const RobotDescription&, const ParameterOptions&);
-extern template std::unique_ptr<Robot> make_robot_of<LinearAxis>(const RobotDescription&, const ParameterOptions&);
-
 }  // namespace deltadyn::detail

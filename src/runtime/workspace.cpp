@@ -1,6 +1,5 @@
 #include "deltadyn/runtime/workspace.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "deltadyn/runtime/dense.hpp"

@@ -4,10 +4,18 @@
 #include <numeric>
 
 #include "deltadyn/runtime/error.hpp"
-
-#include "mechanism_of.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 
 namespace deltadyn {
+
+namespace detail {
+
+/// In mechanism_of.hpp, with one translation unit for each type, so that they build side by side.
+template <class R>
+std::unique_ptr<Mechanism> make_mechanism_of(const RobotDescription& description, const Eigen::VectorXd& p,
+                                             const MechanismOptions& options);
+
+}  // namespace detail
 
 ParameterOptions mechanism_options(const RobotDescription& description) {
   ParameterOptions all;
@@ -24,16 +32,8 @@ std::unique_ptr<Mechanism> make_mechanism(const RobotDescription& description, c
     throw Error(fmt::format("a mechanism has {} parameters, but {} are given", count, p.size()), description.name,
                 "give one for each of a robot with mechanism_options()", ExitCode::usage);
   }
-  const bool prismatic = description.drive_kind == DriveKind::prismatic;
-  if (description.type == Delta3::kName) return detail::make_mechanism_of<Delta3>(description, p, options);
-  if (description.type == LinearDelta3::kName) return detail::make_mechanism_of<LinearDelta3>(description, p, options);
-  if (description.type == Delta4::kName) return detail::make_mechanism_of<Delta4>(description, p, options);
-  if (description.type == Axis::kName) {
-    return prismatic ? detail::make_mechanism_of<LinearAxis>(description, p, options)
-                     : detail::make_mechanism_of<Axis>(description, p, options);
-  }
-  throw Error("robots of type '" + description.type + "' cannot be simulated", description.name,
-              "use one of delta3, linear-delta3, delta4, axis");
+  return with_robot_type(description,
+                         [&](auto type) { return detail::make_mechanism_of<decltype(type)>(description, p, options); });
 }
 
 }  // namespace deltadyn

@@ -110,23 +110,9 @@ class MechanismOf final : public Mechanism {
   bool passive_;
 };
 
-/// One translation unit for each type, so that they build side by side.
 template <class R>
 std::unique_ptr<Mechanism> make_mechanism_of(const RobotDescription& description, const Eigen::VectorXd& p,
                                              const MechanismOptions& options) {
   return std::make_unique<MechanismOf<R>>(description, p, options);
 }
-extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta3>(const RobotDescription&, const Eigen::VectorXd&,
-                                                                     const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearDelta3>(const RobotDescription&,
-                                                                           const Eigen::VectorXd&,
-                                                                           const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<Delta4>(const RobotDescription&, const Eigen::VectorXd&,
-                                                                     const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<Axis>(const RobotDescription&, const Eigen::VectorXd&,
-                                                                   const MechanismOptions&);
-extern template std::unique_ptr<Mechanism> make_mechanism_of<LinearAxis>(const RobotDescription&,
-                                                                         const Eigen::VectorXd&,
-                                                                         const MechanismOptions&);
-
 }  // namespace deltadyn::detail

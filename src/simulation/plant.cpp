@@ -15,6 +15,7 @@ namespace {
 using detail::State;
 
 constexpr double kShortestStep = 1e-13;  // [s]
+constexpr double kLongestStep = 2e-3;    // [s]
 constexpr int kMostStalls = 20;          // events within a nanosecond of one another
 constexpr double kHoldUndecided = 1e-4;  // [s]
 
@@ -154,7 +155,7 @@ struct Plant::Impl : detail::JointDynamics {
     State next, rate_next, error;
     int stalled = 0;
     while (end - now > kShortestStep) {
-      double h = std::min({end - now, options.largest_step_s, step_size});
+      double h = std::min({end - now, kLongestStep, step_size});
       if (end - now - h < 1e-9) h = end - now;
       const bool done = step(h, next, rate_next, error);
       const double size = done ? relative(error, next) : 1e6;
@@ -203,8 +204,7 @@ struct Plant::Impl : detail::JointDynamics {
 Plant::Plant(const RobotDescription& description, const std::vector<std::string>& names, const Eigen::VectorXd& p,
              const std::vector<Effect>& effects, const PlantOptions& options)
     : impl_(std::make_unique<Impl>(description, names, p, effects, options)) {
-  if (!(options.tolerance > 0 && options.tolerance <= 1e-3) || !(options.largest_step_s > 0) ||
-      !(options.current_lag_s >= 0)) {
+  if (!(options.tolerance > 0 && options.tolerance <= 1e-3) || !(options.current_lag_s >= 0)) {
     throw Error("options of the simulation are out of range", "",
                 "give a tolerance between 0 and 1e-3 and times that are not negative", ExitCode::usage);
   }

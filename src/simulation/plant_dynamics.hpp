@@ -212,7 +212,6 @@ struct JointDynamics {
   }
 
   Status derivative(double time, const State& state, State& rate) {
-    ++counts.evaluations;
     if (const Status status = terms_at(state, scratch); status != Status::ok) return status;
     solve_with_side_load(time, scratch, solution);
     const int c = coordinates();
@@ -261,11 +260,10 @@ struct JointDynamics {
     }
     const Coordinates a0 = terms.cholesky.solve(force);
     const auto count = static_cast<Eigen::Index>(rest.size());
-    Rows J(count, coordinates());
+    const Rows J = terms.J(rest, Eigen::all);
     JointVector b(count), low(count), high(count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const int j = rest[static_cast<std::size_t>(k)];
-      J.row(k) = terms.J.row(j);
       b(k) = terms.J.row(j).dot(a0) + terms.robot.bias_rate(j);
       bounds(j, time, terms, side_load, low(k), high(k));
     }
@@ -313,10 +311,7 @@ struct JointDynamics {
     }
     if (!others || terms_at(state, scratch) != Status::ok) return false;
     // Passive joints: the smallest change in the metric of M, as an impulse would do it.
-    const std::vector<int> rest = joints_at_rest();
-    const auto count = static_cast<Eigen::Index>(rest.size());
-    Rows J(count, c);
-    for (Eigen::Index k = 0; k < count; ++k) J.row(k) = scratch.J.row(rest[static_cast<std::size_t>(k)]);
+    const Rows J = scratch.J(joints_at_rest(), Eigen::all);
     const Columns MinvJ = scratch.cholesky.solve(J.transpose());
     state.segment(c, c) -= MinvJ * least_forces(J * MinvJ, J * state.segment(c, c));
     for (int j = 0; j < n; ++j) {

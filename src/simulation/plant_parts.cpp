@@ -49,16 +49,14 @@ class Values {
               ExitCode::usage);
 }
 
-/// Is the effect built into the machine, and does it act on the plate by its law?
-bool changes_machine(EffectId id) {
-  bool changes = false;
-  visit_effect(id, [&changes](auto effect) { changes = HasChange<decltype(effect), ChangedMachine>::value; });
-  return changes;
-}
+/// Does the effect act on the plate by its law, and is it not built into the machine?
 bool pushes_plate(EffectId id) {
   bool pushes = false;
-  visit_effect(id, [&pushes](auto effect) { pushes = kIs<decltype(effect), PlateForce>; });
-  return pushes && !changes_machine(id);
+  visit_effect(id, [&pushes](auto effect) {
+    using E = decltype(effect);
+    pushes = kIs<E, PlateForce> && !HasChange<E, ChangedMachine>::value;
+  });
+  return pushes;
 }
 
 class Builder {

@@ -84,10 +84,9 @@ Eigen::MatrixXd recorded_torque(const Eigen::VectorXd& t_s, const Eigen::MatrixX
   Eigen::MatrixXd recorded = tau;
   const Eigen::Index n = tau.rows();
   const double period = n > 1 ? (t_s(n - 1) - t_s(0)) / static_cast<double>(n - 1) : 1.0;
-  std::vector<Effect> in_order;
-  std::copy_if(effects.begin(), effects.end(), std::back_inserter(in_order),
-               [](const Effect& e) { return is_log_effect(e.id); });
-  std::ranges::stable_sort(in_order, [](const Effect& a, const Effect& b) { return stage_of(a.id) < stage_of(b.id); });
+  std::vector<Effect> in_order = effects;
+  std::erase_if(in_order, [](const Effect& effect) { return !is_log_effect(effect.id); });
+  std::ranges::stable_sort(in_order, {}, [](const Effect& effect) { return stage_of(effect.id); });
   for (const Effect& effect : in_order) record(effect, period, recorded);
   const Eigen::VectorXd noise = one_a_drive(options.torque_noise, drives);
   std::mt19937_64 random(seed);

@@ -22,24 +22,33 @@ int whole_ratio(double high, double low) {
   return static_cast<int>(whole);
 }
 
-/// Rows of the log as they come.
+/// The log row by row, with the torque that acts.
 class Recorder {
  public:
-  Recorder(Eigen::Index rows, int drives) {
-    t.resize(rows);
-    for (Eigen::MatrixXd* m : {&qd, &qdd, &tau, &reading}) m->resize(rows, drives);
+  Recorder(Eigen::Index rows, int drives, double rate_hz) : rate_hz_(rate_hz) {
+    log_.t_s.resize(rows);
+    for (Eigen::MatrixXd* block : {&log_.q, &log_.qd, &log_.qdd, &log_.tau}) block->resize(rows, drives);
   }
-  Eigen::VectorXd t;
-  Eigen::MatrixXd qd, qdd, tau, reading;
+
+  void set(Eigen::Index row, const Eigen::VectorXd& reading, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,
+           const Eigen::VectorXd& tau) {
+    log_.t_s(row) = static_cast<double>(row) / rate_hz_;
+    log_.q.row(row) = reading;
+    log_.qd.row(row) = qd;
+    log_.qdd.row(row) = qdd;
+    log_.tau.row(row) = tau;
+  }
 
   void finish(const std::vector<Effect>& effects, const SimulationOptions& options, SimulationResult& result) const {
-    result.log.t_s = t;
-    result.log.q = reading;
-    result.log.qd = qd;
-    result.log.qdd = qdd;
-    result.log.tau = recorded_torque(t, tau, effects, options.sensors, options.seed + 0x9e3779b97f4a7c15ULL);
-    result.largest_torque = tau.cwiseAbs().colwise().maxCoeff();
+    const std::uint64_t seed = options.seed + 0x9e3779b97f4a7c15ULL;
+    result.log = log_;
+    result.log.tau = recorded_torque(log_.t_s, log_.tau, effects, options.sensors, seed);
+    result.largest_torque = log_.tau.cwiseAbs().colwise().maxCoeff();
   }
+
+ private:
+  double rate_hz_;
+  Log log_;
 };
 
 [[noreturn]] void lost(double time, double error, long clipped) {
@@ -60,7 +69,7 @@ SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std
                        const SimulationOptions& options, Eigen::Index first, Eigen::Index samples) {
   const int n = reference.drives();
   SimulationResult result;
-  Recorder record(samples - first, n);
+  Recorder record(samples - first, n, options.log_rate_hz);
   Encoders encoders(n, options.sensors, options.seed);
   ReferenceMotion::State state;
   for (Eigen::Index k = 0; k < samples; ++k) {
@@ -68,12 +77,7 @@ SimulationResult along(Plant& plant, const ReferenceMotion& reference, const std
     reference.at(time, state);
     const DriveVector tau = plant.inverse(time, state.q, state.qd, state.qdd);
     if (k < first) continue;
-    const Eigen::Index row = k - first;
-    record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-    record.qd.row(row) = state.qd;
-    record.qdd.row(row) = state.qdd;
-    record.tau.row(row) = tau;
-    record.reading.row(row) = encoders.read(state.q);
+    record.set(k - first, encoders.read(state.q), state.qd, state.qdd, tau);
   }
   record.finish(effects, options, result);
   result.rms_error = result.largest_error = Eigen::VectorXd::Zero(n);
@@ -110,7 +114,7 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
   if (options.inverse) return along(plant, reference, effects, options, first, samples);
 
   SimulationResult result;
-  Recorder record(samples - first, n);
+  Recorder record(samples - first, n, options.log_rate_hz);
   const int ratio = whole_ratio(options.control_rate_hz, options.log_rate_hz);
   const double period = 1 / options.control_rate_hz;
   ReferenceMotion::State wanted;
@@ -143,11 +147,7 @@ SimulationResult simulate(Plant& plant, const Robot& model, const Eigen::VectorX
     }
     const Eigen::Index row = k / ratio - first;
     if (k % ratio == 0 && row >= 0) {
-      record.t(row) = static_cast<double>(row) / options.log_rate_hz;
-      record.qd.row(row) = plant.qd();
-      record.qdd.row(row) = 0.5 * (qdd_before + qdd_now);
-      record.tau.row(row) = 0.5 * (tau_before + tau_now);
-      record.reading.row(row) = reading;
+      record.set(row, reading, plant.qd(), 0.5 * (qdd_before + qdd_now), 0.5 * (tau_before + tau_now));
       const Eigen::VectorXd error = wanted.q - plant.q();
       if (!(error.cwiseAbs().maxCoeff() < kLost)) lost(time, error.cwiseAbs().maxCoeff(), result.clipped);
       squares += error.cwiseAbs2();

@@ -30,22 +30,14 @@ Step step(double x) {
   return {x3 * (10 - 15 * x + 6 * x2), 30 * x2 * (1 - x) * (1 - x), x2 * x2 * (2.5 - 3 * x + x2)};
 }
 
-/// The curve of the series up to phase `join`, with the speed rising from rest.
-SmoothMotion run_in(const FourierSeries& series, double join, double duration) {
-  const double omega = series.omega();
-  return {duration, [series, join, duration, omega](double t) {
-            const Step s = step(t / duration);
-            return series.state(join - omega * duration * (0.5 - s.integral), omega * s.value,
-                                omega * s.slope / duration);
-          }};
-}
-
-SmoothMotion run_out(const FourierSeries& series, double join, double duration) {
-  const double omega = series.omega();
-  return {duration, [series, join, duration, omega](double t) {
-            const Step s = step(1 - t / duration);
-            return series.state(join + omega * duration * (0.5 - s.integral), omega * s.value,
-                                -omega * s.slope / duration);
+/// The curve of the series up to phase `join`, with the speed rising from rest, or on from there, with the speed
+/// falling.
+SmoothMotion ramp(PartKind kind, const FourierSeries& series, double join, double duration) {
+  const double omega = series.omega(), sense = kind == PartKind::run_in ? 1 : -1;
+  return {duration, [=](double t) {
+            const Step s = step(sense > 0 ? t / duration : 1 - t / duration);
+            return series.state(join - sense * omega * duration * (0.5 - s.integral), omega * s.value,
+                                sense * omega * s.slope / duration);
           }};
 }
 
@@ -131,12 +123,12 @@ Join find_join(const Robot& robot, const PlanSegment& segment, double rate_hz) {
     // No longer than what is known already.
     const double allowed = std::min(kLongestRamp_s, best_time);
     const Search in = shortest(robot, segment.limits, Way::along_curve, rate_hz, first, allowed,
-                               [&](double duration) { return run_in(series, phase, duration); });
+                               [&](double duration) { return ramp(PartKind::run_in, series, phase, duration); });
     last = in.last;
     if (!in.duration || *in.duration >= best_time) continue;
     const Search out = shortest(robot, segment.limits, Way::along_curve, rate_hz, first,
                                 std::min(kLongestRamp_s, best_time - *in.duration),
-                                [&](double duration) { return run_out(series, phase, duration); });
+                                [&](double duration) { return ramp(PartKind::run_out, series, phase, duration); });
     if (!out.duration || *in.duration + *out.duration >= best_time) continue;
     best = {phase, *in.duration, *out.duration};
     best_time = best.in_s + best.out_s;
@@ -192,7 +184,7 @@ MotionPlan make_plan(const Robot& robot, const std::vector<PlanSegment>& segment
       continue;
     }
     const Join join = find_join(robot, segment, rate_hz);
-    SmoothMotion in = run_in(segment.series, join.phase, join.in_s);
+    SmoothMotion in = ramp(PartKind::run_in, segment.series, join.phase, join.in_s);
     if (k > 0) {
       const Eigen::VectorXd to = in.at(0).z;
       const Search way = shortest(robot, segment.limits, Way::new_way, rate_hz, 0.2, kLongestRamp_s,
@@ -202,7 +194,7 @@ MotionPlan make_plan(const Robot& robot, const std::vector<PlanSegment>& segment
     }
     append(plan, PartKind::run_in, number, std::move(in));
     append(plan, PartKind::periodic, number, periods(segment.series, join.phase, segment.periods));
-    SmoothMotion out = run_out(segment.series, join.phase, join.out_s);
+    SmoothMotion out = ramp(PartKind::run_out, segment.series, join.phase, join.out_s);
     pose = out.at(join.out_s).z;
     append(plan, PartKind::run_out, number, std::move(out));
   }

@@ -170,21 +170,5 @@ TEST(ParameterOptionsOf, FindsTheColumnsThatAFileWasWrittenFor) {
   }
 }
 
-TEST(PreslidingOf, ReadsTheRowsAndRefusesOtherJoints) {
-  const RobotDescription robot = testing_support::delta_description("delta4");
-  ParameterTable table;
-  table.entries.push_back({"drive2.presliding", 2e-3, "rad"});
-  table.entries.push_back({"telescope.presliding", 1e-4, "m"});
-  Eigen::VectorXd expected(5);
-  expected << 0, 2e-3, 0, 0, 1e-4;
-  EXPECT_EQ(presliding_of(table, robot), expected);
-  EXPECT_EQ(presliding_name(robot, 4), "telescope.presliding");
-  // The rows are no columns of the regressor, and nobody is told that they are not used.
-  table.entries.push_back({"drive2.coulomb", 1.0, "N*m"});
-  EXPECT_TRUE(match_parameters(table, {"drive2.coulomb"}).warnings.empty());
-  table.entries.push_back({"drive7.presliding", 2e-3, "rad"});
-  EXPECT_THROW((void)presliding_of(table, robot), Error);
-}
-
 }  // namespace
 }  // namespace deltadyn

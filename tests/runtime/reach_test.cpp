@@ -53,9 +53,7 @@ TEST(Reach, EveryCellIsAllowedAndTheLowestPoseIsTheDrivesLimit) {
 
 TEST(Reach, AFinerGridAgrees) {
   const auto robot = make_robot(delta3());
-  ReachOptions fine;
-  fine.cells = 101;
-  const Reach coarse = find_reach(*robot), better = find_reach(*robot, fine);
+  const Reach coarse = find_reach(*robot), better = find_reach(*robot, 101);
   EXPECT_NEAR(coarse.volume, better.volume, 0.03 * better.volume);
   EXPECT_NEAR(coarse.radius, better.radius, 1.5 * coarse.cell);
 }
@@ -66,13 +64,6 @@ TEST(Reach, SaysWhyThereIsNone) {
   axis.limbs.emplace_back();
   axis.limits.resize(1);
   EXPECT_THROW((void)find_reach(*make_robot(axis)), Error);
-  const auto robot = make_robot(delta3());
-  ReachOptions options;
-  options.cells = 1;
-  EXPECT_THROW((void)find_reach(*robot, options), Error);
-  options.cells = 11;
-  options.largest_condition = 0;
-  EXPECT_THROW((void)find_reach(*robot, options), Error);
 }
 
 }  // namespace

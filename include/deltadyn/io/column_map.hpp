@@ -54,6 +54,8 @@ struct MapDefaults {
   std::optional<double> rate_hz;
   std::vector<double> gear_ratio, torque_constant, rated_torque, counts_per_turn, lead;
 
+  /// That of a quantity; empty: not given.
+  [[nodiscard]] std::string unit(Quantity quantity) const;
   /// Throws Error(usage) if a list has another number of values, or a value is not positive.
   void validate(int drives) const;
   /// Fills in the channels of a map.

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// Rows of a parameter file that are no columns of the regressor: damping of bristles and ripple of the torque over the
-/// position. `drive1.presliding_damping` [s]; `drive1.ripple1.waves` [waves/turn | waves/m] with
-/// `drive1.ripple1.cosine` and `.sine` [N m | N].
+/// Rows of a parameter file that are no columns of the regressor: presliding, damping of bristles and ripple of the
+/// torque over the position. `drive1.presliding` [rad | m]; `drive1.presliding_damping` [s]; `drive1.ripple1.waves`
+/// [waves/turn | waves/m] with `drive1.ripple1.cosine` and `.sine` [N m | N].
 
 #include <Eigen/Core>
 #include <string>
@@ -13,6 +13,13 @@
 #include "deltadyn/io/parameter_file.hpp"
 
 namespace deltadyn {
+
+/// Displacement over which the friction of each joint builds up after a reversal [rad | m], drives first, then the
+/// telescope; 0 where the file says nothing. Throws Error(bad_input) for a joint that the robot does not have and for a
+/// negative displacement.
+[[nodiscard]] Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot);
+/// Name of that row.
+[[nodiscard]] std::string presliding_name(const RobotDescription& robot, int joint);
 
 /// Damping of the bristles of each joint [s], drives first, then the telescope; 0 where the file says nothing.
 /// Throws Error(bad_input) for a joint that the robot does not have and for a negative damping.

@@ -8,6 +8,7 @@
 
 #include "deltadyn/io/column_map.hpp"
 #include "deltadyn/io/recording.hpp"
+#include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/log.hpp"
 
 namespace deltadyn {
@@ -64,16 +65,12 @@ class LogImport {
   void note_joints_beyond(Quantity quantity);
   [[nodiscard]] std::string map_of_the_rest() const;
   [[nodiscard]] std::string open_time() const;
-  void ask(const std::string& what, const std::string& mend, const std::string& where = "");
 
   const RobotDescription& robot_;
   ImportOptions options_;
   ColumnMap map_;
   Recording recording_;
-  struct Open {
-    std::string what, mend, where;
-  };
-  std::vector<Open> open_;
+  std::vector<Error> open_;  ///< what log() would ask for
 };
 
 /// The next step of an error, where a map to be mended is there already instead of one to be written.

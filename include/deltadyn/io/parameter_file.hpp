@@ -58,9 +58,9 @@ void write_parameters(const std::string& path, const ParameterTable& table);
 
 /// The wanted parameters in order, with what is worth telling.
 struct ParameterMatch {
-  Eigen::VectorXd value, std, prior, data_share;  ///< std, prior, data_share: NaN where not known
-  std::vector<std::string> missing;               ///< wanted names that the table lacks; their value is 0
-  std::vector<std::string> warnings;              ///< rows of the table that nobody wanted, with their line
+  Eigen::VectorXd value, std;         ///< std: NaN where not known
+  std::vector<std::string> missing;   ///< wanted names that the table lacks; their value is 0
+  std::vector<std::string> warnings;  ///< rows of the table that nobody wanted, with their line
 };
 
 /// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
@@ -73,14 +73,6 @@ struct ParameterMatch {
 
 /// The columns that a parameter file was written for: limbs of their own, the tool, rotor inertias, offsets.
 [[nodiscard]] ParameterOptions parameter_options_of(const ParameterTable& table, const RobotDescription& robot);
-
-/// Displacement over which the friction of each joint builds up after a reversal [rad | m], drives first, then the
-/// telescope; 0 where the file says nothing (rows driveK.presliding, telescope.presliding). Throws Error(bad_input) for
-/// a joint that the robot does not have and for a negative displacement.
-[[nodiscard]] Eigen::VectorXd presliding_of(const ParameterTable& table, const RobotDescription& robot);
-
-/// Name of that row.
-[[nodiscard]] std::string presliding_name(const RobotDescription& robot, int joint);
 
 /// match_parameters(table, names, units).value
 [[nodiscard]] Eigen::VectorXd values(const ParameterTable& table, const std::vector<std::string>& names,

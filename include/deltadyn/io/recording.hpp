@@ -49,14 +49,11 @@ struct Recording {
   std::vector<std::string> notes;  ///< what was left out or mended, with line numbers
 };
 
-struct RecordingOptions {
-  std::string topic;  ///< of a ROS bag with several topics of joint states; empty: the only one
-};
-
 /// Reads an export, whose form is recognised from its content: delimited text (separator, decimal comma, quotes,
 /// byte-order mark, UTF-16, preamble, units below or in the header), TwinCAT Scope, LinuxCNC halscope, rosbag2 (.db3 or
 /// its folder, joint states). Throws Error(bad_input): unreadable or empty file, a binary form that is not read (with
 /// the program that converts it), rows that do not fit the header (with the line).
-[[nodiscard]] Recording read_recording(const std::string& path, const RecordingOptions& options = {});
+/// \param topic  of a ROS bag with several topics of joint states; empty: the only one
+[[nodiscard]] Recording read_recording(const std::string& path, const std::string& topic = {});
 
 }  // namespace deltadyn

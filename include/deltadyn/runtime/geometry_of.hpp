@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// From the run-time description to the fixed-size geometry of the core.
+/// From the run-time description to the types and the fixed-size geometry of the core.
 
+#include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -34,6 +35,18 @@ Geometry<T, Robot> geometry_of(const RobotDescription& description) {
   }
   geometry.gravity = description.gravity.cast<T>();
   return geometry;
+}
+
+/// work(R()) with the type R of the core that the description belongs to. Throws Error(bad_input) if there is none.
+template <class Work>
+auto with_robot_type(const RobotDescription& robot, const Work& work) {
+  if (robot.type == Delta3::kName) return work(Delta3());
+  if (robot.type == LinearDelta3::kName) return work(LinearDelta3());
+  if (robot.type == Delta4::kName) return work(Delta4());
+  if (robot.type == Axis::kName && robot.drive_kind == DriveKind::prismatic) return work(LinearAxis());
+  if (robot.type == Axis::kName) return work(Axis());
+  throw Error("robot type '" + robot.type + "' is not known", robot.name,
+              "use one of delta3, linear-delta3, delta4, axis");
 }
 
 }  // namespace deltadyn

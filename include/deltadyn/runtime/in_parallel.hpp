@@ -13,6 +13,9 @@
 
 namespace deltadyn {
 
+/// \param threads at least 1; 0 takes as many as the machine has. Throws deltadyn::Error(usage) if negative.
+void set_threads(int threads);
+
 namespace detail {
 
 void run_in_parallel(std::size_t count, const std::function<void(std::size_t)>& pass, int threads);

@@ -57,7 +57,7 @@ void require(const Rule& rule, double value, const std::string& what, const std:
 
 /// Lengths on their own and beside one another (a limb in millimetres beside two in metres), and gravity.
 /// The description's counts must be right (RobotDescription::validate sees to that, then calls this).
-void require_geometry(const RobotDescription& robot, const std::string& where, ExitCode code = ExitCode::bad_input);
+void require_geometry(const RobotDescription& robot, const std::string& where);
 
 /// Limits of one drive, from 0; infinite ones do not limit. Uses the lengths of the robot: how fast the elbow moves.
 void require_limits(const RobotDescription& robot, int drive, const DriveLimits& limits, const std::string& where,

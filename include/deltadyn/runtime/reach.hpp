@@ -9,11 +9,6 @@
 
 namespace deltadyn {
 
-struct ReachOptions {
-  int cells = 61;                 ///< of the grid along each of x, y, z
-  double largest_condition = 50;  ///< of the Jacobian dr/dq; poses beyond it count as singular
-};
-
 /// The connected region around the home pose, as cells of a grid; inside the drives' position limits.
 struct Reach {
   Eigen::Vector3d home = Eigen::Vector3d::Zero();   ///< pose where the search starts [m]
@@ -28,8 +23,8 @@ struct Reach {
   Eigen::VectorXd condition;         ///< at the centres
 };
 
-/// Throws deltadyn::Error if the robot has no plate, an option is out of range, or no pose at all is within reach and
-/// limits.
-[[nodiscard]] Reach find_reach(const Robot& robot, const ReachOptions& options = {});
+/// \param cells  of the grid along each of x, y, z
+/// Throws deltadyn::Error if the robot has no plate, or no pose at all is within reach and limits.
+[[nodiscard]] Reach find_reach(const Robot& robot, int cells = 61);
 
 }  // namespace deltadyn

@@ -23,13 +23,12 @@ namespace deltadyn {
 struct PlantOptions {
   /// Of one step, relative to 1 rad, 1 m, 1 rad/s, 1 m/s or the value itself if that is larger
   double tolerance = 1e-9;
-  double current_lag_s = 0;      ///< time constant with which a drive's torque follows its command [s]
-  double largest_step_s = 2e-3;  ///< [s]
+  double current_lag_s = 0;  ///< time constant with which a drive's torque follows its command [s]
 };
 
 /// What the plant has done so far.
 struct PlantCounts {
-  long steps = 0, evaluations = 0;
+  long steps = 0;
   long reversals = 0;   ///< joints that came to rest, and went on or stuck
   long breakaways = 0;  ///< joints that broke loose
   double stuck_s = 0;   ///< time with at least one joint stuck [s]

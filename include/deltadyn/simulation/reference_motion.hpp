@@ -21,7 +21,6 @@ class ReferenceMotion {
   [[nodiscard]] int drives() const { return static_cast<int>(q_.cols()); }
   [[nodiscard]] double duration_s() const { return repeats_ == 1 ? t_(t_.size() - 1) : repeats_ * period_; }
   [[nodiscard]] double period_s() const { return period_; }  ///< of one repetition
-  [[nodiscard]] double sample_time_s() const { return t_(1); }
 
   struct State {
     Eigen::VectorXd q, qd, qdd;

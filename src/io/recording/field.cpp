@@ -12,10 +12,6 @@
 namespace deltadyn::forms {
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Spellings of "no value" in exports of spreadsheets, MATLAB, Microsoft's C library and databases.
 bool is_missing_word(std::string_view field) {
   static constexpr std::array kWords = {
@@ -136,6 +132,12 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+std::string with_each(std::string text, std::string_view from, std::string_view to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
 bool parse_decimal(std::string_view text, double& value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   const char* end = text.data() + text.size();
@@ -208,33 +210,32 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
   fields.clear();
   const bool blanks = separator == ' ' && !exact;
   if (blanks) line = trimmed(line);
-  const auto blank_run = [](std::string_view& text) {
-    const auto next = text.find_first_not_of(" \t");
-    text = next == std::string_view::npos ? std::string_view() : text.substr(next);
-  };
   for (;;) {
     std::string_view rest = line;
     while (!rest.empty() && rest.front() != separator && (rest.front() == ' ' || rest.front() == '\t'))
       rest.remove_prefix(1);
-    if (!rest.empty() && rest.front() == '"') {
-      const auto close = rest.find('"', 1);
-      if (close != std::string_view::npos) {
-        fields.push_back(trimmed(rest.substr(1, close - 1)));
-        line = rest.substr(close + 1);
-        const auto next = blanks ? line.find_first_of(" \t") : line.find(separator);
-        if (next == std::string_view::npos) return;
-        line.remove_prefix(next + 1);
-        if (blanks) blank_run(line);
-        continue;
-      }
+    const auto close = rest.starts_with('"') ? rest.find('"', 1) : std::string_view::npos;
+    const bool quoted = close != std::string_view::npos;
+    if (quoted) {
+      fields.push_back(trimmed(rest.substr(1, close - 1)));
+      line = rest.substr(close + 1);
     }
     const auto end = blanks ? line.find_first_of(" \t") : line.find(separator);
-    if (end == std::string_view::npos) break;
-    fields.push_back(trimmed(line.substr(0, end)));
+    if (!quoted) fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
-    if (blanks) blank_run(line);
+    if (blanks) line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   }
-  fields.push_back(trimmed(line));
+}
+
+void split_at_commas(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    const auto comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
 }
 
 }  // namespace deltadyn::forms

@@ -13,10 +13,18 @@
 namespace deltadyn::forms {
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
+[[nodiscard]] constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 [[nodiscard]] std::string lower(std::string_view text);
+/// The text with `to` in place of each `from`.
+[[nodiscard]] std::string with_each(std::string text, std::string_view from, std::string_view to);
 
 /// Stands for a number that is missing.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// From 1601, where Windows begins to count, to 1970 in ticks of 100 ns.
+inline constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;
 
 enum class Field { number, missing, date, text };
 
@@ -41,6 +49,9 @@ enum class Field { number, missing, date, text };
 /// separator; the quotes are taken off. Blanks around fields are taken off.
 /// \param exact  a blank as separator stands for itself, so that two of them have an empty field between them
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields, bool exact = false);
+
+/// The fields of a line of plain CSV, without blanks around them; there are no quotes.
+void split_at_commas(std::string_view line, std::vector<std::string_view>& fields);
 
 /// Lines of a text without their ends (LF, CR LF or CR alone); calls `each(line, number)`, number from 1, until it
 /// returns false. Returns whether the last line had an end.

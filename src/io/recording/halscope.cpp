@@ -3,7 +3,6 @@
 
 #include "deltadyn/runtime/error.hpp"
 
-#include "field.hpp"
 #include "recognisers.hpp"
 
 namespace deltadyn::forms {

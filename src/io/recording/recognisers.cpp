@@ -2,8 +2,8 @@
 
 namespace deltadyn {
 
-Recording read_recording(const std::string& path, const RecordingOptions& options) {
-  if (const auto database = forms::rosbag2_database(path)) return forms::read_rosbag2(*database, options);
+Recording read_recording(const std::string& path, const std::string& topic) {
+  if (const auto database = forms::rosbag2_database(path)) return forms::read_rosbag2(*database, topic);
   const forms::TextFile file = forms::read_text_file(path);
   std::optional<Recording> recording;
   for (const auto recogniser : {forms::read_twincat, forms::read_halscope}) {

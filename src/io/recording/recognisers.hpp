@@ -18,6 +18,13 @@ struct TextFile {
   bool is_windows_1252 = false;  ///< it was in Windows-1252
 };
 
+/// All of a file. Throws Error(bad_input): missing, unreadable, a folder.
+/// \param instead_of_folder  what to give instead, for the message
+[[nodiscard]] std::string read_bytes(const std::string& path, const char* instead_of_folder);
+
+/// Throws Error(bad_input) if there is a zero byte: no text has one.
+void refuse_zero_bytes(const std::string& path, std::string_view text);
+
 /// Reads a text file as UTF-8. Throws Error(bad_input): missing, a folder, empty, not a text.
 [[nodiscard]] TextFile read_text_file(const std::string& path);
 
@@ -32,6 +39,6 @@ void refuse_binary_form(const std::string& path, std::string_view head);
 
 /// Whether the file is an SQLite database, or a folder that holds one, and which.
 [[nodiscard]] std::optional<std::string> rosbag2_database(const std::string& path);
-[[nodiscard]] Recording read_rosbag2(const std::string& database, const RecordingOptions& options);
+[[nodiscard]] Recording read_rosbag2(const std::string& database, const std::string& wanted_topic);
 
 }  // namespace deltadyn::forms

@@ -305,9 +305,9 @@ std::optional<std::string> rosbag2_database(const std::string& path) {
   return databases.front();
 }
 
-Recording read_rosbag2(const std::string& path, const RecordingOptions& options) {
+Recording read_rosbag2(const std::string& path, const std::string& wanted_topic) {
   const Database database(path);
-  const Topic topic = choose_topic(database, options.topic);
+  const Topic topic = choose_topic(database, wanted_topic);
   Recording recording;
   recording.file = path;
   const auto statement =

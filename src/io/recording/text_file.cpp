@@ -35,8 +35,7 @@ constexpr BinaryForm kBinaryForms[] = {
      "convert it: rostopic echo -b FILE.bag -p /joint_states > log.csv, or rosbags-convert to rosbag2"},
     {"\x89MCAP0\r\n"sv, "a rosbag2 in MCAP storage",
      "convert it to SQLite storage: ros2 bag convert -i FILE.mcap -o out.yaml with storage_id: sqlite3; or export CSV "
-     "from "
-     "PlotJuggler"},
+     "from PlotJuggler"},
     {"\x1f\x8b"sv, "a gzip archive", "gunzip it and give the file inside"},
     {"\x28\xB5\x2F\xFD"sv, "a zstd archive", "unzstd it and give the file inside"},
     {"BZh"sv, "a bzip2 archive", "bunzip2 it and give the file inside"},
@@ -53,12 +52,11 @@ constexpr BinaryForm kBinaryForms[] = {
     {"%PDF"sv, "a PDF", "give the recording itself, as CSV"},
 };
 
-std::string read_bytes(const std::string& path) {
+}  // namespace
+
+std::string read_bytes(const std::string& path, const char* instead_of_folder) {
   std::error_code failed;
-  if (std::filesystem::is_directory(path, failed)) {
-    throw Error("this is a folder, not a file", path,
-                "give the exported file, or the folder of a rosbag2 with its .db3 file");
-  }
+  if (std::filesystem::is_directory(path, failed)) throw Error("this is a folder, not a file", path, instead_of_folder);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file)
     throw Error(fmt::format("cannot open the file: {}", std::strerror(errno)), path,
@@ -80,7 +78,10 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
-}  // namespace
+void refuse_zero_bytes(const std::string& path, std::string_view text) {
+  if (text.find('\0') != std::string_view::npos)
+    throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
+}
 
 void refuse_binary_form(const std::string& path, std::string_view head) {
   for (const BinaryForm& form : kBinaryForms) {
@@ -89,15 +90,13 @@ void refuse_binary_form(const std::string& path, std::string_view head) {
 }
 
 TextFile read_text_file(const std::string& path) {
-  TextFile file{path, read_bytes(path)};
+  TextFile file{path, read_bytes(path, "give the exported file, or the folder of a rosbag2 with its .db3 file")};
   if (file.text.empty()) throw Error("the file is empty", path, "check that the recording or its export is complete");
   refuse_binary_form(path, file.text);
   DecodedText decoded = decode_text(std::move(file.text));
   file.text = std::move(decoded.text);
   file.is_windows_1252 = decoded.is_windows_1252;
-  if (file.text.find('\0') != std::string::npos) {
-    throw Error("the file holds zero bytes, so it is not a text file", path, "export it as CSV in UTF-8 or ASCII");
-  }
+  refuse_zero_bytes(path, file.text);
   return file;
 }
 

@@ -11,8 +11,6 @@
 namespace deltadyn::forms {
 namespace {
 
-constexpr std::int64_t kFileTimeToUnixTicks = 116444736000000000LL;  ///< 1601 to 1970 in ticks of 100 ns
-
 using Fields = std::vector<std::string>;
 
 /// The block of "Name", "SampleTime[ms]", "Unit", ... above the rows.
@@ -93,10 +91,8 @@ void take_display_settings(const Header& header, std::size_t column, RecordedCha
   if (scale == 1 && offset == 0 && unit_scale == 1 && unit_offset == 0) return;
   channel.remark = fmt::format(
       "ScaleFactor {:.6g}, Offset {:.6g}, Unit ScaleFactor {:.6g} and Unit Offset {:.6g} of the header are of the "
-      "Scope's "
-      "display; the rows hold the recorded variable without them, so they were not applied (scale and offset in the "
-      "column map "
-      "would)",
+      "Scope's display; the rows hold the recorded variable without them, so they were not applied (scale and offset "
+      "in the column map would)",
       scale, offset, unit_scale, unit_offset);
   if (unit_scale == 1 && unit_offset == 0) return;
   if (!channel.unit.empty())
