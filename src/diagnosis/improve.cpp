@@ -165,9 +165,7 @@ std::string refusal(const ImproveInput& input, const Trial& trial) {
   const bool one = trial.named.size() == 1;
   return fmt::format(
       "{} fit{} the training logs, but the model with {} leaves {:.3g} {} of the hold-out log at drive {} where the "
-      "model as "
-      "given "
-      "leaves {:.3g}: not named, not written.",
+      "model as given leaves {:.3g}: not named, not written.",
       names_of(trial.named), one ? "s" : "", one ? "it" : "them", figure.rms_written, unit, j + 1, figure.rms_given);
 }
 
@@ -179,8 +177,8 @@ void say_untestable(const Trial& trial, Diagnosis& out) {
   const Index rows = std::min(figure.rows_given, figure.rows_written);
   out.verdict = DiagnosisVerdict::not_testable;
   out.headline = fmt::format(
-      "Not testable: {} fits the training logs, but the hold-out log has {} rows of drive {} away from "
-      "reversals, too few to bear it out.",
+      "Not testable: {} fits the training logs, but the hold-out log has {} rows of drive {} away from reversals, too "
+      "few to bear it out.",
       names_of(trial.named), rows, j + 1);
   out.next.push_back("Give a longer hold-out log.");
 }

@@ -195,9 +195,7 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
                                    one.joint, open->needed_rate, turns(context, one.effect.joint) ? "rad/s" : "m/s"));
     headline = fmt::format(
         "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
-        "course at "
-        "higher "
-        "speeds.",
+        "course at higher speeds.",
         one.joint);
     region = one.region;
   }
@@ -302,10 +300,10 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
             "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
             hypothesis.joint_name(), fit.effect.shape(0)));
       } else {
-        out.notes.push_back(fmt::format(
-            "torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the search, "
-            "not counted as an effect",
-            hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+        out.notes.push_back(
+            fmt::format("torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the "
+                        "search, not counted as an effect",
+                        hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
       }
       continue;
     }
@@ -400,12 +398,11 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
           for (NamedEffect& one : out.named) one.why = "the hold-out log does not confirm it";
           const auto drive = static_cast<std::size_t>(touched.front());
           if (proof->rms_before(touched.front()) > kOtherMachine * out.drives[drive].rms) {
-            out.next.push_back(fmt::format(
-                "The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was anything "
-                "changed in between "
-                "(load, hose, robot)?",
-                proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N", drive + 1,
-                out.drives[drive].rms));
+            out.next.push_back(
+                fmt::format("The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was "
+                            "anything changed in between (load, hose, robot)?",
+                            proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N",
+                            drive + 1, out.drives[drive].rms));
           }
         } else {
           // Chance, or a trace of no use to anybody.

@@ -219,8 +219,7 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
     others += (others.empty() ? "" : ", ") + other.name;
   out.note = fmt::format(
       "motion of {:.1f} s that tells {} from {}: their torques differ by {:.2g} noise standard deviations (random "
-      "motions "
-      "{:.2g})",
+      "motions {:.2g})",
       out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, others, out.separation, out.typical);
   return out;
 }

@@ -49,8 +49,7 @@ std::string structure_left(const SearchContext& context, const Diagnosis& out) {
     if (drive.p_left >= kStructureChance || drive.rms_after < kLeftOver * drive.floor) continue;
     return fmt::format(
         "of drive {} {:.3g} {} are left where noise alone leaves {:.3g}, but no effect of the catalogue explains that "
-        "on "
-        "every log",
+        "on every log",
         j + 1, drive.rms_after, torque_unit(context, j), drive.floor);
   }
   return "";

@@ -517,9 +517,8 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
         const LimitUse& use = check.tightest();
         throw Error(use.load > 1
                         ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most "
-                                      "room breaks the limit '{}' "
-                                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn "
-                                      "break theirs further",
+                                      "room breaks the limit '{}' ({:.4g} {} where {:.4g} to {:.4g} is allowed), and "
+                                      "the others that were drawn break theirs further",
                                       use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
                         : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'",
                                       use.limit.name),

@@ -57,8 +57,7 @@ Check check_solver(const ConsistentFitSummary& fit) {
     check.figure = "proven";
     check.meaning = fmt::format(
         "No physically consistent parameters fit data and prior better by more than {} in χ² (a change of 1 would be "
-        "within the "
-        "noise).",
+        "within the noise).",
         format_number(std::max(fit.certificate.gap, 0.0), 2));
   } else {
     check.figure = "not proven";
@@ -96,8 +95,7 @@ Check check_consistency(const Identification& identification) {
   } else {
     check.meaning =
         "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong "
-        "length, a wrong "
-        "prior with too much weight, or an effect that the model lacks.";
+        "length, a wrong prior with too much weight, or an effect that the model lacks.";
   }
   return check;
 }
@@ -120,8 +118,7 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   } else {
     check.meaning = fmt::format(
         "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches "
-        "further and "
-        "accelerates harder, and trust the model only near the recorded motions.",
+        "further and accelerates harder, and trust the model only near the recorded motions.",
         format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
   }
   return check;
@@ -183,8 +180,7 @@ Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>
   } else if (prior + sums + neither > 0) {
     check.meaning =
         "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values "
-        "are not "
-        "measured.";
+        "are not measured.";
   } else {
     check.meaning = "No value rests on the prior.";
   }

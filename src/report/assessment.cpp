@@ -163,8 +163,7 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
         "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust "
-        "parameters as "
-        "far as their intervals say, and record the torque faster or through a low pass.",
+        "parameters as far as their intervals say, and record the torque faster or through a low pass.",
         format_number(noise, torque_unit_of(robot, drive), 3));
     return check;
   }
@@ -173,14 +172,12 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::caution:
       check.meaning =
           "Usable as feed-forward, but not for forces estimated from the drive currents. The report shows what the "
-          "residual "
-          "follows.";
+          "residual follows.";
       break;
     case Verdict::bad:
       check.meaning =
           "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, "
-          "the gear "
-          "ratios, and that position and torque belong to the same instant.";
+          "the gear ratios, and that position and torque belong to the same instant.";
       break;
   }
   return check;
@@ -269,8 +266,7 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
     check.figure = larger(worse);
     check.meaning =
         "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in "
-        "the first "
-        "instants after a reversal the model's torque is off by that much more.";
+        "the first instants after a reversal the model's torque is off by that much more.";
   } else if (!used.empty()) {
     check.figure = larger(used);
     check.meaning =

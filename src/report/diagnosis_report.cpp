@@ -101,12 +101,9 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
       "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model "
-      "fitted to "
-      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the "
-      "motion were "
-      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does "
-      "there. All "
-      "that follows speaks of the fitted model.");
+      "fitted to these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on "
+      "the motion were known. The figures leave out rows near velocity reversals; the search uses them but for what "
+      "friction does there. All that follows speaks of the fitted model.");
   Table table({{"drive", Align::left},
                {"parameters as given"},
                {"fitted"},
@@ -133,8 +130,7 @@ void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
       "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is "
-      "right, two "
-      "of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
+      "right, two of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
     const std::string name = "drive " + std::to_string(j + 1), unit = position_unit_of(robot, j);
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
@@ -176,10 +172,8 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
                  [&](HtmlReport& inner) {
                    inner.paragraph(
                        "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. "
-                       "Smallest size: the "
-                       "amplitude that would be named at the noise of these logs. Hardly told from: effects whose "
-                       "torques are alike in "
-                       "these motions, with the cosine between them.");
+                       "Smallest size: the amplitude that would be named at the noise of these logs. Hardly told from: "
+                       "effects whose torques are alike in these motions, with the cosine between them.");
                    Table table({{"effect", Align::left},
                                 {"at", Align::left},
                                 {"visible"},
@@ -229,10 +223,8 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     report.table(table);
     report.note(
         "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a "
-        "standard "
-        "deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the load, 15 "
-        "% for the "
-        "spring in a drive.");
+        "standard deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the "
+        "load, 15 % for the spring in a drive.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.",
                             p_text(one.p_value), format_percent(one.explained_share)));
     if (!one.why.empty()) {

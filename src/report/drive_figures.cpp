@@ -211,10 +211,10 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
     report.note("The logs are too short for a spectrum.");
     return;
   }
-  report.plot(panels,
-              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the "
-              "low pass; "
-              "what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
+  report.plot(
+      panels,
+      "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low "
+      "pass; what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
 }
 
 void add_residual_over(HtmlReport& report, const Robot& robot, const Validation& validation, Coordinate coordinate) {
@@ -279,10 +279,9 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
                fmt::format("{:.1f}", r.correlation), reading},
               coordinate.empty() && !memory ? Tone::plain : Tone::caution);
   }
-  report.table(
-      table,
-      "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
-      "rows that tell as much as one of white noise.");
+  report.table(table,
+               "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and "
+               "its memory: rows that tell as much as one of white noise.");
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {

@@ -113,9 +113,8 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   }
   report.paragraph(fmt::format(
       "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. "
-      "Expected values "
-      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination "
-      "may have.",
+      "Expected values are those of {}; the last column but one is the standard deviation as a share of the size that "
+      "the combination may have.",
       noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -147,8 +146,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   } else {
     report.table(hidden,
                  "Their effect on the torque is small in every motion inside these limits, or of this length; more "
-                 "periods lower "
-                 "the standard deviation with the root of their number.");
+                 "periods lower the standard deviation with the root of their number.");
   }
   report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
     Table all(columns);

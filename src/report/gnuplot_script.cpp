@@ -306,10 +306,10 @@ class ScriptWriter {
     }
     if (head.legend_rows > 0) {
       const int key_top = top + (head.title && !head.beside ? kTextRow : 0) + 4;
-      line(fmt::format(
-          "set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen 1.8 width 1 "
-          "maxrows {} textcolor rgb '#222222'",
-          screen_x(right + 4), screen_y(key_top), head.legend_rows));
+      line(
+          fmt::format("set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen "
+                      "1.8 width 1 maxrows {} textcolor rgb '#222222'",
+                      screen_x(right + 4), screen_y(key_top), head.legend_rows));
     } else {
       line("unset key");
     }

@@ -49,10 +49,9 @@ void add_fit_table(HtmlReport& report, const Robot& robot, const Identification&
                format_number(drive.rms_base, unit, 3), format_count(drive.rows), format_count(drive.masked_rows),
                fmt::format("{:.2f}", drive.reversal_ratio)});
   }
-  report.table(
-      table,
-      "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing "
-      "can undercut.");
+  report.table(table,
+               "Residual of each drive with the physically consistent parameters, and with free base parameters, which "
+               "nothing can undercut.");
 }
 
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
@@ -91,15 +90,14 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
   report.table(
       table,
       fmt::format(
-          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
-          "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
-          "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
+          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, where "
+          "the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly tell: they "
+          "lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
           100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
       "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by "
-      "its whole "
-      "interval. It matters if you use the body on its own.");
+      "its whole interval. It matters if you use the body on its own.");
   if (any_neither) {
     report.note(
         "(?): neither the data nor the prior, at the weight that was chosen, hold the value; it moved to keep its body "
@@ -109,8 +107,7 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
           "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the "
-          "drives do "
-          "not feel follow the prior.");
+          "drives do not feel follow the prior.");
       inside.table(others);
     });
   }
@@ -162,9 +159,8 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
   }
   report.table(table,
                "What is left to the prior. Marked rows would show in another motion of the drives. The others never "
-               "show on their own: "
-               "one value measured off the machine and entered in the prior with a small std sharpens the rest of its "
-               "sum, too.");
+               "show on their own: one value measured off the machine and entered in the prior with a small std "
+               "sharpens the rest of its sum, too.");
 }
 
 void add_base_parameters(HtmlReport& report, const Identification& identification) {
@@ -197,8 +193,7 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   }
   report.paragraph(
       fmt::format("{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen "
-                  "(relative std above "
-                  "{:.0f} %, marked); condition number {}.",
+                  "(relative std above {:.0f} %, marked); condition number {}.",
                   count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen,
                   format_number(estimate.condition_number, 3)));
   report.plot(
