@@ -30,14 +30,10 @@ std::vector<Index> free_shapes(const Effect& effect) {
 /// The effect's torque with another shape, white and beside the base model.
 VectorXd white_torque(const SearchContext& context, const WhiteProblem& problem, const Fit& fit,
                       const VectorXd& shape) {
-  Hypothesis one = context.search.hypotheses()[fit.hypothesis];
-  one.shapes = {shape};
-  PerLogAndDrive<MatrixXd> rows;
-  for (const LogRows& log : context.logs) rows.push_back(hypothesis_rows(context.model, log, log.signals, one));
-  const WhiteColumns white = problem.whiten(rows);
-  const Index k = fit.effect.amplitude.size();
-  if (white.cols < k) return VectorXd::Zero(problem.rows);
-  return white.projected(problem.Q, problem.segments, 0, k) * fit.effect.amplitude;
+  Fit other = fit;
+  other.effect.shape = shape;
+  other.rows = hypothesis_rows(context.model, context.logs, hypothesis_of(other.effect));
+  return remaining_torque(problem, other);
 }
 
 }  // namespace
@@ -63,7 +59,7 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   if (fit.white.cols < k) return;
   const std::vector<Index> shapes = free_shapes(fit.effect);
   MatrixXd J(problem.rows, k + static_cast<Index>(shapes.size()));
-  J.leftCols(k) = fit.white.projected(problem.Q, problem.segments, 0, k);
+  J.leftCols(k) = problem.projected(fit.white);
   const VectorXd r = problem.r - J.leftCols(k) * fit.effect.amplitude;
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     VectorXd up = fit.effect.shape, down = up;

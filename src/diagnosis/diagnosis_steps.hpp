@@ -14,6 +14,16 @@
 
 namespace deltadyn::detail {
 
+/// What diagnose() is given.
+struct DiagnosisInput {
+  const Robot& robot;
+  const std::vector<Log>& logs;
+  const Log* holdout;
+  const Eigen::VectorXd &p, &p_std;  ///< of the model as given
+  const std::vector<Effect>& known;  ///< effects of the model as given
+  const DiagnosisOptions& options;
+};
+
 struct SearchContext {
   const Robot& robot;
   const EffectModel& model;
@@ -36,11 +46,12 @@ struct SearchResult {
   NullStudy null;
   Omnibus omnibus_before, omnibus_after;
   Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
-  std::vector<AcceptedEffect> accepted;
-  std::vector<Fit> fits;      ///< of the accepted effects
-  std::vector<bool> hygiene;  ///< a skew of about a sample and the like: corrected, but nobody's missing effect
-  std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
+  std::vector<Fit> fits;                              ///< of the accepted effects
+  std::vector<std::vector<EffectCandidate>> sets;     ///< what each could be besides
 };
+
+/// Motion, torque and rows of a log, with room for the residuals.
+[[nodiscard]] DiagnosisTrace trace_of(const LogRows& log);
 
 void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
@@ -62,8 +73,29 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
 /// named, or confusable if one has a set.
 [[nodiscard]] DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named);
 
+/// Is it this effect at this place?
+[[nodiscard]] bool is_of(const ConsideredEffect& one, const EffectCandidate& candidate);
+
 /// Names and sets may have changed since the effects were ruled on: the rulings say what holds at the end.
 void settle_rulings(Diagnosis& out);
+
+/// "stribeck at drive1 and backlash at drive2", with this between them.
+template <class Candidate>
+[[nodiscard]] std::string listed(const std::vector<Candidate>& candidates, const char* between) {
+  std::string text;
+  for (const Candidate& one : candidates) text += (text.empty() ? "" : between) + one.at_joint();
+  return text;
+}
+
+[[nodiscard]] bool turns(const Robot& robot, int drive);
+/// Of its torque.
+[[nodiscard]] const char* unit_of_drive(const Robot& robot, int drive);
+
+/// Forgets how much of the gap on the hold-out log is closed.
+void forget_gap(Diagnosis& out);
+
+/// Does so large a share of a drive's noise variance, which no name explains, call for attention?
+[[nodiscard]] bool is_overt(const Diagnosis& out, double largest_share);
 
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);

@@ -15,13 +15,6 @@
 
 namespace deltadyn {
 
-/// An effect that the model holds, with its columns in the rows of the logs.
-struct AcceptedEffect {
-  std::size_t hypothesis = 0;
-  Effect effect;
-  PerLogAndDrive<Eigen::MatrixXd> rows;
-};
-
 /// A hypothesis beside a model, its shape refined.
 struct Fit {
   std::size_t hypothesis = 0;
@@ -30,8 +23,17 @@ struct Fit {
   double gain = 0;                       ///< refined
   PerLogAndDrive<Eigen::MatrixXd> rows;  ///< of the refined shape: rows x amplitudes
   WhiteColumns white;
-  Eigen::MatrixXd gram;
+  bool hygiene = false;  ///< a skew of about a sample and the like: corrected, but nobody's missing effect
 };
+
+/// [log][drive] rows without columns.
+[[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> no_columns(const std::vector<LogRows>& logs);
+/// Behind the columns that are there; zeros for drives that `from` does not reach.
+void append_columns(PerLogAndDrive<Eigen::MatrixXd>& to, const PerLogAndDrive<Eigen::MatrixXd>& from,
+                    Eigen::Index columns);
+/// Takes the torque of columns off that of the logs.
+void take_off(const PerLogAndDrive<Eigen::MatrixXd>& rows, const Eigen::VectorXd& amplitude,
+              std::vector<LogRows>& logs);
 
 class EffectSearch {
  public:
@@ -41,14 +43,13 @@ class EffectSearch {
                const std::vector<Effect>& known, const Eigen::VectorXd& presliding = {});
 
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
-  [[nodiscard]] const std::vector<LogRows>& logs() const { return logs_; }
   /// The logs with the torque of those accepted effects taken off whose shape is their amplitude (a delay): a fit must
   /// not scale them.
-  [[nodiscard]] std::vector<LogRows> corrected(const std::vector<AcceptedEffect>& accepted) const;
+  [[nodiscard]] std::vector<LogRows> corrected(const std::vector<Fit>& accepted) const;
   /// [log][drive] columns of the known effects and the other accepted ones.
-  [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<AcceptedEffect>& accepted) const;
+  [[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> extra(const std::vector<Fit>& accepted) const;
   /// \param start  as in estimate_noise()
-  [[nodiscard]] NoiseEstimate noise_beside(const std::vector<AcceptedEffect>& accepted,
+  [[nodiscard]] NoiseEstimate noise_beside(const std::vector<Fit>& accepted,
                                            const PerLogAndDrive<NoiseModel>* start = nullptr) const;
 
   /// Problem and signatures of all hypotheses beside the accepted effects.
@@ -59,7 +60,7 @@ class EffectSearch {
     std::vector<Eigen::VectorXd> bias;           ///< EncoderPilots::bias, taken off every score
     mutable std::map<std::size_t, Fit> refined;  ///< what refine() has found; several steps ask for the same
   };
-  [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<AcceptedEffect>& accepted,
+  [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<Fit>& accepted,
                             const EncoderPilots* pilots) const;
 
   /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the
@@ -67,11 +68,12 @@ class EffectSearch {
   [[nodiscard]] const Fit& refine(const State& state, std::size_t hypothesis) const;
   /// Refines several at once, on all cores, for the calls of refine() that follow.
   void refine_all(const State& state, const std::vector<std::size_t>& hypotheses) const;
-  [[nodiscard]] AcceptedEffect accept(const Fit& fit) const { return {fit.hypothesis, fit.effect, fit.rows}; }
 
   /// What a hypothesis is worth when hypotheses compete: the gain less what its free parameters gain by chance (Schwarz
   /// 1978).
   [[nodiscard]] double worth(std::size_t hypothesis, double gain, const State& state) const;
+  /// The hypotheses that are worth most, the best first.
+  [[nodiscard]] std::vector<std::size_t> ranked(const State& state, std::size_t count) const;
 
   /// The pair of hypotheses with the largest joint gain among the `best` ones, at the shapes of their own scores.
   struct Pair {

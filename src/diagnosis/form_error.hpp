@@ -23,7 +23,7 @@ class FormErrors {
   [[nodiscard]] bool explain(const Fit& fit) const;
 
  private:
-  [[nodiscard]] bool counts(std::size_t k) const { return !found_.hygiene[k] && k != but_; }
+  [[nodiscard]] bool counts(std::size_t k) const { return !found_.fits[k].hygiene && k != but_; }
   /// What an effect of `found` gains: then, or alone, as one that came later may have gained little beside a mixture.
   [[nodiscard]] double gain_of(std::size_t k) const;
   /// Largest gain of an effect at a joint.

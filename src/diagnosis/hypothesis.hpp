@@ -35,6 +35,9 @@ struct Hypothesis {
   }
 };
 
+/// An effect with the shape that it has.
+[[nodiscard]] Hypothesis hypothesis_of(const Effect& effect);
+
 /// Does the search move this shape parameter between its start values? Choices (a log's number, a kind, most exponents)
 /// stay.
 [[nodiscard]] bool shape_is_free(EffectId id, std::size_t parameter, const Eigen::VectorXd& shape);
@@ -48,5 +51,9 @@ struct Hypothesis {
 /// not reach.
 [[nodiscard]] std::vector<Eigen::MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& log,
                                                            const EffectSignals& signals, const Hypothesis& hypothesis);
+/// The same in several logs with the signals that they have.
+[[nodiscard]] PerLogAndDrive<Eigen::MatrixXd> hypothesis_rows(const EffectModel& model,
+                                                              const std::vector<LogRows>& logs,
+                                                              const Hypothesis& hypothesis);
 
 }  // namespace deltadyn

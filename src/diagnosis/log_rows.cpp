@@ -71,6 +71,12 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
   return out;
 }
 
+VectorXd without_model(const Eigen::Ref<const VectorXd>& torque, const MatrixXd& Y, const MatrixXd& effects,
+                       const VectorXd& beta) {
+  const Index b = Y.cols(), amplitudes = beta.size() - b;
+  return torque - Y * beta.head(b) - effects.leftCols(amplitudes) * beta.tail(amplitudes);
+}
+
 VectorXd closest_parameters(const BaseParameters& base, const VectorXd& beta, const VectorXd& around) {
   const MatrixXd& B = base.B;
   return around + B.transpose() * (B * B.transpose()).ldlt().solve(beta - B * around);

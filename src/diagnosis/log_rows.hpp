@@ -41,6 +41,11 @@ struct LogRows {
 /// The signals are left empty: they need parameters (EffectModel::signals).
 [[nodiscard]] LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLog log, int number);
 
+/// What base parameters, in the head of beta, and amplitudes of the first columns of `effects` behind them leave of a
+/// drive's torque.
+[[nodiscard]] Eigen::VectorXd without_model(const Eigen::Ref<const Eigen::VectorXd>& torque, const Eigen::MatrixXd& Y,
+                                            const Eigen::MatrixXd& effects, const Eigen::VectorXd& beta);
+
 /// The parameters closest to `around` that have the base parameters beta: p + B^T (B B^T)^-1 (beta - B p).
 [[nodiscard]] Eigen::VectorXd closest_parameters(const BaseParameters& base, const Eigen::VectorXd& beta,
                                                  const Eigen::VectorXd& around);

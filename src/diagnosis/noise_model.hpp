@@ -11,6 +11,10 @@ namespace deltadyn {
 
 using RowMask = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
+/// [log][drive]
+template <class T>
+using PerLogAndDrive = std::vector<std::vector<T>>;
+
 /// e(t) = sum_k ar(k) e(t - 1 - k) + w(t), w white with standard deviation `std`.
 struct NoiseModel {
   Eigen::VectorXd ar;
@@ -20,6 +24,9 @@ struct NoiseModel {
   /// Standard deviation of e itself.
   [[nodiscard]] double total_std() const;
 };
+
+/// White noise of the same size.
+[[nodiscard]] PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise);
 
 /// Burg's method over the runs of usable rows, order by the Bayesian information criterion (Schwarz 1978). Always
 /// stable.

@@ -86,6 +86,25 @@ void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& l
   }
 }
 
+double rarity(double p) {
+  return -std::log(std::max(p, 1e-300));
+}
+
+/// \param scores  one a distribution
+double smallest_p(const std::vector<NullDistribution>& each, const VectorXd& scores) {
+  double least = 1;
+  for (std::size_t k = 0; k < each.size(); ++k) least = std::min(least, each[k].p_value(scores(static_cast<Index>(k))));
+  return least;
+}
+
+/// Distributions of the columns of scores, and that of the rarest score of each run.
+NullDistribution family_of(const MatrixXd& scores, std::vector<NullDistribution>& each) {
+  for (const auto& column : scores.colwise()) each.emplace_back(std::vector<double>(column.begin(), column.end()));
+  std::vector<double> rarest;
+  for (const auto& run : scores.rowwise()) rarest.push_back(rarity(smallest_p(each, run.transpose())));
+  return NullDistribution(std::move(rarest));
+}
+
 }  // namespace
 
 NullDistribution::NullDistribution(std::vector<double> values) : sorted_(std::move(values)) {
@@ -113,15 +132,11 @@ double NullDistribution::quantile(double p) const {
 }
 
 double NullStudy::family_p(std::size_t index, double score) const {
-  const double p = std::max(hypothesis[index].p_value(score), 1e-300);
-  return std::min(1.0, family.p_value(-std::log(p)));
+  return std::min(1.0, family.p_value(rarity(hypothesis[index].p_value(score))));
 }
 
 double NullStudy::omnibus_p(const VectorXd& gains) const {
-  double least = 1;
-  for (std::size_t j = 0; j < omnibus.size(); ++j)
-    least = std::min(least, omnibus[j].p_value(gains(static_cast<Index>(j))));
-  return std::min(1.0, omnibus_family.p_value(-std::log(std::max(least, 1e-300))));
+  return std::min(1.0, omnibus_family.p_value(rarity(smallest_p(omnibus, gains))));
 }
 
 Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coordinate_(basis.coordinate) {
@@ -146,40 +161,34 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
           scale.asDiagonal() * eigen.eigenvectors().col(kept[k]) / std::sqrt(values(kept[k]));
     }
     root_.push_back(root);
-    ranks_.push_back(root.cols());
   }
 }
 
-VectorXd Omnibus::gains(const WhiteProblem& problem, const VectorXd& r) const {
-  const VectorXd Q_r = problem.Q.transpose() * r;
+VectorXd Omnibus::gains(const WhiteProblem& problem, const VectorXd& r, const VectorXd& Q_r) const {
   VectorXd out(static_cast<Index>(white_.size()));
-  for (std::size_t j = 0; j < white_.size(); ++j) {
-    const VectorXd u = white_[j].inner(r, Q_r, problem.segments, 0, white_[j].cols);
-    out(static_cast<Index>(j)) = (root_[j].transpose() * u).squaredNorm();
-  }
+  for (std::size_t j = 0; j < white_.size(); ++j)
+    out(static_cast<Index>(j)) = (root_[j].transpose() * problem.inner(white_[j], r, Q_r)).squaredNorm();
   return out;
 }
 
-VectorXd Omnibus::clear_part(const WhiteProblem& problem, const VectorXd& r, std::size_t drive) const {
-  const VectorXd Q_r = problem.Q.transpose() * r;
-  const VectorXd u = white_[drive].inner(r, Q_r, problem.segments, 0, white_[drive].cols);
-  VectorXd t = root_[drive].transpose() * u;  // of unit variance if there is nothing but noise
+VectorXd Omnibus::clear_part(const WhiteProblem& problem, std::size_t drive) const {
+  // Of unit variance if there is nothing but noise.
+  VectorXd t = root_[drive].transpose() * problem.inner(white_[drive]);
   t = (t.array().abs() > kClear).select(t, 0.0);
   return root_[drive] * t;
 }
 
-std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhiteProblem& problem, const VectorXd& r,
+std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhiteProblem& problem,
                                                                    std::size_t drive) const {
   std::vector<std::pair<std::string, double>> out;
-  const VectorXd Q_r = problem.Q.transpose() * r;
-  const WhiteColumns& white = white_[drive];
   const auto& names = coordinate_[drive];
   for (std::size_t first = 0; first < names.size();) {
     std::size_t end = first;
     while (end < names.size() && names[end] == names[first]) ++end;
-    const auto at = static_cast<Index>(first), count = static_cast<Index>(end - first);
-    const Gain gain = constrained_gain(white.clear_gram(at, count), white.inner(r, Q_r, problem.segments, at, count),
-                                       std::vector<bool>(end - first, false));
+    const auto count = static_cast<Index>(end - first);
+    const WhiteColumns white = white_[drive].part(static_cast<Index>(first), count);
+    const Gain gain =
+        constrained_gain(white.clear_gram(0, count), problem.inner(white), std::vector<bool>(end - first, false));
     // What chance alone gives each column is taken off.
     out.emplace_back(names[first], std::max(0.0, gain.gain - static_cast<double>(count)));
     first = end;
@@ -347,7 +356,7 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
       const WhiteColumns& white = signatures[sensitive_[k]].white;
       if (white.cols == 0) continue;
-      whole[run][k] = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
+      whole[run][k] = problem.inner(white, r, Q_r) + white.base.transpose() * Q_r;
       if (inner[k].size() > 0) whole[run][k] += inner[k];
     }
   });
@@ -437,13 +446,10 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
                          const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
                          const std::vector<VectorXd>& bias, const Omnibus& omnibus, const NullOptions& options) {
   NullStudy out;
-  out.runs = options.runs;
-  out.sensitive = static_cast<int>(pilots.sensitive().size());
   const VectorXd clean = pilots.clean(problem);
   const std::vector<VectorXd> taps = pilots.torque_noise(problem, out.encoder_share);
-  const auto drives = static_cast<Index>(omnibus.ranks().size());
   MatrixXd scores = MatrixXd::Zero(options.runs, static_cast<Index>(hypotheses.size()));
-  MatrixXd generic = MatrixXd::Zero(options.runs, drives);
+  MatrixXd generic = MatrixXd::Zero(options.runs, omnibus.drives());
   int done = 0;
   std::mutex counting;
   const auto run = [&](int k) {
@@ -467,7 +473,7 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
     for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
     for (std::size_t h = 0; h < hypotheses.size(); ++h) {
       if (signatures[h].white.cols == 0) continue;
-      inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
+      inner[h] = problem.inner(signatures[h].white, r, Q_r);
       if (changed[h] != nullptr) {
         // The column itself, not only its part beside the base model, moves with the regressor.
         inner[h] += signatures[h].white.base.transpose() * Q_r;
@@ -476,28 +482,14 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
       inner[h] = freed_of_bias(inner[h], bias[h]);
       scores(k, static_cast<Index>(h)) = best_score(hypotheses[h], signatures[h], inner[h]).gain;
     }
-    generic.row(k) = omnibus.gains(problem, r).transpose();
+    generic.row(k) = omnibus.gains(problem, r, Q_r).transpose();
     const std::lock_guard<std::mutex> lock(counting);
     if (options.progress) options.progress(static_cast<double>(++done) / options.runs);
   };
   in_parallel(options.runs, run, options.threads);
 
-  const auto column = [](const MatrixXd& m, Index c) { return std::vector<double>(m.col(c).begin(), m.col(c).end()); };
-  for (Index h = 0; h < scores.cols(); ++h) out.hypothesis.emplace_back(column(scores, h));
-  for (Index j = 0; j < generic.cols(); ++j) out.omnibus.emplace_back(column(generic, j));
-  std::vector<double> smallest, smallest_generic;
-  for (int k = 0; k < options.runs; ++k) {
-    double least = 1, least_generic = 1;
-    for (Index h = 0; h < scores.cols(); ++h)
-      least = std::min(least, out.hypothesis[static_cast<std::size_t>(h)].p_value(scores(k, h)));
-    for (Index j = 0; j < generic.cols(); ++j) {
-      least_generic = std::min(least_generic, out.omnibus[static_cast<std::size_t>(j)].p_value(generic(k, j)));
-    }
-    smallest.push_back(-std::log(std::max(least, 1e-300)));
-    smallest_generic.push_back(-std::log(std::max(least_generic, 1e-300)));
-  }
-  out.family = NullDistribution(smallest);
-  out.omnibus_family = NullDistribution(smallest_generic);
+  out.family = family_of(scores, out.hypothesis);
+  out.omnibus_family = family_of(generic, out.omnibus);
   return out;
 }
 

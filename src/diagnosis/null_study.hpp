@@ -38,22 +38,23 @@ class Omnibus {
  public:
   Omnibus() = default;
   Omnibus(const WhiteProblem& problem, const GenericBasis& basis);
-  /// Fall of the sum of squares, one value a drive.
-  [[nodiscard]] Eigen::VectorXd gains(const WhiteProblem& problem, const Eigen::VectorXd& r) const;
-  /// Independent columns of each drive's basis.
-  [[nodiscard]] const std::vector<Eigen::Index>& ranks() const { return ranks_; }
+  [[nodiscard]] Eigen::Index drives() const { return static_cast<Eigen::Index>(white_.size()); }
+  /// Fall of the sum of squares of a residual r, one value a drive.
+  [[nodiscard]] Eigen::VectorXd gains(const WhiteProblem& problem, const Eigen::VectorXd& r,
+                                      const Eigen::VectorXd& Q_r) const;
+  /// The same of the problem's own residual.
+  [[nodiscard]] Eigen::VectorXd gains(const WhiteProblem& problem) const {
+    return gains(problem, problem.r, problem.Q_r);
+  }
   /// Coefficients of the basis for the part of the structure of one drive that stands out of the noise.
-  [[nodiscard]] Eigen::VectorXd clear_part(const WhiteProblem& problem, const Eigen::VectorXd& r,
-                                           std::size_t drive) const;
+  [[nodiscard]] Eigen::VectorXd clear_part(const WhiteProblem& problem, std::size_t drive) const;
   /// Gain of each coordinate of the basis alone, for one drive: where the structure lies.
   [[nodiscard]] std::vector<std::pair<std::string, double>> by_coordinate(const WhiteProblem& problem,
-                                                                          const Eigen::VectorXd& r,
                                                                           std::size_t drive) const;
 
  private:
   std::vector<WhiteColumns> white_;    ///< one a drive
   std::vector<Eigen::MatrixXd> root_;  ///< gain = |root^T u|^2
-  std::vector<Eigen::Index> ranks_;
   std::vector<std::vector<std::string>> coordinate_;
 };
 
@@ -129,8 +130,6 @@ struct NullStudy {
   std::vector<NullDistribution> omnibus;     ///< one a drive
   NullDistribution omnibus_family;
   double encoder_share = 0;  ///< of the white residual's variance that encoder noise makes
-  int sensitive = 0;         ///< hypotheses whose columns encoder noise moves, too
-  int runs = 0;
 
   /// p of one score corrected for having looked at all hypotheses.
   [[nodiscard]] double family_p(std::size_t index, double score) const;

@@ -105,8 +105,7 @@ void leave_rest_out(const Robot& robot, const ProcessingOptions& processing, con
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (Index joint = 0; joint < slow[l].cols(); ++joint) {
-      const bool holds = std::find(masked.begin(), masked.end(), static_cast<int>(joint)) == masked.end();
-      if (has_bristle(processing, joint) && holds) continue;
+      if (has_bristle(processing, joint) && std::ranges::count(masked, static_cast<int>(joint)) == 0) continue;
       // The telescope bar's friction acts on the limbs' drives.
       const Index first = joint < robot.drives() ? joint : 0, count = joint < robot.drives() ? 1 : limbs;
       for (Index j = first; j < first + count; ++j)
@@ -138,9 +137,7 @@ std::optional<double> rms_near_reversals(const std::vector<LogRows>& logs, const
 
 /// Largest floor over the logs, beside a basis that follows whatever the motion explains.
 VectorXd floors(const std::vector<LogRows>& logs) {
-  PerLogAndDrive<MatrixXd> no_effects;
-  for (const LogRows& log : logs) no_effects.emplace_back(log.usable.size(), MatrixXd(log.rows(), 0));
-  const PerLogAndDrive<double> floor = estimate_noise(logs, make_generic_basis(logs), no_effects).floor_rms;
+  const PerLogAndDrive<double> floor = estimate_noise(logs, make_generic_basis(logs), {}).floor_rms;
   VectorXd out = VectorXd::Zero(static_cast<Index>(floor.front().size()));
   for (const auto& log : floor) {
     for (std::size_t j = 0; j < log.size(); ++j)
@@ -206,8 +203,7 @@ KnownRows fewest_rows(const std::vector<LogRows>& logs) {
     double known = 0, all = 0;
     for (const LogRows& log : logs) {
       const auto tau = log.tau.col(static_cast<Index>(j));
-      NoiseModel noise;
-      noise.std = std::max(kUsualNoise * root_mean_square(tau), 1e-12);
+      const NoiseModel noise{{}, std::max(kUsualNoise * root_mean_square(tau), 1e-12)};
       known += static_cast<double>(Whitener(noise, log.present[j], log.unknown[j]).freedom());
       all += static_cast<double>(log.rows());
     }

@@ -20,16 +20,6 @@ constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gr
 
 }  // namespace
 
-VectorXd WhiteColumns::inner(const VectorXd& r, const VectorXd& Q_r, const std::vector<WhiteSegment>& segments,
-                             Index first, Index count) const {
-  VectorXd u = -base.middleCols(first, count).transpose() * Q_r;
-  for (std::size_t s = 0; s < blocks.size(); ++s) {
-    if (blocks[s].size() > 0)
-      u.noalias() += blocks[s].middleCols(first, count).transpose() * r.segment(segments[s].offset, segments[s].rows());
-  }
-  return u;
-}
-
 MatrixXd WhiteColumns::raw_gram(Index first, Index count) const {
   MatrixXd G = MatrixXd::Zero(count, count);
   for (const MatrixXd& block : blocks) {
@@ -61,16 +51,6 @@ WhiteColumns WhiteColumns::part(Index first, Index count) const {
   for (const MatrixXd& block : blocks)
     out.blocks.push_back(block.size() > 0 ? MatrixXd(block.middleCols(first, count)) : MatrixXd());
   return out;
-}
-
-MatrixXd WhiteColumns::projected(const MatrixXd& Q, const std::vector<WhiteSegment>& segments, Index first,
-                                 Index count) const {
-  MatrixXd C = -Q * base.middleCols(first, count);
-  for (std::size_t s = 0; s < blocks.size(); ++s) {
-    if (blocks[s].size() > 0)
-      C.middleRows(segments[s].offset, segments[s].rows()) += blocks[s].middleCols(first, count);
-  }
-  return C;
 }
 
 MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b) {
@@ -109,6 +89,7 @@ WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDriv
   Q = qr.householderQ() * MatrixXd::Identity(rows, qr.rank());
   beta = norm.cwiseInverse().asDiagonal() * qr.solve(y);
   r = y - Q * (Q.transpose() * y);
+  Q_r = Q.transpose() * r;
 }
 
 WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const {
@@ -126,6 +107,23 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
   return out;
 }
 
+MatrixXd WhiteProblem::projected(const WhiteColumns& C) const {
+  MatrixXd out = -Q * C.base;
+  for (std::size_t s = 0; s < C.blocks.size(); ++s) {
+    if (C.blocks[s].size() > 0) out.middleRows(segments[s].offset, segments[s].rows()) += C.blocks[s];
+  }
+  return out;
+}
+
+VectorXd WhiteProblem::inner(const WhiteColumns& C, const VectorXd& residual, const VectorXd& Q_residual) const {
+  VectorXd u = -C.base.transpose() * Q_residual;
+  for (std::size_t s = 0; s < C.blocks.size(); ++s) {
+    if (C.blocks[s].size() > 0)
+      u.noalias() += C.blocks[s].transpose() * residual.segment(segments[s].offset, segments[s].rows());
+  }
+  return u;
+}
+
 Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
   const NonNegativeSolution best = non_negative_least_squares(gram, inner, positive, kSingular);
   return {best.gain, best.x};
@@ -138,26 +136,13 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
   const Index k = hypothesis.amplitudes;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     const Index first = static_cast<Index>(s) * k;
-    if (out.white.cols < first + k) {  // nowhere in these logs
-      out.gram.push_back(MatrixXd::Zero(k, k));
-      out.clean.push_back(1);
-      out.kept.push_back(0);
-      continue;
-    }
-    out.gram.push_back(out.white.clear_gram(first, k));
-    out.clean.push_back(1);
-    const MatrixXd raw = out.white.raw_gram(first, k);
-    const double whole = raw.trace();
+    const bool anywhere = out.white.cols >= first + k;
+    const double whole = anywhere ? out.white.raw_gram(first, k).trace() : 0.0;
+    out.gram.push_back(anywhere ? out.white.clear_gram(first, k) : MatrixXd::Zero(k, k));
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
   }
+  out.clean.assign(hypothesis.shapes.size(), 1);
   return out;
-}
-
-Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem) {
-  if (signature.white.cols == 0) return best_score(hypothesis, signature, VectorXd(0));
-  const VectorXd Q_r = problem.Q.transpose() * problem.r;
-  return best_score(hypothesis, signature,
-                    signature.white.inner(problem.r, Q_r, problem.segments, 0, signature.white.cols));
 }
 
 Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner) {

@@ -14,10 +14,6 @@
 
 namespace deltadyn {
 
-/// [log][drive]
-template <class T>
-using PerLogAndDrive = std::vector<std::vector<T>>;
-
 /// White rows of one drive in one log.
 struct WhiteSegment {
   std::size_t log = 0, drive = 0;
@@ -33,10 +29,6 @@ struct WhiteColumns {
   Eigen::MatrixXd base;  ///< Q^T C
   Eigen::Index cols = 0;
 
-  /// C_perp^T r for the columns [first, first + count).
-  [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& r, const Eigen::VectorXd& Q_r,
-                                      const std::vector<WhiteSegment>& segments, Eigen::Index first,
-                                      Eigen::Index count) const;
   /// C_perp^T C_perp.
   [[nodiscard]] Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index count) const;
   /// The same, zero in rows and columns of which the projection leaves rounding only.
@@ -45,9 +37,6 @@ struct WhiteColumns {
   [[nodiscard]] Eigen::MatrixXd raw_gram(Eigen::Index first, Eigen::Index count) const;
   /// Columns [first, first + count) alone.
   [[nodiscard]] WhiteColumns part(Eigen::Index first, Eigen::Index count) const;
-  /// C_perp over all rows.
-  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& Q, const std::vector<WhiteSegment>& segments,
-                                          Eigen::Index first, Eigen::Index count) const;
 };
 
 /// a^T b between the projected columns of two sets.
@@ -60,6 +49,12 @@ class WhiteProblem {
                const PerLogAndDrive<Eigen::MatrixXd>& extra_columns = {});
 
   [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<Eigen::MatrixXd>& columns) const;
+  /// C_perp over all rows.
+  [[nodiscard]] Eigen::MatrixXd projected(const WhiteColumns& C) const;
+  /// C_perp^T r for a residual with its Q^T r, and for the problem's own.
+  [[nodiscard]] Eigen::VectorXd inner(const WhiteColumns& C, const Eigen::VectorXd& residual,
+                                      const Eigen::VectorXd& Q_residual) const;
+  [[nodiscard]] Eigen::VectorXd inner(const WhiteColumns& C) const { return inner(C, r, Q_r); }
 
   std::vector<WhiteSegment> segments;
   Eigen::Index rows = 0;
@@ -67,6 +62,7 @@ class WhiteProblem {
   Eigen::MatrixXd X;         ///< white regressor
   Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
   Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
+  Eigen::VectorXd Q_r;       ///< Q^T r
   /// Base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
   Eigen::VectorXd beta;
   PerLogAndDrive<Eigen::MatrixXd> extra;  ///< as given
@@ -104,9 +100,7 @@ struct Score {
 };
 
 /// Supremum of the gain over the shapes. Shapes that a re-fit absorbs count as nothing.
-/// \param inner  C_perp^T r of all columns, WhiteColumns::inner
+/// \param inner  C_perp^T r of all columns, WhiteProblem::inner
 [[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const Eigen::VectorXd& inner);
-/// The same for the problem's own residual.
-[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem);
 
 }  // namespace deltadyn

@@ -48,6 +48,9 @@ struct EffectCandidate {
   double gain = 0;     ///< fall of the sum of squares in white rows
   double p_value = 1;  ///< chance of that gain on clean logs, all candidates considered
   std::string why;     ///< why it is (not) told apart from the best one
+
+  /// "stribeck at drive1"
+  [[nodiscard]] std::string at_joint() const { return name + " at " + joint; }
 };
 
 struct NamedEffect : EffectCandidate {
