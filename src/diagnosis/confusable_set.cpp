@@ -81,7 +81,8 @@ EffectCandidate candidate_of(const SearchContext& context, const SearchResult& f
           .effect_class = std::string(effect_class_name(hypothesis.kind().effect_class)),
           .joint = hypothesis.joint_name(),
           .gain = fit.gain,
-          .p_value = found.null.family_p(fit.hypothesis, fit.grid_gain)};
+          .p_value = found.null.family_p(fit.hypothesis, fit.grid_gain),
+          .why = {}};
 }
 
 std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,

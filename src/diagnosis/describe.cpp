@@ -111,7 +111,12 @@ void settle_rulings(Diagnosis& out) {
 }
 
 DiagnosisTrace trace_of(const LogRows& log) {
-  DiagnosisTrace out{.file = log.log.file, .t_s = log.t_s, .q = log.q, .qd = log.qd, .torque = log.tau};
+  DiagnosisTrace out;
+  out.file = log.log.file;
+  out.t_s = log.t_s;
+  out.q = log.q;
+  out.qd = log.qd;
+  out.torque = log.tau;
   if (log.ripple.size() > 0) out.torque += log.ripple;
   for (MatrixXd* residual : {&out.before, &out.after}) residual->resize(log.rows(), log.tau.cols());
   out.usable.resize(log.rows(), log.tau.cols());

@@ -223,10 +223,12 @@ std::vector<Ripple> lost_ripples(const std::vector<Ripple>& found, const std::ve
 }
 
 Effect effect_of(const Ripple& ripple) {
-  return {.id = effect_with(Role::wave),
-          .joint = ripple.drive,
-          .shape = VectorXd::Constant(1, ripple.n),
-          .amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine)};
+  return {effect_with(Role::wave),
+          ripple.drive,
+          VectorXd::Constant(1, ripple.n),
+          Eigen::Vector2d(ripple.cosine, ripple.sine),
+          {},
+          {}};
 }
 
 }  // namespace
