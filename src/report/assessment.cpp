@@ -148,6 +148,12 @@ Verdict grade_residual(double relative) {
   return grade(relative, kGoodResidual, kUsableResidual);
 }
 
+KeyFigure residual_figure(const Robot& robot, int drive, double rms, double relative) {
+  return {"residual, " + drive_name(drive), format_number(rms, torque_unit_of(robot, drive), 3),
+          fmt::format("{} of the {}", format_percent(relative, 2), effort_of(robot, drive)),
+          tone_of(grade_residual(relative))};
+}
+
 Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives) {
   std::size_t worst = 0;
   for (std::size_t j = 1; j < drives.size(); ++j) {

@@ -258,12 +258,7 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
 }
 
 void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure>& residual) {
-  Table table({{"drive", Align::left},
-               {"velocity"},
-               {"position"},
-               {"acceleration"},
-               {"memory [rows]"},
-               {"reading", Align::left}});
+  Table table({text_column("drive"), "velocity", "position", "acceleration", "memory [rows]", text_column("reading")});
   const auto cell = [](const DependenceOnMotion& d) {
     return d.p_value > kRareByChance ? std::string("by chance") : fmt::format("{:.0f} %", 100 * d.share);
   };
@@ -285,11 +280,8 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({{"drive", Align::left},
-               {"position"},
-               {"largest velocity"},
-               {"largest acceleration"},
-               {fmt::format("largest {}", effort_of(robot, 0))}});
+  Table table({text_column("drive"), "position", "largest velocity", "largest acceleration",
+               fmt::format("largest {}", effort_of(robot, 0))});
   for (int j = 0; j < robot.drives(); ++j) {
     double low = std::numeric_limits<double>::infinity(), high = -low, velocity = 0, acceleration = 0, torque = 0;
     for (const ValidatedLog& log : validation.logs) {
@@ -310,7 +302,8 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
 }
 
 void add_check_table(HtmlReport& report, const Assessment& assessment) {
-  Table table({{"", Align::center}, {"question", Align::left}, {"finding", Align::left}, {"meaning", Align::left}});
+  Table table(
+      {TableColumn("", Align::center), text_column("question"), text_column("finding"), text_column("meaning")});
   for (const Check& check : assessment.checks) {
     const auto [mark, tone] = check.verdict == Verdict::good  ? std::pair("✓", Tone::plain)
                               : check.verdict == Verdict::bad ? std::pair("✗", Tone::bad)
@@ -320,9 +313,12 @@ void add_check_table(HtmlReport& report, const Assessment& assessment) {
   report.table(table);
 }
 
-std::vector<std::pair<std::string, std::string>> processing_facts(const Validation& validation) {
+std::vector<std::pair<std::string, std::string>> source_facts(const ReportContext& context, const std::string& model,
+                                                              const std::string& model_file,
+                                                              const Validation& validation) {
   const ProcessingOptions& options = validation.processing;
-  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}, {model, model_file}};
+  for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
   if (!options.filter) {
     facts.emplace_back("Filter", "none: torque, positions, velocities and accelerations as in the log");
   } else {

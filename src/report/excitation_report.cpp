@@ -95,7 +95,7 @@ void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
 }
 
 void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
-  Table table({{"limit", Align::left}, {"lower"}, {"upper"}, {"reached"}, {"unit", Align::left}, {"used"}, {"at [s]"}});
+  Table table({text_column("limit"), "lower", "upper", "reached", text_column("unit"), "used", "at [s]"});
   for (const LimitUse& use : input.check.uses) {
     table.row({use.limit.name, format_number(use.limit.lower, 4), format_number(use.limit.upper, 4),
                format_number(use.value, 4), pretty_unit(use.limit.unit), format_percent(use.load, 4),
@@ -132,12 +132,12 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
                 relative <= kWell ? Tone::plain : (relative <= kNot ? Tone::caution : Tone::bad));
     }
   };
-  const std::vector<TableColumn> columns = {{"combination of parameters", Align::left},
-                                            {"expected"},
-                                            {"standard deviation"},
-                                            {"unit", Align::left},
-                                            {"share"},
-                                            {"seen", Align::left}};
+  const std::vector<TableColumn> columns = {text_column("combination of parameters"),
+                                            "expected",
+                                            "standard deviation",
+                                            text_column("unit"),
+                                            "share",
+                                            text_column("seen")};
   report.subheading("What the motion will hardly identify");
   Table hidden(columns);
   fill(hidden, true);
@@ -235,7 +235,7 @@ std::string excitation_report(const ExcitationReportInput& input, const ReportCo
   add_identification_table(report, input);
   report.heading("Settings");
   add_settings(report, input, context);
-  if (!context.command_line.empty()) report.footer(context.command_line);
+  report.footer(context.command_line);
   return report.str();
 }
 

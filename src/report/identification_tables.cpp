@@ -34,13 +34,8 @@ std::string unbroken_items(std::vector<std::string> items) {
 }  // namespace
 
 void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({{"drive", Align::left},
-               {"rms residual"},
-               {fmt::format("of the rms {}", effort_of(robot, 0))},
-               {"free base parameters"},
-               {"rows"},
-               {"left out near reversals"},
-               {"residual there / elsewhere"}});
+  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", effort_of(robot, 0)),
+               "free base parameters", "rows", "left out near reversals", "residual there / elsewhere"});
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
     const char* unit = torque_unit_of(robot, static_cast<int>(j));
@@ -57,15 +52,9 @@ void add_fit_table(HtmlReport& report, const Robot& robot, const Identification&
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
   const ConsistentFitSummary& fit = identification.fit;
   const std::vector<Visibility> visibility = parameter_visibility(identification.base);
-  Table table({{"parameter", Align::left},
-               {"unit", Align::left},
-               {"prior"},
-               {"estimate ± 95 %"},
-               {"data share"},
-               {"decided by", Align::left},
-               {"shows in the torque", Align::left}});
-  Table others(
-      {{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
+  Table table({text_column("parameter"), text_column("unit"), "prior", "estimate ± 95 %", "data share",
+               text_column("decided by"), text_column("shows in the torque")});
+  Table others({text_column("parameter"), text_column("unit"), "prior", "value", text_column("shows in the torque")});
   bool any_neither = false;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const auto k = static_cast<Index>(i);
@@ -114,7 +103,7 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
 }
 
 void add_extras_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({{"joint", Align::left}, {"what", Align::left}, {"figure ± std"}});
+  Table table({text_column("joint"), text_column("what"), "figure ± std"});
   for (std::size_t joint = 0; joint < identification.presliding.size(); ++joint) {
     const PreslidingJoint& found = identification.presliding[joint];
     if (!(found.displacement > 0)) continue;
@@ -146,9 +135,8 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
     report.paragraph("Nothing: the data decided every fitted parameter at least in part.");
     return;
   }
-  Table table({{"body or joint", Align::left},
-               {"from the prior (data share)", Align::left},
-               {"what would replace it", Align::left}});
+  Table table(
+      {text_column("body or joint"), text_column("from the prior (data share)"), text_column("what would replace it")});
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion) continue;
@@ -169,13 +157,8 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   const Eigen::VectorXd std = estimate.std();
   const Index count = base.count();
   Eigen::VectorXd index(count), deviation(count);
-  Table table({{""},
-               {"base parameter", Align::left},
-               {"unit", Align::left},
-               {"least squares ± std"},
-               {"rel. std"},
-               {"consistent fit"},
-               {"deviation [std]"}});
+  Table table({"", text_column("base parameter"), text_column("unit"), "least squares ± std", "rel. std",
+               "consistent fit", "deviation [std]"});
   Index poor = 0, far = 0;
   for (Index k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);

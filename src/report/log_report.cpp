@@ -36,12 +36,8 @@ std::string figure_of(const LogFinding& f) {
 
 /// The findings that are more than a measured property in order; nothing if there are none.
 void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
-  Table table({{"", Align::left},
-               {"finding", Align::left},
-               {"figure"},
-               {"drive"},
-               {"log", Align::left},
-               {"what to do", Align::left}});
+  Table table(
+      {text_column(""), text_column("finding"), "figure", "drive", text_column("log"), text_column("what to do")});
   for (const FindingLevel level :
        {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
     if (level == FindingLevel::fine && !with_fine) continue;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/report/plot.hpp"
@@ -22,7 +23,13 @@ enum class Align { left, center, right };
 struct TableColumn {
   std::string title;           ///< with unit, e.g. "value [kg]"
   Align align = Align::right;  ///< numbers right, text left
+
+  TableColumn(const char* text) : title(text) {}
+  TableColumn(std::string text, Align side = Align::right) : title(std::move(text)), align(side) {}
 };
+[[nodiscard]] inline TableColumn text_column(std::string title) {
+  return {std::move(title), Align::left};
+}
 
 /// Rows of ready text; numbers by the functions of format.hpp.
 class Table {
