@@ -143,22 +143,23 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
   VectorXd beta_given(beta0.size());
   beta_given << context.base.B * p, amplitudes_of(model);
-  std::vector<double> before(static_cast<std::size_t>(n), 0), given = before, after = before, floor = before,
-                                                              count = before, white_rows = before;
+  std::vector<double> count(static_cast<std::size_t>(n), 0), white_rows = count;
+  out.drives.resize(count.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
     DiagnosisTrace trace = trace_of(logs[l]);
     for (Index j = 0; j < n; ++j) {
       const auto drive = static_cast<std::size_t>(j);
+      DriveFit& squares = out.drives[drive];
       const MatrixXd& Y = logs[l].Y[drive];
       const RowMask& usable = logs[l].usable[drive];
       trace.before.col(j) = without_model(logs[l].tau.col(j), Y, known[l][drive], beta0);
       trace.after.col(j) = without_model(corrected[l].tau.col(j), Y, all[l][drive], beta1);
       const auto rows = static_cast<double>(usable.count());
-      before[drive] += usable.select(trace.before.col(j).array(), 0.0).square().sum();
-      after[drive] += usable.select(trace.after.col(j).array(), 0.0).square().sum();
+      squares.rms += usable.select(trace.before.col(j).array(), 0.0).square().sum();
+      squares.rms_after += usable.select(trace.after.col(j).array(), 0.0).square().sum();
       const VectorXd e = without_model(logs[l].tau.col(j), Y, known[l][drive], beta_given);
-      given[drive] += usable.select(e.array(), 0.0).square().sum();
-      floor[drive] += rows * found.floor[l][drive] * found.floor[l][drive];
+      squares.rms_given += usable.select(e.array(), 0.0).square().sum();
+      squares.floor += rows * found.floor[l][drive] * found.floor[l][drive];
       count[drive] += rows;
     }
     out.traces.push_back(std::move(trace));
@@ -167,12 +168,10 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     white_rows[segment.drive] += static_cast<double>(segment.whitener.freedom());
   for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
     const auto at = static_cast<Index>(j);
-    DriveFit drive;
+    DriveFit& drive = out.drives[j];
     drive.rows = row_counts(context, j);
-    drive.rms = std::sqrt(before[j] / std::max(1.0, count[j]));
-    drive.rms_after = std::sqrt(after[j] / std::max(1.0, count[j]));
-    drive.rms_given = std::sqrt(given[j] / std::max(1.0, count[j]));
-    drive.floor = std::sqrt(floor[j] / std::max(1.0, count[j]));
+    for (double* figure : {&drive.rms, &drive.rms_after, &drive.rms_given, &drive.floor})
+      *figure = std::sqrt(*figure / std::max(1.0, count[j]));
     const double chance = found.null.omnibus[j].quantile(0.5);
     const double excess = std::max(0.0, found.structure_before(at) - chance);
     drive.structure = excess / std::max(1.0, excess + white_rows[j]);
@@ -182,7 +181,6 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     std::ranges::sort(drive.follows, std::greater(), &std::pair<std::string, double>::second);
     const double largest = drive.follows.empty() ? 0.0 : drive.follows.front().second;
     for (auto& [name, gain] : drive.follows) gain /= std::max(largest, 1e-300);
-    out.drives.push_back(std::move(drive));
   }
 
   const auto& hypotheses = context.search.hypotheses();

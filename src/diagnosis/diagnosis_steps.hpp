@@ -87,6 +87,12 @@ template <class Candidate>
   return text;
 }
 
+/// Drives that the effects reach.
+[[nodiscard]] std::vector<int> reached_drives(const std::vector<NamedEffect>& named);
+/// Root mean square over drives.
+/// \param rms  of each drive
+[[nodiscard]] double rms_over(const std::vector<int>& drives, const Eigen::VectorXd& rms);
+
 [[nodiscard]] bool turns(const Robot& robot, int drive);
 /// Of its torque.
 [[nodiscard]] const char* unit_of_drive(const Robot& robot, int drive);

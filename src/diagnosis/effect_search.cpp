@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "deltadyn/runtime/golden_section.hpp"
@@ -38,23 +39,20 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
   const ShapeSearch& search = kind.search;
   const double value = shape(static_cast<Index>(parameter));
   if (!shape_is_free(hypothesis.id, parameter, shape)) return {};
-  if (kind.scale == ShapeScale::waves) {
-    double spacing = 0.25 * std::abs(value), longest = value;
-    for (const VectorXd& other : hypothesis.shapes) {
-      longest = std::min(longest, other(0));
-      const double distance = std::abs(other(0) - value);
-      if (distance > 1e-12) spacing = std::min(spacing, distance);
-    }
-    // The longest start value is one wave over the range.
-    const bool whole = search.least >= 1;
-    return {true, false, whole ? std::max(value - spacing, longest) : value - spacing, value + spacing};
+  double next = std::numeric_limits<double>::infinity(),
+         least = value;  // distance of the next start value, and the least
+  for (const VectorXd& other : hypothesis.shapes) {
+    const double start = other(static_cast<Index>(parameter)), distance = std::abs(start - value);
+    least = std::min(least, start);
+    if (distance > 1e-12) next = std::min(next, distance);
   }
-  if (kind.scale == ShapeScale::place) {
-    double spacing = 0;  // to the next start value, or as far again beyond the last
-    for (const VectorXd& other : hypothesis.shapes) {
-      const double distance = std::abs(other(static_cast<Index>(parameter)) - value);
-      if (distance > 1e-12 && (spacing == 0 || distance < spacing)) spacing = distance;
-    }
+  if (kind.scale == ShapeScale::waves) {
+    const double spacing = std::min(0.25 * std::abs(value), next);
+    // The longest start value is one wave over the range.
+    return {true, false, search.least >= 1 ? std::max(value - spacing, least) : value - spacing, value + spacing};
+  }
+  if (kind.scale == ShapeScale::place) {  // to the next start value, or as far again beyond the last
+    const double spacing = std::isfinite(next) ? next : 0.0;
     return {true, false, value - spacing, value + spacing};
   }
   if (search.kind == ShapeSearch::by_difference)

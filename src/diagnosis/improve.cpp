@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "deltadyn/runtime/error.hpp"
-#include "deltadyn/runtime/statistics.hpp"
 
 #include "written_proof.hpp"
 
@@ -62,16 +61,6 @@ void fit_improved(const ImproveInput& input, bool keep_extras, Trial& trial) {
 
 WrittenModel model_of(const VectorXd& p, const std::vector<Effect>& effects, const ProcessingOptions& extras) {
   return {p, effects, extras.presliding, extras.presliding_damping_s, extras.ripples};
-}
-
-std::vector<int> reached_drives(const std::vector<NamedEffect>& named) {
-  std::vector<int> out;
-  for (const NamedEffect& one : named) {
-    for (const int j : one.drives) {
-      if (std::count(out.begin(), out.end(), j) == 0) out.push_back(j);
-    }
-  }
-  return out;
 }
 
 /// Fits the model with the names, with bristles found anew and, if that is not borne out, with those of the search.
@@ -193,16 +182,14 @@ void take(Trial trial, bool identify, Diagnosis& out) {
   out.holdout_figures = trial.proof.drives;
   out.holdout_cutoff_hz = trial.proof.cutoff_hz;
   if (out.holdout_figures.empty()) return;
+  VectorXd given(std::ssize(out.holdout_figures)), written = given;
+  for (Index j = 0; j < given.size(); ++j) {
+    given(j) = out.holdout_figures[static_cast<std::size_t>(j)].rms_given;
+    written(j) = out.holdout_figures[static_cast<std::size_t>(j)].rms_written;
+  }
   for (NamedEffect& one : out.named) {
-    double before = 0, after = 0;
-    for (const int j : one.drives) {
-      const HoldoutFigure& figure = out.holdout_figures[static_cast<std::size_t>(j)];
-      before += figure.rms_given * figure.rms_given;
-      after += figure.rms_written * figure.rms_written;
-    }
-    const auto count = static_cast<double>(one.drives.size());
-    one.rms_before = root_mean_square(before, count);
-    one.rms_after = root_mean_square(after, count);
+    one.rms_before = rms_over(one.drives, given);
+    one.rms_after = rms_over(one.drives, written);
     one.rms_floor = std::min(one.rms_floor, one.rms_after);
   }
 }

@@ -240,6 +240,20 @@ DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
   return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
 }
 
+std::vector<int> reached_drives(const std::vector<NamedEffect>& named) {
+  std::vector<int> out;
+  for (const NamedEffect& one : named) {
+    for (const int j : one.drives) {
+      if (std::ranges::count(out, j) == 0) out.push_back(j);
+    }
+  }
+  return out;
+}
+
+double rms_over(const std::vector<int>& drives, const VectorXd& rms) {
+  return root_mean_square(rms(drives));
+}
+
 void forget_gap(Diagnosis& out) {
   out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
   out.p_no_gain = 1;
@@ -354,19 +368,11 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
       out.drives[static_cast<std::size_t>(j)].rms_holdout = proof->rms_before(j);
       out.drives[static_cast<std::size_t>(j)].floor_holdout = proof->floor(j);
     }
-    std::vector<int> touched;
+    const std::vector<int> touched = reached_drives(out.named);
     for (NamedEffect& one : out.named) {
-      double before = 0, after = 0, floor = 0;
-      for (const int j : one.drives) {
-        before += proof->rms_before(j) * proof->rms_before(j);
-        after += proof->rms_after(j) * proof->rms_after(j);
-        floor += proof->floor(j) * proof->floor(j);
-        if (std::count(touched.begin(), touched.end(), j) == 0) touched.push_back(j);
-      }
-      const auto count = static_cast<double>(one.drives.size());
-      one.rms_before = root_mean_square(before, count);
-      one.rms_after = root_mean_square(after, count);
-      one.rms_floor = root_mean_square(floor, count);
+      one.rms_before = rms_over(one.drives, proof->rms_before);
+      one.rms_after = rms_over(one.drives, proof->rms_after);
+      one.rms_floor = rms_over(one.drives, proof->floor);
     }
     if (!touched.empty()) {
       shrink_of(*proof, *holdout, touched, context.options.seed, out);

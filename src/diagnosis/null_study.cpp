@@ -35,41 +35,6 @@ constexpr double kLeastClean = 0.6;
 constexpr double kMostNoise = 0.75;  // share of a column's squares
 constexpr std::size_t kGramRuns = 4;
 
-/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples
-/// to spare before its first row and after its last one, as the coarser low pass may be longer by one step.
-LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& start) {
-  LogRows out;
-  out.number = from.number;
-  out.tau.resize(from.rows(), from.tau.cols());
-  PreparedLog& log = out.log;
-  log = from.log;
-  // The rows' stride must be a whole number of steps.
-  step = 1;
-  for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
-    if (log.low_pass && log.stride % candidate == 0 &&
-        log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
-      step = candidate;
-      break;
-    }
-  }
-  start = log.first % step;
-  if (step == 1) return out;
-  const Index samples = (log.t_s.size() - start + step - 1) / step;
-  const auto rows = [&](const MatrixXd& m) {
-    MatrixXd thin(samples, m.cols());
-    for (Index k = 0; k < samples; ++k) thin.row(k) = m.row(start + k * step);
-    return thin;
-  };
-  for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
-  if (log.coulomb_share.size() > 0) log.coulomb_share = rows(log.coulomb_share);
-  log.t_s = rows(log.t_s);
-  log.first = (log.first - start) / step;
-  log.stride /= step;
-  log.rate_hz /= static_cast<double>(step);
-  log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
-  return out;
-}
-
 /// A bristle does not turn with the sign of a noisy rate: the share of Coulomb's friction is given the sign that was
 /// taken out of it.
 void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& log) {
@@ -196,23 +161,60 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
   return out;
 }
 
+/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples
+/// to spare before its first row and after its last one, as the coarser low pass may be longer by one step.
+EncoderPilots::Thinned EncoderPilots::thinned(const LogRows& from, double low_pass_hz) {
+  Thinned out;
+  out.number = from.number;
+  out.samples = from.log.t_s.size();
+  out.rate_hz = from.log.rate_hz;
+  out.tau.resize(from.rows(), from.tau.cols());
+  PreparedLog& log = out.log;
+  log = from.log;
+  // The rows' stride must be a whole number of steps.
+  for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
+    if (log.low_pass && log.stride % candidate == 0 &&
+        log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
+      out.step = candidate;
+      break;
+    }
+  }
+  const Index step = out.step, start = log.first % step;
+  out.start = start;
+  if (step == 1) return out;
+  const Index samples = (log.t_s.size() - start + step - 1) / step;
+  const auto rows = [&](const MatrixXd& m) {
+    MatrixXd thin(samples, m.cols());
+    for (Index k = 0; k < samples; ++k) thin.row(k) = m.row(start + k * step);
+    return thin;
+  };
+  for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
+  if (log.coulomb_share.size() > 0) log.coulomb_share = rows(log.coulomb_share);
+  log.t_s = rows(log.t_s);
+  log.first = (log.first - start) / step;
+  log.stride /= step;
+  log.rate_hz /= static_cast<double>(step);
+  log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
+  return out;
+}
+
 std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
   std::mt19937_64 random(seed);
   NormalDistribution normal;
   std::vector<PreparedLog> out;
   for (std::size_t l = 0; l < logs_.size(); ++l) {
     PreparedLog log = logs_[l].log;
-    MatrixXd noise(samples_[l], log.q.cols());
+    const double rate_hz = logs_[l].rate_hz;
+    MatrixXd noise(logs_[l].samples, log.q.cols());
     for (Index j = 0; j < noise.cols(); ++j) {
       for (Index k = 0; k < noise.rows(); ++k)
         noise(k, j) = position_noise_[l][static_cast<std::size_t>(j)] * normal(random);
     }
     // Through the same zero-phase filter and differentiation as the log's own motion.
-    noise = zero_phase_filter(noise, rate_hz_[l], cutoff_hz_, 4);
-    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz_[l], 1, 3),
-                   second = differentiate(noise, 1.0 / rate_hz_[l], 2, 3);
+    noise = zero_phase_filter(noise, rate_hz, cutoff_hz_, 4);
+    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz, 1, 3), second = differentiate(noise, 1.0 / rate_hz, 2, 3);
     for (Index k = 0; k < log.q.rows(); ++k) {
-      const Index sample = start_[l] + k * step_[l];
+      const Index sample = logs_[l].start + k * logs_[l].step;
       log.q.row(k) += noise.row(sample);
       log.qd.row(k) += rate.row(sample);
       log.qdd.row(k) += second.row(sample);
@@ -263,12 +265,7 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
       cutoff_hz_(cutoff_hz) {
   std::vector<PreparedLog> own;
   for (const LogRows& log : logs) {
-    Index step = 1, start = 0;
-    logs_.push_back(thinned(log, low_pass_hz, step, start));
-    step_.push_back(step);
-    start_.push_back(start);
-    samples_.push_back(log.log.t_s.size());
-    rate_hz_.push_back(log.log.rate_hz);
+    logs_.push_back(thinned(log, low_pass_hz));
     logs_.back().signals = model.signals(logs_.back().log, p, false);
     own.push_back(logs_.back().log);
   }

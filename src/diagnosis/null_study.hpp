@@ -101,10 +101,14 @@ class EncoderPilots {
   const EffectModel& model_;
   const BaseParameters& base_;
   /// Motion only, every few samples: the low pass that follows needs no more
-  std::vector<LogRows> logs_;
-  std::vector<Eigen::Index> step_, start_, samples_;  ///< of each log: sample = start + k step, of so many
-  std::vector<double> rate_hz_;                       ///< of the logs as recorded
-  Run still_;                                         ///< without noise
+  struct Thinned : LogRows {
+    Eigen::Index step = 1, start = 0, samples = 0;  ///< of the log as recorded: sample = start + k step, of so many
+    double rate_hz = 0;                             ///< of that log
+  };
+  [[nodiscard]] static Thinned thinned(const LogRows& from, double low_pass_hz);
+
+  std::vector<Thinned> logs_;
+  Run still_;  ///< without noise
   const Eigen::VectorXd p_;
   const std::vector<Hypothesis> hypotheses_;
   PerLogAndDrive<double> position_noise_;

@@ -75,8 +75,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
     out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
     if (std::min(b.rows, a.rows) < kFewestDriveRows) continue;
-    const bool named = std::find(touched.begin(), touched.end(), static_cast<int>(j)) != touched.end();
-    const double worse = named ? kWorse : kWorseElsewhere;
+    const double worse = std::ranges::count(touched, static_cast<int>(j)) > 0 ? kWorse : kWorseElsewhere;
     // Rows near reversals count where the given model answers for them.
     const bool near = b.reversal_rows < a.reversal_rows || b.rms_with_reversals < kWorse * b.rms_residual;
     const bool is_worse = a.rms_residual > worse * b.rms_residual ||
