@@ -6,10 +6,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kShapeStep = 0.02;  // of a shape parameter, either way

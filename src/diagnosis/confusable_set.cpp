@@ -11,10 +11,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 // Standard deviations of the likelihood ratio beyond which an alternative is out

@@ -6,10 +6,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 // Of a signature's square: less is left beside the base model than any noise allows to see

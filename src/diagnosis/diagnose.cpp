@@ -17,10 +17,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 const char* verdict_name(DiagnosisVerdict verdict) {
   static constexpr const char* kNames[] = {"nothing-missing", "named", "confusable", "unknown-structure",
                                            "not-testable"};

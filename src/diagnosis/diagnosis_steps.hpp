@@ -19,7 +19,7 @@ struct DiagnosisInput {
   const Robot& robot;
   const std::vector<Log>& logs;
   const Log* holdout;
-  const Eigen::VectorXd &p, &p_std;  ///< of the model as given
+  const VectorXd &p, &p_std;         ///< of the model as given
   const std::vector<Effect>& known;  ///< effects of the model as given
   const DiagnosisOptions& options;
 };
@@ -33,7 +33,7 @@ struct SearchContext {
   const EffectSearch& search;
   const DiagnosisOptions& options;
   const ProcessingOptions& processing;
-  const Eigen::VectorXd& p;
+  const VectorXd& p;
   PerLogAndDrive<double> position_noise = {};
   const LogRows* holdout = nullptr;  ///< evaluated in `basis` behind the logs
 };
@@ -45,9 +45,9 @@ struct SearchResult {
   std::shared_ptr<const EncoderPilots> pilots;
   NullStudy null;
   Omnibus omnibus_before, omnibus_after;
-  Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
-  std::vector<Fit> fits;                              ///< of the accepted effects
-  std::vector<std::vector<EffectCandidate>> sets;     ///< what each could be besides
+  VectorXd structure_before, structure_after;      ///< gains of the generic basis, one a drive
+  std::vector<Fit> fits;                           ///< of the accepted effects
+  std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
 };
 
 /// Motion, torque and rows of a log, with room for the residuals.
@@ -63,7 +63,7 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Fits and structure of every drive, and the list of all effects considered.
 /// \param p,known  the model that the user gave
-void describe_drives(const SearchContext& context, const SearchResult& found, const Eigen::VectorXd& p,
+void describe_drives(const SearchContext& context, const SearchResult& found, const VectorXd& p,
                      const std::vector<Effect>& known, Diagnosis& out);
 
 /// Steps 9 and 10: names, unknown structure, proof on the hold-out log.
@@ -91,7 +91,7 @@ template <class Candidate>
 [[nodiscard]] std::vector<int> reached_drives(const std::vector<NamedEffect>& named);
 /// Root mean square over drives.
 /// \param rms  of each drive
-[[nodiscard]] double rms_over(const std::vector<int>& drives, const Eigen::VectorXd& rms);
+[[nodiscard]] double rms_over(const std::vector<int>& drives, const VectorXd& rms);
 
 [[nodiscard]] bool turns(const Robot& robot, int drive);
 /// Of its torque.
@@ -112,8 +112,8 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
 
 /// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first
 /// row and number.
-[[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> row_blocks(const SearchContext& context,
-                                                                            const WhiteSegment& segment);
+[[nodiscard]] std::vector<std::pair<Index, Index>> row_blocks(const SearchContext& context,
+                                                              const WhiteSegment& segment);
 
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
@@ -121,25 +121,24 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
 /// What a re-fit of the problem's model leaves of a torque, in the rows of the logs [N m | N]: C a - [Y E] b for the b
 /// that takes most, E the columns of the effects that the model holds.
 struct Remainder {
-  Eigen::VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
-  PerLogAndDrive<Eigen::VectorXd> torque;  ///< [log][drive]; empty where there is none
+  VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
+  PerLogAndDrive<VectorXd> torque;  ///< [log][drive]; empty where there is none
 };
 /// \param columns  [log][drive] rows x k, empty where a drive is not reached
 [[nodiscard]] Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
-                                     const PerLogAndDrive<Eigen::MatrixXd>& columns, const Eigen::VectorXd& amplitude);
+                                     const PerLogAndDrive<MatrixXd>& columns, const VectorXd& amplitude);
 /// Mean square of a remainder over the noise variance of each drive.
-[[nodiscard]] Eigen::VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
-                                           const PerLogAndDrive<double>& floor);
+[[nodiscard]] VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
+                                    const PerLogAndDrive<double>& floor);
 
 /// Squares of an effect's white torque, one value a drive.
-[[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
-                                               const Fit& fit);
+[[nodiscard]] VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
 /// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one
 /// beside other effects.
-[[nodiscard]] Eigen::VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
+[[nodiscard]] VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
 /// Its squares, one value a drive: it also stands on drives that the effect itself does not reach.
-[[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
-                                                         const Fit& fit);
+[[nodiscard]] VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
+                                                  const Fit& fit);
 
 /// Ruling of an effect that the search has found.
 inline constexpr const char* kFound = "found";

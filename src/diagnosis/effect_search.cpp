@@ -12,10 +12,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 PerLogAndDrive<MatrixXd> columns_of(const PerLogAndDrive<MatrixXd>& rows, Index first, Index count) {

@@ -36,7 +36,7 @@ class FormErrors {
   const SearchResult& found_;
   const EffectSearch::State& state_;
   std::optional<std::size_t> but_;
-  std::vector<Eigen::VectorXd> squares_;  ///< of each effect found, what a re-fit leaves, by drive
+  std::vector<VectorXd> squares_;  ///< of each effect found, what a re-fit leaves, by drive
 };
 
 }  // namespace deltadyn::detail

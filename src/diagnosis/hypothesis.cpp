@@ -8,10 +8,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kFinestWave = 0.5;  // spacing of the waves over the range: a quarter of a wave out of step at the ends

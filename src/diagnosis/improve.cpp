@@ -11,9 +11,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kWorseRms = 1.02;  // rms of a simpler name over that of another one from which it is worse

@@ -12,7 +12,7 @@
 namespace deltadyn::detail {
 
 struct ImproveInput : DiagnosisInput {
-  const Eigen::VectorXd& p_fit;     ///< for the effects that need the model's torque
+  const VectorXd& p_fit;            ///< for the effects that need the model's torque
   const ProcessingOptions& extras;  ///< bristles and ripples that the search ended with
   const std::vector<int>& masked;   ///< drives whose rows near reversals it left out although they have bristles
   double cutoff_hz;                 ///< of the search

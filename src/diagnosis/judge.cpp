@@ -14,10 +14,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kResonance = 0.8;  // of the cut-off: a spring's law holds below the resonance only

@@ -9,10 +9,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log) {
   const Index n = robot.drives();
   const auto b = static_cast<Index>(base.count());

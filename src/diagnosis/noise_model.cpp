@@ -5,9 +5,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr Index kLeastPairs = 2;  // one in so many rows must have a usable row at the lag of the order

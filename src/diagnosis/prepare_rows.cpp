@@ -14,10 +14,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of the one that identification uses: then the

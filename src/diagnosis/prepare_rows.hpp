@@ -42,7 +42,7 @@ struct SearchCutoff {
 /// \param p  around which the parameters are fitted
 [[nodiscard]] std::vector<int> drives_without_hold(const EffectModel& model, const BaseParameters& base,
                                                    const std::vector<Log>& logs, const ProcessingOptions& wanted,
-                                                   double cutoff_hz, const Eigen::VectorXd& p);
+                                                   double cutoff_hz, const VectorXd& p);
 
 /// Rows of the drive of which least is known in all logs, less the directions that reversals take.
 struct KnownRows {

@@ -4,10 +4,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
                        const PerLogAndDrive<MatrixXd>& columns, const VectorXd& amplitude) {
   VectorXd white = VectorXd::Zero(problem.rows);

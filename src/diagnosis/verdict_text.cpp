@@ -4,8 +4,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-
 namespace {
 
 constexpr double kLeftOver = 1.05;      // rms over floor from which structure that is left is worth a word

@@ -8,10 +8,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding

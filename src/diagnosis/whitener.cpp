@@ -6,10 +6,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kNegligible = 0.2;   // size of an unknown direction in white rows, in standard deviations of the noise

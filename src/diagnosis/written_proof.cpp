@@ -9,10 +9,9 @@
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
-namespace deltadyn::detail {
+#include "eigen_names.hpp"
 
-using Eigen::Index;
-using Eigen::MatrixXd;
+namespace deltadyn::detail {
 
 namespace {
 
