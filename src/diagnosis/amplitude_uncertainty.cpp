@@ -1,5 +1,4 @@
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 
 #include "diagnosis_steps.hpp"
@@ -52,7 +51,7 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   const Index k = fit.effect.amplitude.size();
   fit.effect.amplitude_std = VectorXd::Zero(k);
   fit.effect.shape_std = VectorXd::Constant(fit.effect.shape.size(), std::nan(""));
-  if (fit.white.cols < k) return;
+  if (fit.white.cols() < k) return;
   const std::vector<Index> shapes = free_shapes(fit.effect);
   MatrixXd J(problem.rows, k + static_cast<Index>(shapes.size()));
   J.leftCols(k) = problem.projected(fit.white);

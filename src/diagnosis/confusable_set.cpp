@@ -87,7 +87,7 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   const std::vector<bool> reached = reached_by_others(context, found, place);
   const WhiteProblem& problem = *state.problem;
   const Index k = best.effect.amplitude.size();
-  if (best.white.cols < k) return set;
+  if (best.white.cols() < k) return set;
   const MatrixXd C_best = problem.projected(best.white);
   const VectorXd s_best = C_best * best.effect.amplitude;
   const VectorXd r_best = problem.r - s_best;
@@ -102,7 +102,7 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   for (const std::size_t h : order) {
     const Fit& other = context.search.refine(state, h);
     const Index m = other.effect.amplitude.size();
-    if (other.white.cols < m || hygienic(context, other)) continue;
+    if (other.white.cols() < m || hygienic(context, other)) continue;
     const VectorXd s_other = problem.projected(other.white) * other.effect.amplitude;
     // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom
     // leaves.

@@ -32,7 +32,7 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
     const std::size_t shape = middle_shape(hypotheses[h], signature);
     const Index k = hypotheses[h].amplitudes;
     considered[h].kept = std::ranges::max(signature.kept);
-    if (signature.white.cols == 0) continue;
+    if (signature.white.cols() == 0) continue;
     one[h] = signature.white.part(static_cast<Index>(shape) * k, k);
     gram[h] = signature.gram[shape];
   }
@@ -40,7 +40,7 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
     std::vector<std::pair<double, std::string>> alike;
     for (std::size_t b = 0; b < one.size(); ++b) {
       // One column each: the angle between spans of several would need its own words.
-      if (a == b || one[a].cols != 1 || one[b].cols != 1) continue;
+      if (a == b || one[a].cols() != 1 || one[b].cols() != 1) continue;
       const double size = std::sqrt(gram[a](0, 0) * gram[b](0, 0));
       if (!(size > 0)) continue;
       const double cosine = std::abs(cross_gram(one[a], one[b])(0, 0)) / size;

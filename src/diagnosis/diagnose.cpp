@@ -174,7 +174,7 @@ class DiagnosisRun {
   void name() {
     const detail::SearchContext now = context();
     detail::describe_drives(now, found_, in_.p, known_, out_);
-    for (const int joint : rows_.masked) {
+    for (const int joint : masked_) {
       out_.notes.push_back(fmt::format(
           "rows near reversals of drive {} do not follow the known build-up of its friction: left out", joint + 1));
     }

@@ -4,7 +4,6 @@
 /// The steps of diagnose(), between them the search's result.
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 

@@ -148,7 +148,7 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
   in_parallel(hypotheses_.size(), [&](std::size_t h) {
     out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
     const WhiteColumns& white = out.signatures[h].white;
-    if (held[h] || white.cols == 0) return;
+    if (held[h] || white.cols() == 0) return;
     const VectorXd inner = freed_of_bias(out.problem->inner(white), out.bias[h]);
     out.scores[h] = best_score(hypotheses_[h], out.signatures[h], inner);
   });
@@ -250,7 +250,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
     const Index k = hypotheses_[h].amplitudes;
     const Signature& signature = state.signatures[h];
     One one;
-    if (signature.white.cols > 0) {
+    if (signature.white.cols() > 0) {
       one.white = signature.white.part(static_cast<Index>(state.scores[h].shape) * k, k);
       one.inner = freed_of_bias(state.problem->inner(one.white), bias_of(state, h));
     }

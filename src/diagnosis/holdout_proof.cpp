@@ -37,7 +37,6 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
   HoldoutProof out;
   for (MatrixXd* residual : {&out.before, &out.after}) residual->resize(held.rows(), n);
   for (VectorXd* figure : {&out.rms_before, &out.rms_after, &out.floor, &out.unsure}) figure->resize(n);
-  out.usable = held.usable;
   const WhiteProblem& training = *found.before.problem;
   const MatrixXd covariance = MatrixXd(training.X.transpose() * training.X)
                                   .completeOrthogonalDecomposition()
@@ -71,7 +70,7 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
     Eigen::Array3d block = Eigen::Array3d::Zero();
     for (Index k = first; k < std::min(first + per_block, held.rows()); ++k) {
       for (const int j : drives) {
-        if (!proof.usable[static_cast<std::size_t>(j)](k)) continue;
+        if (!held.usable[static_cast<std::size_t>(j)](k)) continue;
         const double floor = std::max(proof.floor(j), 1e-300), square = floor * floor;
         block += Eigen::Array3d(proof.before(k, j) * proof.before(k, j) / square,
                                 proof.after(k, j) * proof.after(k, j) / square, 1);

@@ -13,7 +13,6 @@ namespace deltadyn::detail {
 /// Rows of the hold-out log: residuals before and after, and the floor.
 struct HoldoutProof {
   MatrixXd before, after;
-  std::vector<RowMask> usable;
   /// By drive: columns of the effects that the model held and of those found, as in SearchResult::after
   std::vector<MatrixXd> effects;
   VectorXd rms_before, rms_after, floor;

@@ -4,7 +4,6 @@
 /// The model with the named effects: its parameters, bristles and ripples fitted anew, and the proof of it. Names that
 /// it does not bear out are withdrawn.
 
-#include <optional>
 #include <vector>
 
 #include "diagnosis_steps.hpp"

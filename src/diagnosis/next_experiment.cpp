@@ -206,8 +206,6 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   limits.qd = limits.qd.cwiseMin(envelope.qd / kRoom * 1.02);
   limits.qdd = limits.qdd.cwiseMin(envelope.qdd / kRoom * 1.05);
   NextExperiment out;
-  out.typical = upper_median(values);
-  out.separation = best_value;
   const PlanSegment segment{on_sample_grid(*best, kRate_hz), limits, 2};
   out.samples = sample_plan(robot, make_plan(robot, {segment}, kRate_hz, false), kRate_hz);
   std::vector<std::string> others;
@@ -215,8 +213,8 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   out.note = fmt::format(
       "motion of {:.1f} s that tells {} from {}: their torques differ by {:.2g} noise standard deviations (random "
       "motions {:.2g})",
-      out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, fmt::join(others, ", "), out.separation,
-      out.typical);
+      out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, fmt::join(others, ", "), best_value,
+      upper_median(values));
   return out;
 }
 

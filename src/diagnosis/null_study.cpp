@@ -106,8 +106,8 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
     PerLogAndDrive<MatrixXd> columns(basis.columns.size(), std::vector<MatrixXd>(n));
     for (std::size_t l = 0; l < basis.columns.size(); ++l) columns[l][j] = basis.columns[l][j];
     white_.push_back(problem.whiten(columns));
-    MatrixXd G = white_.back().gram(0, white_.back().cols);
-    const VectorXd raw = white_.back().raw_gram(0, white_.back().cols).diagonal().cwiseMax(1e-300);
+    MatrixXd G = white_.back().gram(0, white_.back().cols());
+    const VectorXd raw = white_.back().raw_gram(0, white_.back().cols()).diagonal().cwiseMax(1e-300);
     const VectorXd scale = raw.cwiseSqrt().cwiseInverse();
     G = scale.asDiagonal() * G * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
@@ -348,7 +348,7 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
     whole[run].resize(sensitive_.size());
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
       const WhiteColumns& white = signatures[sensitive_[k]].white;
-      if (white.cols == 0) continue;
+      if (white.cols() == 0) continue;
       whole[run][k] = problem.inner(white, r, Q_r) + white.base.transpose() * Q_r;
       if (inner[k].size() > 0) whole[run][k] += inner[k];
     }
@@ -368,13 +368,13 @@ void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>&
   in_parallel(sensitive_.size(), [&](std::size_t k) {
     const std::size_t h = sensitive_[k];
     Signature& signature = signatures[h];
-    if (signature.white.cols == 0) return;
+    if (signature.white.cols() == 0) return;
     const Index amplitudes = hypotheses_[h].amplitudes;
     std::vector<MatrixXd> noise(signature.gram.size(), MatrixXd::Zero(amplitudes, amplitudes));
     const std::size_t runs = std::min(kGramRuns, runs_.size());
     for (std::size_t run = 0; run < runs; ++run) {
       const WhiteColumns change = problem.whiten(runs_[run].rows[k]);
-      if (change.cols < signature.white.cols) continue;
+      if (change.cols() < signature.white.cols()) continue;
       for (std::size_t s = 0; s < noise.size(); ++s) {
         noise[s] += change.gram(static_cast<Index>(s) * amplitudes, amplitudes) / static_cast<double>(runs);
       }
@@ -437,12 +437,13 @@ std::vector<VectorXd> EncoderPilots::torque_noise(const WhiteProblem& problem, d
 
 NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
                          const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
-                         const std::vector<VectorXd>& bias, const Omnibus& omnibus, const NullOptions& options) {
+                         const std::vector<VectorXd>& bias, const Omnibus& omnibus, const DiagnosisOptions& options,
+                         const std::function<void(double)>& progress) {
   NullStudy out;
   const VectorXd clean = pilots.clean(problem);
   const std::vector<VectorXd> taps = pilots.torque_noise(problem, out.encoder_share);
-  MatrixXd scores = MatrixXd::Zero(options.runs, static_cast<Index>(hypotheses.size()));
-  MatrixXd generic = MatrixXd::Zero(options.runs, omnibus.drives());
+  MatrixXd scores = MatrixXd::Zero(options.null_runs, static_cast<Index>(hypotheses.size()));
+  MatrixXd generic = MatrixXd::Zero(options.null_runs, omnibus.drives());
   int done = 0;
   std::mutex counting;
   const auto run = [&](int k) {
@@ -465,7 +466,7 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
     std::vector<const VectorXd*> changed(hypotheses.size(), nullptr);
     for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
     for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-      if (signatures[h].white.cols == 0) continue;
+      if (signatures[h].white.cols() == 0) continue;
       inner[h] = problem.inner(signatures[h].white, r, Q_r);
       if (changed[h] != nullptr) {
         // The column itself, not only its part beside the base model, moves with the regressor.
@@ -477,9 +478,9 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
     }
     generic.row(k) = omnibus.gains(problem, r, Q_r).transpose();
     const std::lock_guard<std::mutex> lock(counting);
-    if (options.progress) options.progress(static_cast<double>(++done) / options.runs);
+    progress(static_cast<double>(++done) / options.null_runs);
   };
-  in_parallel(options.runs, run, options.threads);
+  in_parallel(options.null_runs, run, options.threads);
 
   out.family = family_of(scores, out.hypothesis);
   out.omnibus_family = family_of(generic, out.omnibus);

@@ -11,6 +11,8 @@
 #include <functional>
 #include <vector>
 
+#include "deltadyn/diagnosis/diagnose.hpp"
+
 #include "generic_basis.hpp"
 #include "white_problem.hpp"
 
@@ -116,13 +118,6 @@ class EncoderPilots {
 /// only (quantisation is not white), so that a share of the fake counts as nothing.
 [[nodiscard]] VectorXd freed_of_bias(const VectorXd& inner, const VectorXd& bias);
 
-struct NullOptions {
-  int runs = 200;
-  std::uint64_t seed = 1;
-  int threads = 0;
-  std::function<void(double)> progress;
-};
-
 struct NullStudy {
   std::vector<NullDistribution> hypothesis;  ///< one a hypothesis
   NullDistribution family;                   ///< of -log of the smallest p of all hypotheses (Westfall and Young 1993)
@@ -135,10 +130,12 @@ struct NullStudy {
   [[nodiscard]] double omnibus_p(const VectorXd& gains) const;
 };
 
-/// \param bias  EncoderPilots::bias of the same problem
+/// \param bias      EncoderPilots::bias of the same problem
+/// \param progress  called with the share done
 [[nodiscard]] NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
                                        const std::vector<Hypothesis>& hypotheses,
                                        const std::vector<Signature>& signatures, const std::vector<VectorXd>& bias,
-                                       const Omnibus& omnibus, const NullOptions& options);
+                                       const Omnibus& omnibus, const DiagnosisOptions& options,
+                                       const std::function<void(double)>& progress);
 
 }  // namespace deltadyn

@@ -161,7 +161,6 @@ DiagnosisRows prepare_rows(const Robot& robot, const BaseParameters& base, const
   if (holdout != nullptr) all.push_back(*holdout);
   DiagnosisRows out;
   out.processing = row_processing(all, wanted, cutoff_hz);
-  out.masked = masked;
   std::vector<PreparedLog> ready;
   for (const Log& log : all) ready.push_back(prepared(robot, log, out.processing));
   leave_rest_out(robot, out.processing, slow_samples(robot, ready), masked, ready);

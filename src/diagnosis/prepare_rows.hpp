@@ -15,7 +15,6 @@ namespace deltadyn::detail {
 struct DiagnosisRows {
   ProcessingOptions processing;     ///< of `logs` and `held`
   std::vector<LogRows> logs, held;  ///< signals left empty; `held` has at most one
-  std::vector<int> masked;          ///< drives from 0 whose known bristles do not hold near reversals: left out there
 };
 
 /// Cut-offs for the search.

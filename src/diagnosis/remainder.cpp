@@ -41,7 +41,7 @@ VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& prob
 
 VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit) {
   const WhiteColumns white = problem.whiten(fit.rows);
-  if (white.cols < fit.effect.amplitude.size()) return VectorXd::Zero(problem.rows);
+  if (white.cols() < fit.effect.amplitude.size()) return VectorXd::Zero(problem.rows);
   return problem.projected(white) * fit.effect.amplitude;
 }
 

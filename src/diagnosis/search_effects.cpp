@@ -234,12 +234,9 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
   if (earlier != nullptr) {
     found.null = earlier->null;
   } else {
-    found.null = run_null_study(
-        pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
-        found.omnibus_before,
-        {.runs = options.null_runs, .seed = options.seed, .threads = options.threads, .progress = [&](double share) {
-           report(0.45 + 0.4 * share);
-         }});
+    found.null =
+        run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
+                       found.omnibus_before, options, [&](double share) { report(0.45 + 0.4 * share); });
   }
   out.encoder_share = found.null.encoder_share;
 

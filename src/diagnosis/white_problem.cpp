@@ -42,7 +42,6 @@ MatrixXd WhiteColumns::clear_gram(Index first, Index count) const {
 
 WhiteColumns WhiteColumns::part(Index first, Index count) const {
   WhiteColumns out;
-  out.cols = count;
   out.base = base.middleCols(first, count);
   for (const MatrixXd& block : blocks)
     out.blocks.push_back(block.size() > 0 ? MatrixXd(block.middleCols(first, count)) : MatrixXd());
@@ -90,10 +89,11 @@ WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDriv
 
 WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const {
   WhiteColumns out;
+  Index cols = 0;
   for (const auto& log : columns) {
-    for (const MatrixXd& drive : log) out.cols = std::max(out.cols, drive.cols());
+    for (const MatrixXd& drive : log) cols = std::max(cols, drive.cols());
   }
-  out.base = MatrixXd::Zero(Q.cols(), out.cols);
+  out.base = MatrixXd::Zero(Q.cols(), cols);
   for (const WhiteSegment& segment : segments) {
     const MatrixXd& raw = columns[segment.log][segment.drive];
     out.blocks.push_back(raw.size() > 0 ? segment.whitener.apply(raw) : MatrixXd());
@@ -132,7 +132,7 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
   const Index k = hypothesis.amplitudes;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     const Index first = static_cast<Index>(s) * k;
-    const bool anywhere = out.white.cols >= first + k;
+    const bool anywhere = out.white.cols() >= first + k;
     const double whole = anywhere ? out.white.raw_gram(first, k).trace() : 0.0;
     out.gram.push_back(anywhere ? out.white.clear_gram(first, k) : MatrixXd::Zero(k, k));
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
@@ -148,7 +148,7 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
   for (const AmplitudeTraits& amplitude : kind.amplitudes) positive.push_back(amplitude.positive());
   Score best;
   best.amplitude = VectorXd::Zero(k);
-  if (signature.white.cols == 0) return best;
+  if (signature.white.cols() == 0) return best;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     if (signature.kept[s] < kAbsorbed) continue;
     const VectorXd u = inner.segment(static_cast<Index>(s) * k, k);

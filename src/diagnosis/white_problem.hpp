@@ -26,7 +26,8 @@ struct WhiteSegment {
 struct WhiteColumns {
   std::vector<MatrixXd> blocks;
   MatrixXd base;  ///< Q^T C
-  Index cols = 0;
+
+  [[nodiscard]] Index cols() const { return base.cols(); }
 
   /// C_perp^T C_perp.
   [[nodiscard]] MatrixXd gram(Index first, Index count) const;

@@ -149,8 +149,8 @@ Verdict grade_residual(double relative) {
 }
 
 KeyFigure residual_figure(const Robot& robot, int drive, double rms, double relative) {
-  return {"residual, " + drive_name(drive), format_number(rms, torque_unit_of(robot, drive), 3),
-          fmt::format("{} of the {}", format_percent(relative, 2), effort_of(robot, drive)),
+  return {"residual, " + drive_name(drive), format_number(rms, units_of(robot, drive).torque, 3),
+          fmt::format("{} of the {}", format_percent(relative, 2), units_of(robot, drive).effort),
           tone_of(grade_residual(relative))};
 }
 
@@ -162,15 +162,15 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
   const double relative = drives.empty() ? 0.0 : drives[worst].relative();
   const auto drive = static_cast<int>(worst);
   Check check{"Size of the residual", "", grade_residual(relative), ""};
-  check.figure =
-      fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
+  check.figure = fmt::format("{} of the rms {} ({})", format_percent(relative, 2), units_of(robot, drive).effort,
+                             drive_name(drive));
   const double noise = drives.empty() ? 0.0 : drives[worst].torque_noise;
   if (check.verdict == Verdict::bad && drives[worst].rms < kNoiseOfRecord * noise) {
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
         "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust "
         "parameters as far as their intervals say, and record the torque faster or through a low pass.",
-        format_number(noise, torque_unit_of(robot, drive), 3));
+        format_number(noise, units_of(robot, drive).torque, 3));
     return check;
   }
   switch (check.verdict) {

@@ -73,7 +73,7 @@ PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::st
   const BinnedResidual bins = binned(d, drive, coordinate);
   PlotSpec plot{.title = title,
                 .x_label = x_label,
-                .y_label = fmt::format("mean residual [{}]", torque_unit_of(robot, drive)),
+                .y_label = fmt::format("mean residual [{}]", units_of(robot, drive).torque),
                 .horizontal_markers = {{0.0, ""}},
                 .height = 230};
   plot.series.push_back({"model fitted to these logs, with standard error", bins.x, bins.before, SeriesStyle::errorbars,
@@ -111,7 +111,7 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
                text_column("residual follows")});
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
     const DriveFit& drive = d.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     const bool fits = drive.structure < 0.12;
     std::vector<std::string> follows;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, drive.follows.size()) && !fits; ++k)
@@ -130,7 +130,7 @@ void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
       "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is "
       "right, two of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
-    const std::string name = "drive " + std::to_string(j + 1), unit = position_unit_of(robot, j);
+    const std::string name = "drive " + std::to_string(j + 1), unit = units_of(robot, j).position;
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
                        [](const DiagnosisTrace& trace, Index k, int drive) { return trace.qd(k, drive); }));
     report.plot(map_of(d, robot, j, "position of " + name + " [" + unit + "]", name + ": residual over its position",
@@ -242,7 +242,7 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   if (!d.named.empty()) {
     Table table({text_column("effect"), "residual before", "after", "floor"});
     for (const NamedEffect& one : d.named) {
-      const char* unit = torque_unit_of(robot, one.drives.empty() ? 0 : one.drives.front());
+      const char* unit = units_of(robot, one.drives.empty() ? 0 : one.drives.front()).torque;
       table.row({one.at_joint(), format_number(one.rms_before, unit, 3), format_number(one.rms_after, unit, 3),
                  format_number(one.rms_floor, unit, 3)});
     }
@@ -253,7 +253,7 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   } else {
     Table table({text_column("drive"), "residual", "floor"});
     for (std::size_t j = 0; j < d.drives.size(); ++j) {
-      const char* unit = torque_unit_of(robot, static_cast<int>(j));
+      const char* unit = units_of(robot, static_cast<int>(j)).torque;
       table.row({std::to_string(j + 1), format_number(d.drives[j].rms_holdout, unit, 3),
                  format_number(d.drives[j].floor_holdout, unit, 3)});
     }
@@ -266,7 +266,7 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     const auto panel = [&](const char* title, const char* quantity) {
       return PlotSpec{.title = fmt::format("Drive {}: {}", j + 1, title),
                       .x_label = "time [s]",
-                      .y_label = fmt::format("{} [{}]", quantity, torque_unit_of(robot, j)),
+                      .y_label = fmt::format("{} [{}]", quantity, units_of(robot, j).torque),
                       .height = 240};
     };
     PlotSpec torque = panel("torque on the hold-out log", "torque"), residual = panel("residual", "residual");

@@ -108,8 +108,8 @@ void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
 void add_identification_table(HtmlReport& report, const ExcitationReportInput& input) {
   std::string noise;
   for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
-    noise +=
-        (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
+    noise += (i > 0 ? ", " : "") +
+             format_number(input.torque_noise(i), units_of(input.robot, static_cast<int>(i)).torque, 3);
   }
   report.paragraph(fmt::format(
       "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. "

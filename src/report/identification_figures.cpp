@@ -93,8 +93,8 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
                   survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
                   format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
                   format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
-  constexpr Index kPointsShown = 700;  // of each eigenvalue; a point takes 80 bytes
-  const Index points = std::min(survey.task.rows(), kPointsShown);
+  constexpr Index kEigenvaluesShown = 700;  // of each eigenvalue; a point takes 80 bytes
+  const Index points = std::min(survey.task.rows(), kEigenvaluesShown);
   PlotSpec spec{.x_label = "height of the plate z [m]",
                 .y_label = fmt::format("eigenvalues of M [{}]", unit),
                 .log_y = survey.eigenvalues.topRows(points).minCoeff() > 0,

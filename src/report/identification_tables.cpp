@@ -34,11 +34,11 @@ std::string unbroken_items(std::vector<std::string> items) {
 }  // namespace
 
 void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", effort_of(robot, 0)),
+  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", units_of(robot, 0).effort),
                "free base parameters", "rows", "left out near reversals", "residual there / elsewhere"});
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     table.row({drive_name(static_cast<int>(j)), format_number(drive.rms, unit, 3),
                drive.rms_torque > 0 ? format_percent(drive.rms / drive.rms_torque) : "–",
                format_number(drive.rms_base, unit, 3), format_count(drive.rows), format_count(drive.masked_rows),
@@ -109,7 +109,7 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     if (!(found.displacement > 0)) continue;
     const auto at = static_cast<int>(joint);
     const std::string name = at < robot.drives() ? drive_name(at) : "telescope";
-    const char* unit = at < robot.drives() ? position_unit_of(robot, at) : "m";
+    const char* unit = at < robot.drives() ? units_of(robot, at).position : "m";
     table.row({name, "friction builds up after a reversal over",
                format_with_uncertainty(found.displacement, found.std, unit)});
     if (found.damping_s > 0)
@@ -121,7 +121,7 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     const double n = turning ? 1.0 : 1.0 / (2 * std::numbers::pi);
     table.row({drive_name(ripple.drive), "wave of the torque over the position (cogging, tooth meshing)",
                format_with_uncertainty(std::hypot(ripple.cosine, ripple.sine), ripple.amplitude_std,
-                                       torque_unit_of(robot, ripple.drive))});
+                                       units_of(robot, ripple.drive).torque)});
     table.row(
         {"", "its waves", format_with_uncertainty(n * ripple.n, n * ripple.n_std, turning ? "a turn" : "a metre")});
   }

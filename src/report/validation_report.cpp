@@ -15,11 +15,11 @@ namespace deltadyn {
 namespace {
 
 void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", effort_of(robot, 0)),
+  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", units_of(robot, 0).effort),
                "largest residual", "rms with reversals", "rows", "left out near reversals"});
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     const Verdict verdict = grade_residual(drive.relative_residual);
     table.row(
         {drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3),
@@ -30,13 +30,13 @@ void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& v
   report.table(table, "Residual of each drive over all logs.");
   if (validation.logs.size() < 2) return;
   Table by_log({text_column("log"), text_column("drive"), "rms residual",
-                fmt::format("of the rms {}", effort_of(robot, 0)), "rms with reversals"});
+                fmt::format("of the rms {}", units_of(robot, 0).effort), "rms with reversals"});
   for (const ValidatedLog& log : validation.logs) {
     for (int j = 0; j < robot.drives(); ++j) {
       const double rms = log.prediction.rms_residual(j, false), torque = log.prediction.rms_torque(j, false);
-      by_log.row({j == 0 ? short_name(log.file) : "", drive_name(j), format_number(rms, torque_unit_of(robot, j), 3),
+      by_log.row({j == 0 ? short_name(log.file) : "", drive_name(j), format_number(rms, units_of(robot, j).torque, 3),
                   torque > 0 ? format_percent(rms / torque) : "–",
-                  format_number(log.prediction.rms_residual(j, true), torque_unit_of(robot, j), 3)});
+                  format_number(log.prediction.rms_residual(j, true), units_of(robot, j).torque, 3)});
     }
   }
   report.table(by_log, "The same log by log.");

@@ -49,7 +49,6 @@ TEST(ConstrainedGain, SharesBetweenEqualColumns) {
 
 TEST(WhiteColumns, HaveNoSquareWhereOnlyRoundingIsLeft) {
   WhiteColumns columns;
-  columns.cols = 2;
   columns.blocks = {MatrixXd::Random(40, 2)};
   MatrixXd Q = columns.blocks[0].col(0).normalized();  // the first column is the base's
   columns.base = Q.transpose() * columns.blocks[0];
