@@ -88,17 +88,14 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
   std::mt19937_64 random(seed);
   const UniformIndex pick(blocks.size());
   std::vector<double> samples;
-  int losses = 0;
   for (int k = 0; k < kProofResamples; ++k) {
     Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (std::size_t i = 0; i < blocks.size(); ++i) sum += blocks[pick(random)];
     samples.push_back(shrink(sum));
-    losses += sum(1) >= sum(0) ? 1 : 0;
   }
   std::sort(samples.begin(), samples.end());
   out.gap_low = samples[static_cast<std::size_t>(0.025 * kProofResamples)];
   out.gap_high = samples[static_cast<std::size_t>(0.975 * kProofResamples)];
-  out.p_no_gain = (losses + 1.0) / (kProofResamples + 1.0);
 }
 
 bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof, const Fit& fit) {

@@ -252,7 +252,6 @@ double rms_over(const std::vector<int>& drives, const VectorXd& rms) {
 
 void forget_gap(Diagnosis& out) {
   out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-  out.p_no_gain = 1;
 }
 
 bool is_overt(const Diagnosis& out, double largest_share) {

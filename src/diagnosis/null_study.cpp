@@ -148,10 +148,10 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
     while (end < names.size() && names[end] == names[first]) ++end;
     const auto count = static_cast<Index>(end - first);
     const WhiteColumns white = white_[drive].part(static_cast<Index>(first), count);
-    const Gain gain =
-        constrained_gain(white.clear_gram(0, count), problem.inner(white), std::vector<bool>(end - first, false));
+    const std::vector<bool> positive(end - first, false);
+    const double gain = constrained_gain(white.clear_gram(0, count), problem.inner(white), positive).gain;
     // What chance alone gives each column is taken off.
-    out.emplace_back(names[first], std::max(0.0, gain.gain - static_cast<double>(count)));
+    out.emplace_back(names[first], std::max(0.0, gain - static_cast<double>(count)));
     first = end;
   }
   return out;

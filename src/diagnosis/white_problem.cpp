@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deltadyn/identification/non_negative_least_squares.hpp"
-
 namespace deltadyn {
 
 namespace {
@@ -120,9 +118,8 @@ VectorXd WhiteProblem::inner(const WhiteColumns& C, const VectorXd& residual, co
   return u;
 }
 
-Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
-  const NonNegativeSolution best = non_negative_least_squares(gram, inner, positive, kSingular);
-  return {best.gain, best.x};
+NonNegativeSolution constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
+  return non_negative_least_squares(gram, inner, positive, kSingular);
 }
 
 Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
@@ -152,26 +149,25 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     if (signature.kept[s] < kAbsorbed) continue;
     const VectorXd u = inner.segment(static_cast<Index>(s) * k, k);
-    Gain gain;
+    NonNegativeSolution found;
     if (kind.tied) {
       const double amount = hypothesis.shapes[s](0);
       // Noise in the column would make the amplitude, here fixed, come out too large for the data.
-      gain.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
-      gain.amplitude = VectorXd::Constant(1, amount);
+      found.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
+      found.x = VectorXd::Constant(1, amount);
     } else {
-      gain = constrained_gain(signature.gram[s], u, positive);
+      found = constrained_gain(signature.gram[s], u, positive);
       bool too_large = false;
-      for (Index c = 0; c < k; ++c)
-        too_large |= std::abs(gain.amplitude(c)) > hypothesis.largest(static_cast<std::size_t>(c));
+      for (Index c = 0; c < k; ++c) too_large |= std::abs(found.x(c)) > hypothesis.largest(static_cast<std::size_t>(c));
       // ... and a fitted one too small.
-      if (!too_large) gain.amplitude /= signature.clean[s];
+      if (!too_large) found.x /= signature.clean[s];
       for (Index c = 0; c < k; ++c) {
         const double largest = hypothesis.largest(static_cast<std::size_t>(c));
-        gain.amplitude(c) = std::clamp(gain.amplitude(c), -largest, largest);
+        found.x(c) = std::clamp(found.x(c), -largest, largest);
       }
-      if (too_large) gain.gain = 2 * gain.amplitude.dot(u) - gain.amplitude.dot(signature.gram[s] * gain.amplitude);
+      if (too_large) found.gain = 2 * found.x.dot(u) - found.x.dot(signature.gram[s] * found.x);
     }
-    if (gain.gain > best.gain) best = {gain.gain, s, gain.amplitude};
+    if (found.gain > best.gain) best = {found.gain, s, found.x};
   }
   return best;
 }

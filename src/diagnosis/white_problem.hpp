@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
+
 #include "hypothesis.hpp"
 #include "log_rows.hpp"
 #include "noise_model.hpp"
@@ -67,17 +69,12 @@ class WhiteProblem {
   PerLogAndDrive<MatrixXd> extra;  ///< as given
 };
 
-/// Best amplitudes of k columns under sign constraints.
-struct Gain {
-  double gain = 0;     ///< fall of the sum of squares
-  VectorXd amplitude;  ///< k
-};
-
 /// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no
 /// part.
 /// \param gram   C_perp^T C_perp
 /// \param inner  C_perp^T r
-[[nodiscard]] Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive);
+[[nodiscard]] NonNegativeSolution constrained_gain(const MatrixXd& gram, const VectorXd& inner,
+                                                   const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
 struct Signature {

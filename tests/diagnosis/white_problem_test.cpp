@@ -12,9 +12,9 @@ using Eigen::VectorXd;
 TEST(ConstrainedGain, IsLeastSquaresWithoutConstraints) {
   const MatrixXd C = MatrixXd::Random(30, 3);
   const VectorXd r = VectorXd::Random(30);
-  const Gain gain = constrained_gain(C.transpose() * C, C.transpose() * r, {false, false, false});
+  const NonNegativeSolution gain = constrained_gain(C.transpose() * C, C.transpose() * r, {false, false, false});
   const VectorXd a = C.colPivHouseholderQr().solve(r);
-  EXPECT_LT((gain.amplitude - a).norm(), 1e-9);
+  EXPECT_LT((gain.x - a).norm(), 1e-9);
   EXPECT_NEAR(gain.gain, r.squaredNorm() - (r - C * a).squaredNorm(), 1e-9);
 }
 
@@ -29,9 +29,10 @@ TEST(ConstrainedGain, LeavesOutColumnsOfWhichNothingIsLeft) {
   MatrixXd gram = MatrixXd::Zero(2, 2);
   gram(0, 0) = 4;
   gram(1, 1) = -1e-18;
-  const Gain gain = constrained_gain(gram, Eigen::Vector2d(2, 1e-9), {false, false});  // rounding in the second
+  const NonNegativeSolution gain =
+      constrained_gain(gram, Eigen::Vector2d(2, 1e-9), {false, false});  // rounding in the second
   EXPECT_NEAR(gain.gain, 1, 1e-12);
-  EXPECT_EQ(gain.amplitude(1), 0);
+  EXPECT_EQ(gain.x(1), 0);
 }
 
 TEST(ConstrainedGain, SharesBetweenEqualColumns) {
@@ -41,10 +42,10 @@ TEST(ConstrainedGain, SharesBetweenEqualColumns) {
   VectorXd inner = C.transpose() * r;
   gram(1, 1) *= 1 + 1e-11;  // rounding, which must not become a direction of its own
   inner(1) *= 1 + 1e-7;
-  const Gain gain = constrained_gain(gram, inner, {false, false});
+  const NonNegativeSolution gain = constrained_gain(gram, inner, {false, false});
   EXPECT_NEAR(gain.gain, r.squaredNorm(), 1e-6 * r.squaredNorm());
-  EXPECT_LT(gain.amplitude.norm(), 10);
-  EXPECT_LT((C * gain.amplitude - r).norm(), 1e-6 * r.norm());
+  EXPECT_LT(gain.x.norm(), 10);
+  EXPECT_LT((C * gain.x - r).norm(), 1e-6 * r.norm());
 }
 
 TEST(WhiteColumns, HaveNoSquareWhereOnlyRoundingIsLeft) {
