@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 
@@ -271,7 +272,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       u << ones[a].inner, ones[c].inner;
       std::vector<bool> positive = ones[a].positive;
       positive.insert(positive.end(), ones[c].positive.begin(), ones[c].positive.end());
-      const double gain = constrained_gain(G, u, positive).gain;
+      const double gain = non_negative_least_squares(G, u, positive).gain;
       const double value = worth(order[a], gain, state) + worth(order[c], 0, state);
       if (value > best_worth) {
         best_worth = value;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/butterworth.hpp"
@@ -149,7 +150,7 @@ std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhitePr
     const auto count = static_cast<Index>(end - first);
     const WhiteColumns white = white_[drive].part(static_cast<Index>(first), count);
     const std::vector<bool> positive(end - first, false);
-    const double gain = constrained_gain(white.clear_gram(0, count), problem.inner(white), positive).gain;
+    const double gain = non_negative_least_squares(white.clear_gram(0, count), problem.inner(white), positive).gain;
     // What chance alone gives each column is taken off.
     out.emplace_back(names[first], std::max(0.0, gain - static_cast<double>(count)));
     first = end;

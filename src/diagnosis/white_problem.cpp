@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
+
 namespace deltadyn {
 
 namespace {
 
 constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding
 constexpr double kAbsorbed = 1e-5;  // of a signature's square: below, nothing of it is left beside the base model
-constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gram matrix: what its rounding can hold
 
 }  // namespace
 
@@ -118,10 +119,6 @@ VectorXd WhiteProblem::inner(const WhiteColumns& C, const VectorXd& residual, co
   return u;
 }
 
-NonNegativeSolution constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
-  return non_negative_least_squares(gram, inner, positive, kSingular);
-}
-
 Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
                          const PerLogAndDrive<MatrixXd>& rows) {
   Signature out;
@@ -156,7 +153,7 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
       found.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
       found.x = VectorXd::Constant(1, amount);
     } else {
-      found = constrained_gain(signature.gram[s], u, positive);
+      found = non_negative_least_squares(signature.gram[s], u, positive);
       bool too_large = false;
       for (Index c = 0; c < k; ++c) too_large |= std::abs(found.x(c)) > hypothesis.largest(static_cast<std::size_t>(c));
       // ... and a fitted one too small.

@@ -6,8 +6,6 @@
 
 #include <vector>
 
-#include "deltadyn/identification/non_negative_least_squares.hpp"
-
 #include "hypothesis.hpp"
 #include "log_rows.hpp"
 #include "noise_model.hpp"
@@ -68,13 +66,6 @@ class WhiteProblem {
   VectorXd beta;
   PerLogAndDrive<MatrixXd> extra;  ///< as given
 };
-
-/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no
-/// part.
-/// \param gram   C_perp^T C_perp
-/// \param inner  C_perp^T r
-[[nodiscard]] NonNegativeSolution constrained_gain(const MatrixXd& gram, const VectorXd& inner,
-                                                   const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
 struct Signature {
