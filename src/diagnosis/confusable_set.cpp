@@ -1,5 +1,3 @@
-#include "confusable_set.hpp"
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,6 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
-#include "explains_more.hpp"
 #include "improve.hpp"
 #include "prepare_rows.hpp"
 #include "written_proof.hpp"

@@ -102,8 +102,22 @@ void forget_gap(Diagnosis& out);
 /// Does so large a share of a drive's noise variance, which no name explains, call for attention?
 [[nodiscard]] bool is_overt(const Diagnosis& out, double largest_share);
 
+/// A fit as a candidate: names, gain and its chance on clean logs.
+[[nodiscard]] EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit);
+
+/// Step 7: everything that the data cannot tell from `best` beside the other effects.
+/// \param state  beside the others
+/// \param place  of `best` in `found`
+[[nodiscard]] std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
+                                                          const EffectSearch::State& state, const Fit& best,
+                                                          std::size_t place);
+
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
+
+/// Of two diagnoses of the same logs in bands of different width, is `one` to be kept: does it name what `other` does not,
+/// or leave less of the hold-out log (without one: of the structure) beside its names?
+[[nodiscard]] bool explains_more(const Diagnosis& one, const Diagnosis& other);
 
 /// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise
 /// model and what the residual's own blocks say, and beside it a share of the amplitude for the form of the column.
@@ -130,8 +144,6 @@ struct Remainder {
 [[nodiscard]] VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
                                     const PerLogAndDrive<double>& floor);
 
-/// Squares of an effect's white torque, one value a drive.
-[[nodiscard]] VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit);
 /// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one
 /// beside other effects.
 [[nodiscard]] VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);

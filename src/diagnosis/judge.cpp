@@ -8,7 +8,6 @@
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
-#include "confusable_set.hpp"
 #include "holdout_proof.hpp"
 #include "ranking.hpp"
 
@@ -47,7 +46,12 @@ constexpr double kHoldoutGap = 1.4;
 
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
-  const VectorXd energy = squares_by_drive(context, problem, fit);
+  VectorXd energy = VectorXd::Zero(context.robot.drives());
+  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
+    if (fit.white.blocks[s].size() > 0)
+      energy(static_cast<Index>(problem.segments[s].drive)) +=
+          (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
+  }
   std::vector<int> out;
   for (Index j = 0; j < energy.size(); ++j) {
     if (energy(j) > 0.05 * energy.sum()) out.push_back(static_cast<int>(j));

@@ -4,7 +4,6 @@
 
 #include "deltadyn/runtime/in_parallel.hpp"
 
-#include "confusable_set.hpp"
 #include "form_error.hpp"
 #include "ranking.hpp"
 

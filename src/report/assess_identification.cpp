@@ -147,18 +147,15 @@ Check check_excitation(const Identification& identification) {
 }
 
 Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
-  Check check{"Mass matrix", "", survey.positive_definite() ? Verdict::good : Verdict::bad, ""};
-  check.figure = fmt::format("smallest eigenvalue {}", format_number(survey.min_eigenvalue, inertia_unit_of(robot), 3));
+  const bool good = survey.positive_definite();
   const std::string count = format_count(survey.states);
-  if (survey.positive_definite()) {
-    check.meaning =
-        fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count);
-  } else {
-    check.meaning = fmt::format(
-        "Not positive definite at {} of {} poses: simulation and model-based control with it can become unstable.",
-        format_count(survey.not_positive), count);
-  }
-  return check;
+  return {"Mass matrix",
+          fmt::format("smallest eigenvalue {}", format_number(survey.min_eigenvalue, inertia_unit_of(robot), 3)),
+          good ? Verdict::good : Verdict::bad,
+          good ? fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count)
+               : fmt::format("Not positive definite at {} of {} poses: simulation and model-based control with it can "
+                             "become unstable.",
+                             format_count(survey.not_positive), count)};
 }
 
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility,

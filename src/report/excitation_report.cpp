@@ -29,16 +29,16 @@ double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
   return input.predicted_std(k) / std::max(input.base_scale(k), 1e-300);
 }
 
-struct VisibilityCounts {
-  int well = 0, roughly = 0, not_at_all = 0;
-};
-VisibilityCounts counts(const ExcitationReportInput& input) {
-  VisibilityCounts c;
-  for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) {
-    const double relative = relative_std(input, k);
-    ++(relative <= kWell ? c.well : (relative <= kNot ? c.roughly : c.not_at_all));
-  }
-  return c;
+/// How well the motion shows a base parameter.
+enum Seen { well, roughly, hardly };
+Seen seen(double relative) {
+  return relative <= kWell ? well : (relative <= kNot ? roughly : hardly);
+}
+
+int count_of(const ExcitationReportInput& input, Seen level) {
+  int count = 0;
+  for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) count += seen(relative_std(input, k)) == level ? 1 : 0;
+  return count;
 }
 
 Check check_efficiency(const ExcitationReportInput& input) {
@@ -46,7 +46,7 @@ Check check_efficiency(const ExcitationReportInput& input) {
   Check check{"Information", fmt::format("D-efficiency {}", format_percent(efficiency, 3)), Verdict::good, ""};
   // The bound may be out of reach for any motion: what the motion will leave unknown decides whether little information
   // is too little.
-  const bool blind = counts(input).not_at_all > kFewBlind * static_cast<double>(input.base.count());
+  const bool blind = count_of(input, hardly) > kFewBlind * static_cast<double>(input.base.count());
   if (efficiency < kGoodEfficiency)
     check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
   check.meaning = "That share of the information which any states inside these limits could give.";
@@ -120,16 +120,18 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::ranges::stable_sort(
       order, [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  constexpr const char* kWords[] = {"well", "roughly", "hardly"};
+  constexpr Tone kTones[] = {Tone::plain, Tone::caution, Tone::bad};
   const auto fill = [&](Table& table, bool only_hidden) {
     for (const Eigen::Index k : order) {
       const double relative = relative_std(input, k);
       if (only_hidden && relative <= kNot) continue;
       const auto at = static_cast<std::size_t>(k);
       const std::string unit(pretty_unit(input.base.units[at]));
-      table.row({input.base.expressions[at], format_number(input.base_values(k), 4),
-                 format_number(input.predicted_std(k), 3), unit, relative > 10 ? "–" : format_percent(relative, 2),
-                 relative <= kWell ? "well" : (relative <= kNot ? "roughly" : "hardly")},
-                relative <= kWell ? Tone::plain : (relative <= kNot ? Tone::caution : Tone::bad));
+      table.row(
+          {input.base.expressions[at], format_number(input.base_values(k), 4), format_number(input.predicted_std(k), 3),
+           unit, relative > 10 ? "–" : format_percent(relative, 2), kWords[seen(relative)]},
+          kTones[seen(relative)]);
     }
   };
   const std::vector<TableColumn> columns = {text_column("combination of parameters"),
@@ -192,7 +194,6 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
 
 Assessment assess_excitation(const ExcitationReportInput& input) {
   const Excitation& e = input.excitation;
-  const VisibilityCounts c = counts(input);
   Assessment out;
   out.checks = {check_efficiency(input), check_reversals(input)};
   const Check& worst = worst_of(out.checks);
@@ -207,7 +208,8 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
     out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
   out.lines.push_back(
       fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
-                  input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
+                  input.base.count(), count_of(input, well), format_percent(kWell, 1), count_of(input, roughly),
+                  count_of(input, hardly)));
   if (e.out_of_time)
     out.lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
   if (e.interrupted) out.lines.emplace_back("The search was interrupted; more time may find a better motion.");
