@@ -115,8 +115,8 @@ void forget_gap(Diagnosis& out);
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
 
-/// Of two diagnoses of the same logs in bands of different width, is `one` to be kept: does it name what `other` does not,
-/// or leave less of the hold-out log (without one: of the structure) beside its names?
+/// Of two diagnoses of the same logs in bands of different width, is `one` to be kept: does it name what `other` does
+/// not, or leave less of the hold-out log (without one: of the structure) beside its names?
 [[nodiscard]] bool explains_more(const Diagnosis& one, const Diagnosis& other);
 
 /// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise
