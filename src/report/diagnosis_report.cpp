@@ -316,8 +316,7 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   report.list(d.next);
   if (!d.notes.empty()) report.list(d.notes);
   report.heading("How this was done");
-  std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file},
-                                                            {"model", context.parameter_file}};
+  Facts facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("training log", file);
   for (const DiagnosisTrace& trace : d.traces) {
     if (trace.holdout) facts.emplace_back("hold-out log", trace.file);

@@ -313,11 +313,10 @@ void add_check_table(HtmlReport& report, const Assessment& assessment) {
   report.table(table);
 }
 
-std::vector<std::pair<std::string, std::string>> source_facts(const ReportContext& context, const std::string& model,
-                                                              const std::string& model_file,
-                                                              const Validation& validation) {
+Facts source_facts(const ReportContext& context, const std::string& model, const std::string& model_file,
+                   const Validation& validation) {
   const ProcessingOptions& options = validation.processing;
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}, {model, model_file}};
+  Facts facts = {{"Robot file", context.robot_file}, {model, model_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
   if (!options.filter) {
     facts.emplace_back("Filter", "none: torque, positions, velocities and accelerations as in the log");

@@ -35,10 +35,8 @@ void add_check_table(HtmlReport& report, const Assessment& assessment);
 
 /// The files, and how the logs were filtered.
 /// \param model  name and file of the parameters that the torque was predicted or fitted with
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> source_facts(const ReportContext& context,
-                                                                            const std::string& model,
-                                                                            const std::string& model_file,
-                                                                            const Validation& validation);
+[[nodiscard]] Facts source_facts(const ReportContext& context, const std::string& model, const std::string& model_file,
+                                 const Validation& validation);
 
 /// File name without folders.
 [[nodiscard]] std::string short_name(const std::string& path);

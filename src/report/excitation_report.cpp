@@ -167,7 +167,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
 
 void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
   const Excitation& e = input.excitation;
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  Facts facts = {{"Robot file", context.robot_file}};
   if (!context.parameter_file.empty()) facts.emplace_back("Model", context.parameter_file);
   if (input.segments.front().limits.region)
     facts.emplace_back("Workspace", input.segments.front().limits.region->text());

@@ -131,7 +131,7 @@ HtmlReport& HtmlReport::table(const Table& table, const std::string& caption) {
   return *this;
 }
 
-HtmlReport& HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& name_and_value) {
+HtmlReport& HtmlReport::facts(const Facts& name_and_value) {
   if (name_and_value.empty()) return *this;
   body_ += "<dl>\n";
   for (const auto& [name, value] : name_and_value)

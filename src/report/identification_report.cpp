@@ -46,7 +46,7 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
 
 void add_settings(HtmlReport& report, const Robot& robot, const Identification& identification,
                   const Validation& training, const ReportContext& context) {
-  std::vector<std::pair<std::string, std::string>> facts = source_facts(
+  Facts facts = source_facts(
       context, "Prior", context.parameter_file.empty() ? "nominal values of simple shapes" : context.parameter_file,
       training);
   const ConsistentFitSummary& fit = identification.fit;

@@ -121,7 +121,7 @@ std::string log_report(const Robot& robot, const std::vector<Log>& logs, const R
   report.heading("Channels");
   add_channel_table(report, description, log_figures(logs));
   report.heading("Data");
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  Facts facts = {{"Robot file", context.robot_file}};
   for (const Log& log : logs) {
     facts.emplace_back("Log", fmt::format("{}: {} samples, {} Hz", log.file, format_count(log.samples()),
                                           log.samples() > 1 ? format_number(1 / log.sample_time_s(), "", 4) : "–"));

@@ -49,6 +49,9 @@ class Table {
   std::vector<Row> rows_;
 };
 
+/// Names and values.
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
 /// One large number at the top of a report.
 struct KeyFigure {
   std::string label;      ///< e.g. "residual, drive 1"
@@ -76,7 +79,7 @@ class HtmlReport {
   HtmlReport& list(const std::vector<std::string>& items);
   HtmlReport& table(const Table& table, const std::string& caption = "");
   /// Names on the left, values on the right: what was read, with which settings.
-  HtmlReport& facts(const std::vector<std::pair<std::string, std::string>>& name_and_value);
+  HtmlReport& facts(const Facts& name_and_value);
   HtmlReport& plot(const PlotSpec& spec, const std::string& caption = "") { return plot(std::vector{spec}, caption); }
   HtmlReport& plot(const std::vector<PlotSpec>& panels, const std::string& caption = "");
   /// A section that is folded away until the reader opens it (and printed open).
