@@ -236,17 +236,11 @@ class DiagnosisRun {
   }
 
   detail::SearchContext context() const {
-    return {in_.robot,
-            model_,
-            base_,
-            rows_.logs,
-            basis_,
-            *search_,
-            in_.options,
-            rows_.processing,
-            p_fit_,
-            position_noises_,
-            rows_.held.empty() ? nullptr : &rows_.held.front()};
+    detail::SearchContext context{in_.robot,   model_,           base_, rows_.logs, basis_, *search_,
+                                  in_.options, rows_.processing, p_fit_};
+    context.holdout = rows_.held.empty() ? nullptr : &rows_.held.front();
+    context.position_noise = position_noises_;
+    return context;
   }
 
   /// Bristles and ripples beside what has been found. True if the rows change.
