@@ -7,10 +7,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kShapeStep = 0.02;  // of a shape parameter, either way
@@ -31,14 +27,10 @@ std::vector<Index> free_shapes(const Effect& effect) {
 /// The effect's torque with another shape, white and beside the base model.
 VectorXd white_torque(const SearchContext& context, const WhiteProblem& problem, const Fit& fit,
                       const VectorXd& shape) {
-  Hypothesis one = context.search.hypotheses()[fit.hypothesis];
-  one.shapes = {shape};
-  PerLogAndDrive<MatrixXd> rows;
-  for (const LogRows& log : context.logs) rows.push_back(hypothesis_rows(context.model, log, log.signals, one));
-  const WhiteColumns white = problem.whiten(rows);
-  const Index k = fit.effect.amplitude.size();
-  if (white.cols < k) return VectorXd::Zero(problem.rows);
-  return white.projected(problem.Q, problem.segments, 0, k) * fit.effect.amplitude;
+  Fit other = fit;
+  other.effect.shape = shape;
+  other.rows = hypothesis_rows(context.model, context.logs, hypothesis_of(other.effect));
+  return remaining_torque(problem, other);
 }
 
 }  // namespace
@@ -61,10 +53,10 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
   const Index k = fit.effect.amplitude.size();
   fit.effect.amplitude_std = VectorXd::Zero(k);
   fit.effect.shape_std = VectorXd::Constant(fit.effect.shape.size(), std::nan(""));
-  if (fit.white.cols < k) return;
+  if (fit.white.cols() < k) return;
   const std::vector<Index> shapes = free_shapes(fit.effect);
   MatrixXd J(problem.rows, k + static_cast<Index>(shapes.size()));
-  J.leftCols(k) = fit.white.projected(problem.Q, problem.segments, 0, k);
+  J.leftCols(k) = problem.projected(fit.white);
   const VectorXd r = problem.r - J.leftCols(k) * fit.effect.amplitude;
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     VectorXd up = fit.effect.shape, down = up;

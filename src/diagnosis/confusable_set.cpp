@@ -1,5 +1,3 @@
-#include "confusable_set.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,10 +9,6 @@
 #include "ranking.hpp"
 
 namespace deltadyn::detail {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -47,7 +41,7 @@ double block_std(const SearchContext& context, const WhiteProblem& problem, cons
 std::vector<bool> reached_by_others(const SearchContext& context, const SearchResult& found, std::size_t but) {
   std::vector<bool> out(static_cast<std::size_t>(context.robot.drives()), false);
   for (std::size_t k = 0; k < found.fits.size(); ++k) {
-    if (k == but || found.hygiene[k]) continue;
+    if (k == but || found.fits[k].hygiene) continue;
     const VectorXd theirs = remaining_squares_by_drive(context, *found.before.problem, found.fits[k]);
     for (Index j = 0; j < theirs.size(); ++j) {
       if (theirs(j) > 0.1 * theirs.sum()) out[static_cast<std::size_t>(j)] = true;
@@ -77,14 +71,13 @@ double clear_lead(const WhiteProblem& problem, const std::vector<bool>& reached,
 
 EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit) {
   const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
-  EffectCandidate out;
-  out.effect = fit.effect;
-  out.name = hypothesis.name();
-  out.effect_class = effect_class_name(hypothesis.kind().effect_class);
-  out.joint = hypothesis.joint_name();
-  out.gain = fit.gain;
-  out.p_value = found.null.family_p(fit.hypothesis, fit.grid_gain);
-  return out;
+  return {.effect = fit.effect,
+          .name = hypothesis.name(),
+          .effect_class = std::string(effect_class_name(hypothesis.kind().effect_class)),
+          .joint = hypothesis.joint_name(),
+          .gain = fit.gain,
+          .p_value = found.null.family_p(fit.hypothesis, fit.grid_gain),
+          .why = {}};
 }
 
 std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
@@ -93,8 +86,8 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   const std::vector<bool> reached = reached_by_others(context, found, place);
   const WhiteProblem& problem = *state.problem;
   const Index k = best.effect.amplitude.size();
-  if (best.white.cols < k) return set;
-  const MatrixXd C_best = best.white.projected(problem.Q, problem.segments, 0, k);
+  if (best.white.cols() < k) return set;
+  const MatrixXd C_best = problem.projected(best.white);
   const VectorXd s_best = C_best * best.effect.amplitude;
   const VectorXd r_best = problem.r - s_best;
   const double best_worth = context.search.worth(best.hypothesis, best.gain, state);
@@ -108,8 +101,8 @@ std::vector<EffectCandidate> confusable_set(const SearchContext& context, const 
   for (const std::size_t h : order) {
     const Fit& other = context.search.refine(state, h);
     const Index m = other.effect.amplitude.size();
-    if (other.white.cols < m || hygienic(context, other)) continue;
-    const VectorXd s_other = other.white.projected(problem.Q, problem.segments, 0, m) * other.effect.amplitude;
+    if (other.white.cols() < m || hygienic(context, other)) continue;
+    const VectorXd s_other = problem.projected(other.white) * other.effect.amplitude;
     // Were `other` the truth, how likely would `best` win by so much? Its own direction is what the shapes' freedom
     // leaves.
     const VectorXd coefficients = dense::least_norm(C_best.transpose() * C_best, C_best.transpose() * s_other);

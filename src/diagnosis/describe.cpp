@@ -6,10 +6,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 // Of a signature's square: less is left beside the base model than any noise allows to see
@@ -27,37 +23,24 @@ std::size_t middle_shape(const Hypothesis& hypothesis, const Signature& signatur
 /// Detectable and distinguishable: from the motion alone, before the torque has a say (step 11).
 void what_the_logs_show(const SearchContext& context, const SearchResult& found,
                         std::vector<ConsideredEffect>& considered) {
-  PerLogAndDrive<NoiseModel> unit = found.noise;
-  for (auto& log : unit) {
-    for (NoiseModel& noise : log) {
-      const double size = noise.total_std();
-      noise = NoiseModel();
-      noise.std = size;
-    }
-  }
   const auto& hypotheses = context.search.hypotheses();
-  const EffectSearch::State state = context.search.state(unit, {}, nullptr);
-  std::vector<WhiteColumns> one;
-  std::vector<MatrixXd> gram;
+  const EffectSearch::State state = context.search.state(without_memory(found.noise), {}, nullptr);
+  std::vector<WhiteColumns> one(hypotheses.size());
+  std::vector<MatrixXd> gram(hypotheses.size());
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    const std::size_t shape = middle_shape(hypotheses[h], state.signatures[h]);
+    const Signature& signature = state.signatures[h];
+    const std::size_t shape = middle_shape(hypotheses[h], signature);
     const Index k = hypotheses[h].amplitudes;
-    double kept = 0;
-    for (const double share : state.signatures[h].kept) kept = std::max(kept, share);
-    considered[h].kept = kept;
-    if (state.signatures[h].white.cols == 0) {
-      one.emplace_back();
-      gram.emplace_back();
-      continue;
-    }
-    one.push_back(state.signatures[h].white.part(static_cast<Index>(shape) * k, k));
-    gram.push_back(state.signatures[h].gram[shape]);
+    considered[h].kept = std::ranges::max(signature.kept);
+    if (signature.white.cols() == 0) continue;
+    one[h] = signature.white.part(static_cast<Index>(shape) * k, k);
+    gram[h] = signature.gram[shape];
   }
   for (std::size_t a = 0; a < one.size(); ++a) {
     std::vector<std::pair<double, std::string>> alike;
     for (std::size_t b = 0; b < one.size(); ++b) {
       // One column each: the angle between spans of several would need its own words.
-      if (a == b || one[a].cols != 1 || one[b].cols != 1) continue;
+      if (a == b || one[a].cols() != 1 || one[b].cols() != 1) continue;
       const double size = std::sqrt(gram[a](0, 0) * gram[b](0, 0));
       if (!(size > 0)) continue;
       const double cosine = std::abs(cross_gram(one[a], one[b])(0, 0)) / size;
@@ -71,19 +54,16 @@ void what_the_logs_show(const SearchContext& context, const SearchResult& found,
 
 std::string ruling_of(const SearchContext& context, const SearchResult& found, std::size_t h,
                       const ConsideredEffect& one) {
-  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
-    if (found.fits[k].hypothesis == h) return found.hygiene[k] ? "about a sample: corrected" : kFound;
-    for (const EffectCandidate& other : found.sets[k]) {
-      if (other.name == one.name && other.joint == one.joint)
-        return kLikeAnother + std::string(effect_kind(found.fits[k].effect.id).name);
-    }
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
+    if (found.fits[k].hypothesis == h) return found.fits[k].hygiene ? "about a sample: corrected" : kFound;
+    if (std::ranges::any_of(found.sets[k], [&](const EffectCandidate& other) { return is_of(one, other); }))
+      return kLikeAnother + std::string(effect_kind(found.fits[k].effect.id).name);
   }
   if (one.kept < kHidden) return "these motions cannot show it: a re-fit of the parameters absorbs it";
   const double alpha = context.options.false_naming_rate;
   if (one.p_left <= alpha) return "a trace too small to matter, or what the named effect's form leaves";
   if (one.p_alone <= alpha && !found.fits.empty()) {
-    const Fit& first = *std::max_element(found.fits.begin(), found.fits.end(),
-                                         [](const Fit& a, const Fit& b) { return a.gain < b.gain; });
+    const Fit& first = *std::ranges::max_element(found.fits, {}, &Fit::gain);
     return fmt::format("ruled out: alone {:.3g} % of what {} explains, beside it nothing",
                        100 * one.gain_alone / first.gain, effect_kind(first.effect.id).name);
   }
@@ -97,8 +77,7 @@ std::string ruling_of(const SearchContext& context, const SearchResult& found, s
 std::vector<RowCount> row_counts(const SearchContext& context, std::size_t drive) {
   std::vector<RowCount> out;
   const auto add = [&](const LogRows& log) {
-    const Index whole = log.usable[drive].count();
-    out.push_back({whole, (log.present[drive] && !log.usable[drive]).count(), log.rows()});
+    out.push_back({log.usable[drive].count(), (log.present[drive] && !log.usable[drive]).count(), log.rows()});
   };
   for (const LogRows& log : context.logs) add(log);
   if (context.holdout != nullptr) add(*context.holdout);
@@ -107,14 +86,17 @@ std::vector<RowCount> row_counts(const SearchContext& context, std::size_t drive
 
 }  // namespace
 
+bool is_of(const ConsideredEffect& one, const EffectCandidate& candidate) {
+  return one.name == candidate.name && one.joint == candidate.joint;
+}
+
 void settle_rulings(Diagnosis& out) {
   if (!gives_a_name(out.verdict)) return;
   for (ConsideredEffect& one : out.considered) {
-    const auto same = [&](const EffectCandidate& other) { return other.name == one.name && other.joint == one.joint; };
-    const auto set = std::find_if(out.named.begin(), out.named.end(), [&](const NamedEffect& named) {
-      return std::any_of(named.confusable.begin(), named.confusable.end(), same);
-    });
-    if (std::any_of(out.named.begin(), out.named.end(), same)) {
+    const auto same = [&](const EffectCandidate& other) { return is_of(one, other); };
+    const auto set = std::ranges::find_if(
+        out.named, [&](const NamedEffect& named) { return std::ranges::any_of(named.confusable, same); });
+    if (std::ranges::any_of(out.named, same)) {
       one.ruling = kFound;
     } else if (set != out.named.end()) {
       one.ruling = kLikeAnother + set->name;
@@ -122,6 +104,20 @@ void settle_rulings(Diagnosis& out) {
       one.ruling = "fits, but is not confirmed";
     }
   }
+}
+
+DiagnosisTrace trace_of(const LogRows& log) {
+  DiagnosisTrace out;
+  out.file = log.log.file;
+  out.t_s = log.t_s;
+  out.q = log.q;
+  out.qd = log.qd;
+  out.torque = log.tau;
+  if (log.ripple.size() > 0) out.torque += log.ripple;
+  for (MatrixXd* residual : {&out.before, &out.after}) residual->resize(log.rows(), log.tau.cols());
+  out.usable.resize(log.rows(), log.tau.cols());
+  for (std::size_t j = 0; j < log.usable.size(); ++j) out.usable.col(static_cast<Index>(j)) = log.usable[j];
+  return out;
 }
 
 void say_too_short(double length_s, double needed_s, Diagnosis& out) {
@@ -138,37 +134,28 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
                      const std::vector<Effect>& model, Diagnosis& out) {
   const auto& logs = context.logs;
   const Index n = context.robot.drives();
-  const Index b = context.base.count();
-  const std::vector<LogRows> corrected = context.search.corrected(found.accepted);
-  const PerLogAndDrive<MatrixXd> known = context.search.extra({}), all = context.search.extra(found.accepted);
+  const std::vector<LogRows> corrected = context.search.corrected(found.fits);
+  const PerLogAndDrive<MatrixXd> known = context.search.extra({}), all = context.search.extra(found.fits);
   const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
-  const VectorXd beta_given = context.base.B * p, amplitudes_given = amplitudes_of(model);
-  std::vector<double> before(static_cast<std::size_t>(n), 0), given = before, after = before, floor = before,
-                                                              count = before, white_rows = before;
+  VectorXd beta_given(beta0.size());
+  beta_given << context.base.B * p, amplitudes_of(model);
+  std::vector<double> count(static_cast<std::size_t>(n), 0), white_rows = count;
+  out.drives.resize(count.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    DiagnosisTrace trace;
-    trace.file = logs[l].log.file;
-    trace.t_s = logs[l].t_s;
-    trace.q = logs[l].q;
-    trace.qd = logs[l].qd;
-    trace.torque = logs[l].tau;
-    if (logs[l].ripple.size() > 0) trace.torque += logs[l].ripple;
-    trace.before.resize(logs[l].rows(), n);
-    trace.after.resize(logs[l].rows(), n);
-    trace.usable.resize(logs[l].rows(), n);
+    DiagnosisTrace trace = trace_of(logs[l]);
     for (Index j = 0; j < n; ++j) {
       const auto drive = static_cast<std::size_t>(j);
-      trace.before.col(j) =
-          logs[l].tau.col(j) - logs[l].Y[drive] * beta0.head(b) - known[l][drive] * beta0.tail(beta0.size() - b);
-      trace.after.col(j) =
-          corrected[l].tau.col(j) - logs[l].Y[drive] * beta1.head(b) - all[l][drive] * beta1.tail(beta1.size() - b);
-      trace.usable.col(j) = logs[l].usable[drive];
-      const auto rows = static_cast<double>(logs[l].usable[drive].count());
-      before[drive] += logs[l].usable[drive].select(trace.before.col(j).array(), 0.0).square().sum();
-      after[drive] += logs[l].usable[drive].select(trace.after.col(j).array(), 0.0).square().sum();
-      const VectorXd e = logs[l].tau.col(j) - logs[l].Y[drive] * beta_given - known[l][drive] * amplitudes_given;
-      given[drive] += logs[l].usable[drive].select(e.array(), 0.0).square().sum();
-      floor[drive] += rows * found.floor[l][drive] * found.floor[l][drive];
+      DriveFit& squares = out.drives[drive];
+      const MatrixXd& Y = logs[l].Y[drive];
+      const RowMask& usable = logs[l].usable[drive];
+      trace.before.col(j) = without_model(logs[l].tau.col(j), Y, known[l][drive], beta0);
+      trace.after.col(j) = without_model(corrected[l].tau.col(j), Y, all[l][drive], beta1);
+      const auto rows = static_cast<double>(usable.count());
+      squares.rms += usable.select(trace.before.col(j).array(), 0.0).square().sum();
+      squares.rms_after += usable.select(trace.after.col(j).array(), 0.0).square().sum();
+      const VectorXd e = without_model(logs[l].tau.col(j), Y, known[l][drive], beta_given);
+      squares.rms_given += usable.select(e.array(), 0.0).square().sum();
+      squares.floor += rows * found.floor[l][drive] * found.floor[l][drive];
       count[drive] += rows;
     }
     out.traces.push_back(std::move(trace));
@@ -177,26 +164,19 @@ void describe_drives(const SearchContext& context, const SearchResult& found, co
     white_rows[segment.drive] += static_cast<double>(segment.whitener.freedom());
   for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
     const auto at = static_cast<Index>(j);
-    DriveFit drive;
+    DriveFit& drive = out.drives[j];
     drive.rows = row_counts(context, j);
-    drive.rms = std::sqrt(before[j] / std::max(1.0, count[j]));
-    drive.rms_after = std::sqrt(after[j] / std::max(1.0, count[j]));
-    drive.rms_given = std::sqrt(given[j] / std::max(1.0, count[j]));
-    drive.floor = std::sqrt(floor[j] / std::max(1.0, count[j]));
+    for (double* figure : {&drive.rms, &drive.rms_after, &drive.rms_given, &drive.floor})
+      *figure = std::sqrt(*figure / std::max(1.0, count[j]));
     const double chance = found.null.omnibus[j].quantile(0.5);
     const double excess = std::max(0.0, found.structure_before(at) - chance);
     drive.structure = excess / std::max(1.0, excess + white_rows[j]);
     drive.p_value = found.null.omnibus[j].p_value(found.structure_before(at));
     drive.p_left = found.null.omnibus[j].p_value(found.structure_after(at));
-    double sum = 0;
-    for (auto& [name, gain] : found.omnibus_before.by_coordinate(*found.before.problem, found.before.problem->r, j)) {
-      drive.follows.emplace_back(name, gain);
-      sum = std::max(sum, gain);
-    }
-    for (auto& entry : drive.follows) entry.second /= std::max(sum, 1e-300);
-    std::sort(drive.follows.begin(), drive.follows.end(),
-              [](const auto& x, const auto& y) { return x.second > y.second; });
-    out.drives.push_back(std::move(drive));
+    drive.follows = found.omnibus_before.by_coordinate(*found.before.problem, j);
+    std::ranges::sort(drive.follows, std::greater(), &std::pair<std::string, double>::second);
+    const double largest = drive.follows.empty() ? 0.0 : drive.follows.front().second;
+    for (auto& [name, gain] : drive.follows) gain /= std::max(largest, 1e-300);
   }
 
   const auto& hypotheses = context.search.hypotheses();

@@ -4,35 +4,22 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <memory>
 #include <set>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
-#include "diagnosis_steps.hpp"
-#include "effect_search.hpp"
-#include "explains_more.hpp"
 #include "improve.hpp"
 #include "prepare_rows.hpp"
 #include "written_proof.hpp"
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 const char* verdict_name(DiagnosisVerdict verdict) {
-  switch (verdict) {
-    case DiagnosisVerdict::nothing_missing: return "nothing-missing";
-    case DiagnosisVerdict::named: return "named";
-    case DiagnosisVerdict::confusable: return "confusable";
-    case DiagnosisVerdict::unknown_structure: return "unknown-structure";
-    case DiagnosisVerdict::not_testable: return "not-testable";
-  }
-  return "";
+  static constexpr const char* kNames[] = {"nothing-missing", "named", "confusable", "unknown-structure",
+                                           "not-testable"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 void DiagnosisOptions::validate() const {
@@ -115,27 +102,19 @@ void refuse_training_log(const std::vector<Log>& logs, const Log& holdout) {
 /// The search in its rows, which bristles and ripples that turn out otherwise change.
 class DiagnosisRun {
  public:
-  DiagnosisRun(const Robot& robot, const std::vector<Log>& all_logs, const Log* holdout, const VectorXd& p,
-               const VectorXd& p_std, const std::vector<Effect>& all_known, const DiagnosisOptions& options,
-               Diagnosis& out)
-      : robot_(robot),
-        all_logs_(all_logs),
-        holdout_(holdout),
-        p_(p),
-        p_std_(p_std),
-        all_known_(all_known),
-        options_(options),
+  DiagnosisRun(const detail::DiagnosisInput& input, Diagnosis& out)
+      : in_(input),
         out_(out),
-        wanted_(options.processing),
-        base_(find_base_parameters(robot)),
-        model_(robot),
-        p_fit_(p) {}
+        wanted_(input.options.processing),
+        base_(find_base_parameters(input.robot)),
+        model_(input.robot),
+        p_fit_(input.p) {}
 
   /// \param cutoff_hz  of the search; 0: chosen from the logs
   /// \returns false if the logs are too short, which then is said
   bool prepare(double cutoff_hz) {
     double length = 0;
-    for (const Log& log : all_logs_) length += static_cast<double>(log.samples()) * log.sample_time_s();
+    for (const Log& log : in_.logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
     double widest_hz = 0;
     if (wanted_.periods == Periods::given)
       out_.notes.push_back("periods are not averaged here: every log is used as it is");
@@ -143,10 +122,10 @@ class DiagnosisRun {
       detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz, wanted_.cutoff_hz};
       if (cutoff_hz > 0) {
         cutoff = {cutoff_hz, cutoff_hz, cutoff_hz};
-      } else if (options_.choose_cutoff) {
+      } else if (in_.options.choose_cutoff) {
         // A delay, which the search weighs, must not end the band in which the model holds.
-        const std::vector<Log> mended = detail::as_validated(robot_, all_logs_, {});
-        cutoff = detail::search_cutoff(robot_, base_, mended, wanted_, options_.threads);
+        const std::vector<Log> mended = detail::as_validated(in_.robot, in_.logs, {});
+        cutoff = detail::search_cutoff(in_.robot, base_, mended, wanted_, in_.options.threads);
       }
       out_.cutoff_hz = cutoff.chosen_hz;
       widest_hz = cutoff.widest_hz;
@@ -165,7 +144,7 @@ class DiagnosisRun {
       detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest_.count, 1.0), out_);
       return false;
     }
-    p_fit_ = refit_parameters(base_, rows_.logs, p_);
+    p_fit_ = refit_parameters(base_, rows_.logs, in_.p);
     if (widest_hz > kOtherBand * out_.cutoff_hz) wider_hz_ = widest_hz;
     return true;
   }
@@ -179,8 +158,8 @@ class DiagnosisRun {
     found_ = detail::search_effects(context(), out_);
     // Loads, torques and tilts were those of a model that had to make up for what is missing: again with the better
     // one. So were bristles and ripples: where they turn out otherwise, the rows are new, too.
-    for (int pass = 0; pass < kMostPasses && !found_.accepted.empty(); ++pass) {
-      p_fit_ = closest_parameters(base_, found_.after.problem->beta.head(base_.count()), p_);
+    for (int pass = 0; pass < kMostPasses && !found_.fits.empty(); ++pass) {
+      p_fit_ = closest_parameters(base_, found_.after.problem->beta.head(base_.count()), in_.p);
       const bool new_rows = pass == 0 && find_extras_anew();
       if (new_rows) make_rows();
       set_up();
@@ -193,8 +172,8 @@ class DiagnosisRun {
 
   void name() {
     const detail::SearchContext now = context();
-    detail::describe_drives(now, found_, p_, known_, out_);
-    for (const int joint : rows_.masked) {
+    detail::describe_drives(now, found_, in_.p, known_, out_);
+    for (const int joint : masked_) {
       out_.notes.push_back(fmt::format(
           "rows near reversals of drive {} do not follow the known build-up of its friction: left out", joint + 1));
     }
@@ -206,7 +185,7 @@ class DiagnosisRun {
 
  private:
   void report(double share) const {
-    if (options_.progress) options_.progress(share);
+    if (in_.options.progress) in_.options.progress(share);
   }
 
   void use_cutoff(double cutoff_hz) {
@@ -219,16 +198,15 @@ class DiagnosisRun {
   [[nodiscard]] bool too_few() const { return fewest_.count < rows_needed(); }
   [[nodiscard]] double rows_needed() const { return std::max(120.0, kFewestRowsPerBase * base_.count()); }
 
-  detail::ImproveInput input() const {
-    return {robot_, all_logs_, holdout_, p_, p_std_, p_fit_, all_known_, wanted_, masked_, options_};
-  }
+  detail::ImproveInput input() const { return {in_, p_fit_, wanted_, masked_, out_.cutoff_hz}; }
 
   /// Known effects whose shape is their amplitude are taken off at once, the others are fitted along.
   void take_fixed_effects_off() {
     std::vector<Effect> fixed;
-    for (const Effect& effect : all_known_) (effect_kind(effect.id).tied ? fixed : known_).push_back(effect);
-    logs_ = without_effects(robot_, all_logs_, p_, fixed, motion_hz());
-    if (holdout_ != nullptr) held_log_ = without_effects(robot_, {*holdout_}, p_, fixed, motion_hz()).front();
+    for (const Effect& effect : in_.known) (effect_kind(effect.id).tied ? fixed : known_).push_back(effect);
+    logs_ = without_effects(in_.robot, in_.logs, in_.p, fixed, motion_hz());
+    if (in_.holdout != nullptr)
+      held_log_ = without_effects(in_.robot, {*in_.holdout}, in_.p, fixed, motion_hz()).front();
     for (const Log& log : logs_) {
       position_noises_.emplace_back();
       for (Index j = 0; j < log.q.cols(); ++j) position_noises_.back().push_back(position_noise(log.q.col(j)));
@@ -236,14 +214,15 @@ class DiagnosisRun {
   }
 
   void make_rows() {
-    rows_ =
-        detail::prepare_rows(robot_, base_, logs_, held_log_ ? &*held_log_ : nullptr, wanted_, out_.cutoff_hz, masked_);
+    rows_ = detail::prepare_rows(in_.robot, base_, logs_, held_log_ ? &*held_log_ : nullptr, wanted_, out_.cutoff_hz,
+                                 masked_);
   }
 
   /// \param effects  that were found by now
   void judge_bristles(const std::vector<Effect>& effects) {
-    masked_ = detail::drives_without_hold(model_, base_, without_effects(robot_, logs_, p_fit_, effects, motion_hz()),
-                                          wanted_, out_.cutoff_hz, p_fit_);
+    masked_ =
+        detail::drives_without_hold(model_, base_, without_effects(in_.robot, logs_, p_fit_, effects, motion_hz()),
+                                    wanted_, out_.cutoff_hz, p_fit_);
   }
 
   double motion_hz() const { return wanted_.motion_over_pass * out_.cutoff_hz; }
@@ -257,8 +236,8 @@ class DiagnosisRun {
   }
 
   detail::SearchContext context() const {
-    detail::SearchContext context{robot_,   model_,           base_, rows_.logs, basis_, *search_,
-                                  options_, rows_.processing, p_fit_};
+    detail::SearchContext context{in_.robot,   model_,           base_, rows_.logs, basis_, *search_,
+                                  in_.options, rows_.processing, p_fit_};
     context.holdout = rows_.held.empty() ? nullptr : &rows_.held.front();
     context.position_noise = position_noises_;
     return context;
@@ -267,25 +246,18 @@ class DiagnosisRun {
   /// Bristles and ripples beside what has been found. True if the rows change.
   bool find_extras_anew() {
     if (!(wanted_.presliding.array() > 0).any() && wanted_.ripples.empty()) return false;
-    std::vector<Effect> effects = all_known_;
+    std::vector<Effect> effects = in_.known;
     for (const Fit& fit : found_.fits) effects.push_back(fit.effect);
     const ProcessingOptions before = wanted_;
     const std::vector<int> masked_before = masked_;
-    const Identification beside = detail::identify_beside(input(), all_logs_, effects, out_.cutoff_hz, false);
-    wanted_.presliding = beside.processing.presliding;
-    wanted_.presliding_damping_s = beside.processing.presliding_damping_s;
-    wanted_.ripples = beside.processing.ripples;
-    effects.erase(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(all_known_.size() - known_.size()));
+    const Identification beside = detail::identify_beside(input(), in_.logs, effects, false);
+    detail::take_extras(beside.processing, wanted_);
+    effects.erase(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(in_.known.size() - known_.size()));
     judge_bristles(effects);
     return masked_ != masked_before || extras_differ(before, wanted_, masked_);
   }
 
-  const Robot& robot_;
-  const std::vector<Log>& all_logs_;
-  const Log* holdout_;
-  const VectorXd &p_, &p_std_;
-  const std::vector<Effect>& all_known_;
-  const DiagnosisOptions& options_;
+  const detail::DiagnosisInput& in_;
   Diagnosis& out_;
   ProcessingOptions wanted_;  ///< with the bristles and ripples that are known by now
   BaseParameters base_;
@@ -312,13 +284,14 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* 
   options.validate();
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   if (holdout != nullptr) refuse_training_log(logs, *holdout);
+  const detail::DiagnosisInput input{robot, logs, holdout, p, p_std, known, options};
   double wider_hz = 0;
   const auto search = [&](double cutoff_hz) {
     Diagnosis out;
     out.null_runs = options.null_runs;
     out.effects = known;
-    out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-    DiagnosisRun run(robot, logs, holdout, p, p_std, known, options, out);
+    detail::forget_gap(out);
+    DiagnosisRun run(input, out);
     if (run.prepare(cutoff_hz)) {
       wider_hz = run.wider_hz();
       run.search();

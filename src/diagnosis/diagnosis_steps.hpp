@@ -4,7 +4,6 @@
 /// The steps of diagnose(), between them the search's result.
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,16 @@
 #include "effect_search.hpp"
 
 namespace deltadyn::detail {
+
+/// What diagnose() is given.
+struct DiagnosisInput {
+  const Robot& robot;
+  const std::vector<Log>& logs;
+  const Log* holdout;
+  const VectorXd &p, &p_std;         ///< of the model as given
+  const std::vector<Effect>& known;  ///< effects of the model as given
+  const DiagnosisOptions& options;
+};
 
 struct SearchContext {
   const Robot& robot;
@@ -23,7 +32,7 @@ struct SearchContext {
   const EffectSearch& search;
   const DiagnosisOptions& options;
   const ProcessingOptions& processing;
-  const Eigen::VectorXd& p;
+  const VectorXd& p;
   PerLogAndDrive<double> position_noise = {};
   const LogRows* holdout = nullptr;  ///< evaluated in `basis` behind the logs
 };
@@ -35,12 +44,13 @@ struct SearchResult {
   std::shared_ptr<const EncoderPilots> pilots;
   NullStudy null;
   Omnibus omnibus_before, omnibus_after;
-  Eigen::VectorXd structure_before, structure_after;  ///< gains of the generic basis, one a drive
-  std::vector<AcceptedEffect> accepted;
-  std::vector<Fit> fits;      ///< of the accepted effects
-  std::vector<bool> hygiene;  ///< a skew of about a sample and the like: corrected, but nobody's missing effect
+  VectorXd structure_before, structure_after;      ///< gains of the generic basis, one a drive
+  std::vector<Fit> fits;                           ///< of the accepted effects
   std::vector<std::vector<EffectCandidate>> sets;  ///< what each could be besides
 };
+
+/// Motion, torque and rows of a log, with room for the residuals.
+[[nodiscard]] DiagnosisTrace trace_of(const LogRows& log);
 
 void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
@@ -52,7 +62,7 @@ void say_too_short(double length_s, double needed_s, Diagnosis& out);
 
 /// Fits and structure of every drive, and the list of all effects considered.
 /// \param p,known  the model that the user gave
-void describe_drives(const SearchContext& context, const SearchResult& found, const Eigen::VectorXd& p,
+void describe_drives(const SearchContext& context, const SearchResult& found, const VectorXd& p,
                      const std::vector<Effect>& known, Diagnosis& out);
 
 /// Steps 9 and 10: names, unknown structure, proof on the hold-out log.
@@ -62,11 +72,52 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
 /// named, or confusable if one has a set.
 [[nodiscard]] DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named);
 
+/// Is it this effect at this place?
+[[nodiscard]] bool is_of(const ConsideredEffect& one, const EffectCandidate& candidate);
+
 /// Names and sets may have changed since the effects were ruled on: the rulings say what holds at the end.
 void settle_rulings(Diagnosis& out);
 
+/// "stribeck at drive1 and backlash at drive2", with this between them.
+template <class Candidate>
+[[nodiscard]] std::string listed(const std::vector<Candidate>& candidates, const char* between) {
+  std::string text;
+  for (const Candidate& one : candidates) text += (text.empty() ? "" : between) + one.at_joint();
+  return text;
+}
+
+/// Drives that the effects reach.
+[[nodiscard]] std::vector<int> reached_drives(const std::vector<NamedEffect>& named);
+/// Root mean square over drives.
+/// \param rms  of each drive
+[[nodiscard]] double rms_over(const std::vector<int>& drives, const VectorXd& rms);
+
+[[nodiscard]] bool turns(const Robot& robot, int drive);
+/// Of its torque.
+[[nodiscard]] const char* unit_of_drive(const Robot& robot, int drive);
+
+/// Forgets how much of the gap on the hold-out log is closed.
+void forget_gap(Diagnosis& out);
+
+/// Does so large a share of a drive's noise variance, which no name explains, call for attention?
+[[nodiscard]] bool is_overt(const Diagnosis& out, double largest_share);
+
+/// A fit as a candidate: names, gain and its chance on clean logs.
+[[nodiscard]] EffectCandidate candidate_of(const SearchContext& context, const SearchResult& found, const Fit& fit);
+
+/// Step 7: everything that the data cannot tell from `best` beside the other effects.
+/// \param state  beside the others
+/// \param place  of `best` in `found`
+[[nodiscard]] std::vector<EffectCandidate> confusable_set(const SearchContext& context, const SearchResult& found,
+                                                          const EffectSearch::State& state, const Fit& best,
+                                                          std::size_t place);
+
 /// The verdict in words, and what to do next.
 void say(const SearchContext& context, Diagnosis& out);
+
+/// Of two diagnoses of the same logs in bands of different width, is `one` to be kept: does it name what `other` does
+/// not, or leave less of the hold-out log (without one: of the structure) beside its names?
+[[nodiscard]] bool explains_more(const Diagnosis& one, const Diagnosis& other);
 
 /// Standard deviations of a fit's amplitudes and of its free shapes, fitted together: the larger of what the noise
 /// model and what the residual's own blocks say, and beside it a share of the amplitude for the form of the column.
@@ -74,8 +125,8 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
 
 /// White rows of a segment in blocks of a quarter of a second, longer than what counts as memory of the noise: first
 /// row and number.
-[[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> row_blocks(const SearchContext& context,
-                                                                            const WhiteSegment& segment);
+[[nodiscard]] std::vector<std::pair<Index, Index>> row_blocks(const SearchContext& context,
+                                                              const WhiteSegment& segment);
 
 /// Rows a drive has on average: what the size of a gain is compared with.
 [[nodiscard]] double rows_per_drive(const SearchContext& context, const WhiteProblem& problem);
@@ -83,25 +134,22 @@ void set_uncertainty(const SearchContext& context, const EffectSearch::State& st
 /// What a re-fit of the problem's model leaves of a torque, in the rows of the logs [N m | N]: C a - [Y E] b for the b
 /// that takes most, E the columns of the effects that the model holds.
 struct Remainder {
-  Eigen::VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
-  PerLogAndDrive<Eigen::VectorXd> torque;  ///< [log][drive]; empty where there is none
+  VectorXd beta;                    ///< b: base parameters, then amplitudes of the effects
+  PerLogAndDrive<VectorXd> torque;  ///< [log][drive]; empty where there is none
 };
 /// \param columns  [log][drive] rows x k, empty where a drive is not reached
 [[nodiscard]] Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
-                                     const PerLogAndDrive<Eigen::MatrixXd>& columns, const Eigen::VectorXd& amplitude);
+                                     const PerLogAndDrive<MatrixXd>& columns, const VectorXd& amplitude);
 /// Mean square of a remainder over the noise variance of each drive.
-[[nodiscard]] Eigen::VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
-                                           const PerLogAndDrive<double>& floor);
+[[nodiscard]] VectorXd noise_shares(const SearchContext& context, const Remainder& remainder,
+                                    const PerLogAndDrive<double>& floor);
 
-/// Squares of an effect's white torque, one value a drive.
-[[nodiscard]] Eigen::VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
-                                               const Fit& fit);
 /// What a re-fit of the problem's model leaves of an effect's white torque, in the problem's rows. The fit may be one
 /// beside other effects.
-[[nodiscard]] Eigen::VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
+[[nodiscard]] VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit);
 /// Its squares, one value a drive: it also stands on drives that the effect itself does not reach.
-[[nodiscard]] Eigen::VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
-                                                         const Fit& fit);
+[[nodiscard]] VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem,
+                                                  const Fit& fit);
 
 /// Ruling of an effect that the search has found.
 inline constexpr const char* kFound = "found";

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/golden_section.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 
 namespace deltadyn {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -25,21 +23,6 @@ PerLogAndDrive<MatrixXd> columns_of(const PerLogAndDrive<MatrixXd>& rows, Index 
   return out;
 }
 
-void append(PerLogAndDrive<MatrixXd>& to, const PerLogAndDrive<MatrixXd>& from, Index columns) {
-  for (std::size_t l = 0; l < to.size(); ++l) {
-    for (std::size_t j = 0; j < to[l].size(); ++j) {
-      MatrixXd& target = to[l][j];
-      const Index first = target.cols();
-      target.conservativeResize(Eigen::NoChange, first + columns);
-      if (from[l][j].size() > 0) {
-        target.rightCols(columns) = from[l][j];
-      } else {
-        target.rightCols(columns).setZero();
-      }
-    }
-  }
-}
-
 /// How a shape parameter may move between the start values: factor down and up, or step.
 struct Reach {
   bool free = false, logarithmic = true;
@@ -51,23 +34,20 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
   const ShapeSearch& search = kind.search;
   const double value = shape(static_cast<Index>(parameter));
   if (!shape_is_free(hypothesis.id, parameter, shape)) return {};
-  if (kind.scale == ShapeScale::waves) {
-    double spacing = 0.25 * std::abs(value), longest = value;
-    for (const VectorXd& other : hypothesis.shapes) {
-      longest = std::min(longest, other(0));
-      const double distance = std::abs(other(0) - value);
-      if (distance > 1e-12) spacing = std::min(spacing, distance);
-    }
-    // The longest start value is one wave over the range.
-    const bool whole = search.least >= 1;
-    return {true, false, whole ? std::max(value - spacing, longest) : value - spacing, value + spacing};
+  double next = std::numeric_limits<double>::infinity(),
+         least = value;  // distance of the next start value, and the least
+  for (const VectorXd& other : hypothesis.shapes) {
+    const double start = other(static_cast<Index>(parameter)), distance = std::abs(start - value);
+    least = std::min(least, start);
+    if (distance > 1e-12) next = std::min(next, distance);
   }
-  if (kind.scale == ShapeScale::place) {
-    double spacing = 0;  // to the next start value, or as far again beyond the last
-    for (const VectorXd& other : hypothesis.shapes) {
-      const double distance = std::abs(other(static_cast<Index>(parameter)) - value);
-      if (distance > 1e-12 && (spacing == 0 || distance < spacing)) spacing = distance;
-    }
+  if (kind.scale == ShapeScale::waves) {
+    const double spacing = std::min(0.25 * std::abs(value), next);
+    // The longest start value is one wave over the range.
+    return {true, false, search.least >= 1 ? std::max(value - spacing, least) : value - spacing, value + spacing};
+  }
+  if (kind.scale == ShapeScale::place) {  // to the next start value, or as far again beyond the last
+    const double spacing = std::isfinite(next) ? next : 0.0;
     return {true, false, value - spacing, value + spacing};
   }
   if (search.kind == ShapeSearch::by_difference)
@@ -75,60 +55,81 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
   return {true, true, search.low * value, search.high * value};
 }
 
+/// Of the shape with the best score; empty: none.
+VectorXd bias_of(const EffectSearch::State& state, std::size_t h) {
+  const Index k = state.scores[h].amplitude.size();
+  return state.bias[h].size() > 0 ? VectorXd(state.bias[h].segment(static_cast<Index>(state.scores[h].shape) * k, k))
+                                  : VectorXd();
+}
+
 }  // namespace
+
+PerLogAndDrive<MatrixXd> no_columns(const std::vector<LogRows>& logs) {
+  PerLogAndDrive<MatrixXd> out;
+  for (const LogRows& log : logs) out.emplace_back(log.usable.size(), MatrixXd(log.rows(), 0));
+  return out;
+}
+
+void append_columns(PerLogAndDrive<MatrixXd>& to, const PerLogAndDrive<MatrixXd>& from, Index columns) {
+  for (std::size_t l = 0; l < to.size(); ++l) {
+    for (std::size_t j = 0; j < to[l].size(); ++j) {
+      MatrixXd& target = to[l][j];
+      target.conservativeResize(Eigen::NoChange, target.cols() + columns);
+      target.rightCols(columns).setZero();
+      if (from[l][j].size() > 0) target.rightCols(columns) = from[l][j];
+    }
+  }
+}
+
+void take_off(const PerLogAndDrive<MatrixXd>& rows, const VectorXd& amplitude, std::vector<LogRows>& logs) {
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    for (std::size_t j = 0; j < rows[l].size(); ++j) {
+      if (rows[l][j].size() > 0) logs[l].tau.col(static_cast<Index>(j)) -= rows[l][j] * amplitude;
+    }
+  }
+}
 
 EffectSearch::EffectSearch(const EffectModel& model, const std::vector<LogRows>& logs, const GenericBasis& basis,
                            const std::vector<Effect>& known, const VectorXd& presliding)
-    : model_(model), logs_(logs), basis_(basis), hypotheses_(all_hypotheses(model.robot(), logs, known)), rows_() {
+    : model_(model),
+      logs_(logs),
+      basis_(basis),
+      hypotheses_(all_hypotheses(model.robot(), logs, known)),
+      known_rows_(no_columns(logs)) {
   std::erase_if(hypotheses_, [&](const Hypothesis& one) {
     return one.kind().role == Role::bristle && one.joint < presliding.size() && presliding(one.joint) > 0;
   });
   rows_.resize(hypotheses_.size());
-  in_parallel(hypotheses_.size(), [&](std::size_t h) {
-    for (const LogRows& log : logs_) rows_[h].push_back(hypothesis_rows(model_, log, log.signals, hypotheses_[h]));
-  });
-  for (const LogRows& log : logs_) {
-    known_rows_.emplace_back();
-    for (std::size_t j = 0; j < log.usable.size(); ++j) known_rows_.back().push_back(MatrixXd(log.rows(), 0));
-  }
+  in_parallel(hypotheses_.size(), [&](std::size_t h) { rows_[h] = hypothesis_rows(model_, logs_, hypotheses_[h]); });
   for (const Effect& effect : known) {
-    Hypothesis hypothesis{
-        effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
-    PerLogAndDrive<MatrixXd> rows;
-    for (const LogRows& log : logs_) rows.push_back(hypothesis_rows(model_, log, log.signals, hypothesis));
-    append(known_rows_, rows, hypothesis.amplitudes);
+    const Hypothesis hypothesis = hypothesis_of(effect);
+    append_columns(known_rows_, hypothesis_rows(model_, logs_, hypothesis), hypothesis.amplitudes);
   }
 }
 
-PerLogAndDrive<MatrixXd> EffectSearch::extra(const std::vector<AcceptedEffect>& accepted) const {
+PerLogAndDrive<MatrixXd> EffectSearch::extra(const std::vector<Fit>& accepted) const {
   PerLogAndDrive<MatrixXd> out = known_rows_;
-  for (const AcceptedEffect& one : accepted) {
+  for (const Fit& one : accepted) {
     const Hypothesis& hypothesis = hypotheses_[one.hypothesis];
-    if (!hypothesis.kind().tied) append(out, one.rows, hypothesis.amplitudes);
+    if (!hypothesis.kind().tied) append_columns(out, one.rows, hypothesis.amplitudes);
   }
   return out;
 }
 
-std::vector<LogRows> EffectSearch::corrected(const std::vector<AcceptedEffect>& accepted) const {
+std::vector<LogRows> EffectSearch::corrected(const std::vector<Fit>& accepted) const {
   std::vector<LogRows> out = logs_;
-  for (const AcceptedEffect& one : accepted) {
-    if (!hypotheses_[one.hypothesis].kind().tied) continue;
-    for (std::size_t l = 0; l < out.size(); ++l) {
-      for (std::size_t j = 0; j < one.rows[l].size(); ++j) {
-        if (one.rows[l][j].size() > 0) out[l].tau.col(static_cast<Index>(j)) -= one.rows[l][j] * one.effect.amplitude;
-      }
-    }
+  for (const Fit& one : accepted) {
+    if (effect_kind(one.effect.id).tied) take_off(one.rows, one.effect.amplitude, out);
   }
   return out;
 }
 
-NoiseEstimate EffectSearch::noise_beside(const std::vector<AcceptedEffect>& accepted,
+NoiseEstimate EffectSearch::noise_beside(const std::vector<Fit>& accepted,
                                          const PerLogAndDrive<NoiseModel>* start) const {
   return estimate_noise(corrected(accepted), basis_, extra(accepted), start);
 }
 
-EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
-                                        const std::vector<AcceptedEffect>& accepted,
+EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<Fit>& accepted,
                                         const EncoderPilots* pilots) const {
   State out;
   out.problem = std::make_unique<WhiteProblem>(corrected(accepted), noise, extra(accepted));
@@ -136,8 +137,7 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
   out.scores.resize(hypotheses_.size());
   out.bias.resize(hypotheses_.size());
   std::vector<char> held(hypotheses_.size(), 0);
-  for (const AcceptedEffect& one : accepted) held[one.hypothesis] = 1;
-  const VectorXd Q_r = out.problem->Q.transpose() * out.problem->r;
+  for (const Fit& one : accepted) held[one.hypothesis] = 1;
   in_parallel(hypotheses_.size(),
               [&](std::size_t h) { out.signatures[h] = make_signature(*out.problem, hypotheses_[h], rows_[h]); });
   if (pilots != nullptr) {
@@ -147,15 +147,25 @@ EffectSearch::State EffectSearch::state(const PerLogAndDrive<NoiseModel>& noise,
   in_parallel(hypotheses_.size(), [&](std::size_t h) {
     out.scores[h].amplitude = VectorXd::Zero(hypotheses_[h].amplitudes);
     const WhiteColumns& white = out.signatures[h].white;
-    if (held[h] || white.cols == 0) return;
-    VectorXd inner = white.inner(out.problem->r, Q_r, out.problem->segments, 0, white.cols);
-    out.scores[h] = best_score(hypotheses_[h], out.signatures[h], freed_of_bias(inner, out.bias[h]));
+    if (held[h] || white.cols() == 0) return;
+    const VectorXd inner = freed_of_bias(out.problem->inner(white), out.bias[h]);
+    out.scores[h] = best_score(hypotheses_[h], out.signatures[h], inner);
   });
   return out;
 }
 
 double EffectSearch::worth(std::size_t hypothesis, double gain, const State& state) const {
   return gain - hypotheses_[hypothesis].freedom() * std::log(static_cast<double>(state.problem->freedom));
+}
+
+std::vector<std::size_t> EffectSearch::ranked(const State& state, std::size_t count) const {
+  std::vector<std::size_t> order(hypotheses_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return worth(a, state.scores[a].gain, state) > worth(b, state.scores[b].gain, state);
+  });
+  order.resize(std::min(count, order.size()));
+  return order;
 }
 
 const Fit& EffectSearch::refine(const State& state, std::size_t h) const {
@@ -185,28 +195,20 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
   best.effect.shape = hypothesis.shapes[start.shape];
   best.effect.amplitude = start.amplitude;
   best.rows = columns_of(rows_[h], static_cast<Index>(start.shape) * k, k);
-  const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
-  const double clean = state.signatures[h].clean[start.shape];
-  const auto evaluate = [&](const VectorXd& shape, Fit& into) {
+  // What encoder noise fakes changes little from one shape to the next.
+  const VectorXd bias = bias_of(state, h);
+  const auto fit_with = [&](const VectorXd& shape) {
     Hypothesis one = hypothesis;
     one.shapes = {shape};
-    into.rows.clear();
-    for (const LogRows& log : logs_) into.rows.push_back(hypothesis_rows(model_, log, log.signals, one));
-    Signature signature = make_signature(*state.problem, one, into.rows);
-    std::fill(signature.clean.begin(), signature.clean.end(), clean);
-    VectorXd inner = signature.white.cols > 0 ? signature.white.inner(state.problem->r, Q_r, state.problem->segments, 0,
-                                                                      signature.white.cols)
-                                              : VectorXd(0);
-    // What encoder noise fakes changes little from one shape to the next.
-    if (state.bias[h].size() > 0)
-      inner = freed_of_bias(inner, state.bias[h].segment(static_cast<Index>(start.shape) * k, k));
-    const Score score = best_score(one, signature, inner);
-    into.hypothesis = h;
-    into.effect = best.effect;
-    into.effect.shape = shape;
-    into.effect.amplitude = score.amplitude;
-    into.gain = score.gain;
-    into.grid_gain = best.grid_gain;
+    Fit fit = best;
+    fit.rows = hypothesis_rows(model_, logs_, one);
+    Signature signature = make_signature(*state.problem, one, fit.rows);
+    signature.clean = {state.signatures[h].clean[start.shape]};
+    const Score score = best_score(one, signature, freed_of_bias(state.problem->inner(signature.white), bias));
+    fit.effect.shape = shape;
+    fit.effect.amplitude = score.amplitude;
+    fit.gain = score.gain;
+    return fit;
   };
   constexpr int kFirstSteps = 9, kLaterSteps = 5;
   const std::size_t parameters = hypothesis.kind().shapes.size();
@@ -223,8 +225,7 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
       const auto gain_at = [&](double x) {
         VectorXd shape = best.effect.shape;
         shape(static_cast<Index>(parameter)) = from(x);
-        Fit trial;
-        evaluate(shape, trial);
+        Fit trial = fit_with(shape);
         const double gain = trial.gain;
         if (gain > best.gain) best = std::move(trial);
         return gain;
@@ -233,18 +234,11 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
     }
   }
   best.white = state.problem->whiten(best.rows);
-  best.gram = best.white.cols >= k ? MatrixXd(best.white.gram(0, k)) : MatrixXd::Zero(k, k);
   return best;
 }
 
 EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best) const {
-  std::vector<std::size_t> order(hypotheses_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return worth(a, state.scores[a].gain, state) > worth(b, state.scores[b].gain, state);
-  });
-  order.resize(std::min(best, order.size()));
-  const VectorXd Q_r = state.problem->Q.transpose() * state.problem->r;
+  const std::vector<std::size_t> order = ranked(state, best);
   struct One {
     WhiteColumns white;
     VectorXd inner;
@@ -255,11 +249,9 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
     const Index k = hypotheses_[h].amplitudes;
     const Signature& signature = state.signatures[h];
     One one;
-    if (signature.white.cols > 0) {
-      const Index first = static_cast<Index>(state.scores[h].shape) * k;
-      one.white = signature.white.part(first, k);
-      one.inner = one.white.inner(state.problem->r, Q_r, state.problem->segments, 0, k);
-      if (state.bias[h].size() > 0) one.inner = freed_of_bias(one.inner, state.bias[h].segment(first, k));
+    if (signature.white.cols() > 0) {
+      one.white = signature.white.part(static_cast<Index>(state.scores[h].shape) * k, k);
+      one.inner = freed_of_bias(state.problem->inner(one.white), bias_of(state, h));
     }
     for (const AmplitudeTraits& amplitude : hypotheses_[h].kind().amplitudes)
       one.positive.push_back(amplitude.positive());
@@ -278,7 +270,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
       u << ones[a].inner, ones[c].inner;
       std::vector<bool> positive = ones[a].positive;
       positive.insert(positive.end(), ones[c].positive.begin(), ones[c].positive.end());
-      const double gain = constrained_gain(G, u, positive).gain;
+      const double gain = non_negative_least_squares(G, u, positive).gain;
       const double value = worth(order[a], gain, state) + worth(order[c], 0, state);
       if (value > best_worth) {
         best_worth = value;

@@ -4,9 +4,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kElsewhere = 0.03;  // of an effect's gain, the most that its form leaves at another place ...

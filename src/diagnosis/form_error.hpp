@@ -23,7 +23,7 @@ class FormErrors {
   [[nodiscard]] bool explain(const Fit& fit) const;
 
  private:
-  [[nodiscard]] bool counts(std::size_t k) const { return !found_.hygiene[k] && k != but_; }
+  [[nodiscard]] bool counts(std::size_t k) const { return !found_.fits[k].hygiene && k != but_; }
   /// What an effect of `found` gains: then, or alone, as one that came later may have gained little beside a mixture.
   [[nodiscard]] double gain_of(std::size_t k) const;
   /// Largest gain of an effect at a joint.
@@ -36,7 +36,7 @@ class FormErrors {
   const SearchResult& found_;
   const EffectSearch::State& state_;
   std::optional<std::size_t> but_;
-  std::vector<Eigen::VectorXd> squares_;  ///< of each effect found, what a re-fit leaves, by drive
+  std::vector<VectorXd> squares_;  ///< of each effect found, what a re-fit leaves, by drive
 };
 
 }  // namespace deltadyn::detail

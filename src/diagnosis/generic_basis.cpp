@@ -5,10 +5,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kRowsForAll = 1600;  // that the full basis is made for
@@ -43,58 +39,44 @@ VectorXd hats(double x, const std::vector<double>& knot) {
   return h;
 }
 
+/// A row of a log, for a drive, and of another one where a coordinate is of that.
+struct BasisRow {
+  const LogRows& log;
+  Index row, sample, drive, other;
+
+  [[nodiscard]] double qd() const { return log.qd(row, drive); }
+};
+
+using OfRow = double (*)(const BasisRow&);
+
 /// A function of the row that becomes hats, times a factor.
 struct Coordinate {
   std::string name;
   int count;
-  double (*value)(const LogRows&, Index row, Index sample, Index drive, Index other);
-  double (*factor)(const LogRows&, Index row, Index sample, Index drive);
+  OfRow value, factor;
   bool other = false;  ///< once for every other drive
 };
 
-double unit(const LogRows&, Index, Index, Index) {
-  return 1;
-}
-double direction(const LogRows& log, Index row, Index, Index j) {
-  return log.qd(row, j) > 0 ? 1.0 : -1.0;
-}
-double rate(const LogRows& log, Index row, Index, Index j) {
-  return log.qd(row, j);
-}
-double position(const LogRows& log, Index row, Index, Index j, Index) {
-  return log.q(row, j);
-}
-double speed(const LogRows& log, Index row, Index, Index j, Index) {
-  return std::log(std::max(std::abs(log.qd(row, j)), 1e-9));
-}
-double acceleration(const LogRows& log, Index row, Index, Index j, Index) {
-  return log.qdd(row, j);
-}
-double load(const LogRows& log, Index, Index sample, Index j, Index) {
-  return log.signals.load(sample, j);
-}
-double torque(const LogRows& log, Index, Index sample, Index j, Index) {
-  return log.signals.torque(sample, j);
-}
-double torque_rate(const LogRows& log, Index, Index sample, Index j, Index) {
-  const MatrixXd& tau = log.signals.torque;
-  const Index before = std::max<Index>(sample - 1, 0), after = std::min(sample + 1, tau.rows() - 1);
-  return (tau(after, j) - tau(before, j)) / (static_cast<double>(after - before) * log.signals.sample_time_s);
-}
-double time(const LogRows& log, Index row, Index, Index, Index) {
-  return log.t_s(row) - log.t_s(0);
-}
-double other_position(const LogRows& log, Index row, Index, Index, Index o) {
-  return log.q(row, o);
-}
-double other_rate(const LogRows& log, Index row, Index, Index, Index o) {
-  return log.qd(row, o);
-}
-double bar_rate(const LogRows& log, Index, Index sample, Index, Index) {
-  return log.signals.bar_rate(sample);
+double torque_rate(const BasisRow& at) {
+  const MatrixXd& tau = at.log.signals.torque;
+  const Index before = std::max<Index>(at.sample - 1, 0), after = std::min(at.sample + 1, tau.rows() - 1);
+  return (tau(after, at.drive) - tau(before, at.drive)) /
+         (static_cast<double>(after - before) * at.log.signals.sample_time_s);
 }
 
 const std::vector<Coordinate>& coordinates() {
+  constexpr OfRow unit = [](const BasisRow&) { return 1.0; };
+  constexpr OfRow direction = [](const BasisRow& at) { return at.qd() > 0 ? 1.0 : -1.0; };
+  constexpr OfRow rate = [](const BasisRow& at) { return at.qd(); };
+  constexpr OfRow speed = [](const BasisRow& at) { return std::log(std::max(std::abs(at.qd()), 1e-9)); };
+  constexpr OfRow position = [](const BasisRow& at) { return at.log.q(at.row, at.drive); };
+  constexpr OfRow acceleration = [](const BasisRow& at) { return at.log.qdd(at.row, at.drive); };
+  constexpr OfRow load = [](const BasisRow& at) { return at.log.signals.load(at.sample, at.drive); };
+  constexpr OfRow torque = [](const BasisRow& at) { return at.log.signals.torque(at.sample, at.drive); };
+  constexpr OfRow time = [](const BasisRow& at) { return at.log.t_s(at.row) - at.log.t_s(0); };
+  constexpr OfRow other_position = [](const BasisRow& at) { return at.log.q(at.row, at.other); };
+  constexpr OfRow other_rate = [](const BasisRow& at) { return at.log.qd(at.row, at.other); };
+  constexpr OfRow bar_rate = [](const BasisRow& at) { return at.log.signals.bar_rate(at.sample); };
   static const std::vector<Coordinate> all = {{"speed", 10, speed, direction},
                                               {"speed", 6, speed, unit},
                                               {"position", 10, position, unit},
@@ -133,7 +115,8 @@ GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vec
         std::vector<double> values;
         for (const LogRows& log : logs) {
           for (Index row = 0; row < log.rows(); ++row) {
-            if (log.usable[drive](row)) values.push_back(coordinate.value(log, row, sample_of_row(log.log, row), j, o));
+            if (log.usable[drive](row))
+              values.push_back(coordinate.value({log, row, sample_of_row(log.log, row), j, o}));
           }
         }
         const std::vector<double> knot =
@@ -141,17 +124,16 @@ GenericBasis make_generic_basis(const std::vector<LogRows>& logs, const std::vec
         if (knot.size() < 2) continue;
         out.blocks[drive].emplace_back(static_cast<Index>(out.coordinate[drive].size()),
                                        static_cast<Index>(knot.size()));
-        for (std::size_t k = 0; k < knot.size(); ++k) out.coordinate[drive].push_back(coordinate.name);
+        out.coordinate[drive].insert(out.coordinate[drive].end(), knot.size(), coordinate.name);
         for (std::size_t l = 0; l < logs.size() + more.size(); ++l) {
           const LogRows& log = l < logs.size() ? logs[l] : more[l - logs.size()];
           MatrixXd& to = out.columns[l][drive];
           const Index first = to.cols();
           to.conservativeResize(log.rows(), first + static_cast<Index>(knot.size()));
           for (Index row = 0; row < log.rows(); ++row) {
-            const Index sample = sample_of_row(log.log, row);
+            const BasisRow at{log, row, sample_of_row(log.log, row), j, o};
             to.row(row).tail(static_cast<Index>(knot.size())) =
-                coordinate.factor(log, row, sample, j) *
-                hats(coordinate.value(log, row, sample, j, o), knot).transpose();
+                coordinate.factor(at) * hats(coordinate.value(at), knot).transpose();
           }
         }
       }

@@ -5,7 +5,6 @@
 /// acceleration, load and time, by direction, and in the other joints' motion. It knows nothing of the catalogue: it
 /// sees what the catalogue may not explain.
 
-#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,11 +15,11 @@ namespace deltadyn {
 
 struct GenericBasis {
   /// [log][drive]: rows x columns; the same columns in every log.
-  std::vector<std::vector<Eigen::MatrixXd>> columns;
+  std::vector<std::vector<MatrixXd>> columns;
   /// Which coordinate each column belongs to, for each drive: "position", "speed", ...
   std::vector<std::vector<std::string>> coordinate;
   /// First column and number of columns of each function of one coordinate, for each drive.
-  std::vector<std::vector<std::pair<Eigen::Index, Eigen::Index>>> blocks;
+  std::vector<std::vector<std::pair<Index, Index>>> blocks;
 };
 
 /// \param logs   set the knots

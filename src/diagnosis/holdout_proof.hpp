@@ -12,12 +12,11 @@ namespace deltadyn::detail {
 
 /// Rows of the hold-out log: residuals before and after, and the floor.
 struct HoldoutProof {
-  Eigen::MatrixXd before, after;
-  std::vector<RowMask> usable;
+  MatrixXd before, after;
   /// By drive: columns of the effects that the model held and of those found, as in SearchResult::after
-  std::vector<Eigen::MatrixXd> effects;
-  Eigen::VectorXd rms_before, rms_after, floor;
-  Eigen::VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
+  std::vector<MatrixXd> effects;
+  VectorXd rms_before, rms_after, floor;
+  VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
 };
 
 /// \param known  effects that the model held before

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace deltadyn {
+#include "deltadyn/runtime/statistics.hpp"
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+namespace deltadyn {
 
 namespace {
 
@@ -35,10 +33,8 @@ MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
       scale.largest_torque = std::max(scale.largest_torque, std::abs(s.torque(at, joint)));
     }
   }
-  std::sort(rates.begin(), rates.end());
-  scale.largest_rate =
-      rates.empty() ? 0 : rates[static_cast<std::size_t>(0.995 * static_cast<double>(rates.size() - 1))];
-  scale.usual_rate = rates.empty() ? 0 : rates[rates.size() / 2];
+  scale.largest_rate = quantile(rates, 0.995);
+  scale.usual_rate = upper_median(rates);
   scale.range = std::max(high - low, 0.0);
   scale.middle = joint >= 0 ? 0.5 * (low + high) : 0.0;
   return scale;
@@ -113,6 +109,10 @@ bool base_holds(const Robot& robot, const Hypothesis& hypothesis) {
 
 }  // namespace
 
+Hypothesis hypothesis_of(const Effect& effect) {
+  return {effect.id, effect.joint, {effect.shape}, static_cast<Index>(effect_kind(effect.id).amplitudes.size())};
+}
+
 bool shape_is_free(EffectId id, std::size_t parameter, const VectorXd& shape) {
   const EffectKind& kind = effect_kind(id);
   if (kind.shapes[parameter].search.kind == ShapeSearch::fixed) return false;
@@ -139,9 +139,9 @@ std::vector<Hypothesis> all_hypotheses(const Robot& robot, const std::vector<Log
         const std::vector<double> grid = grid_of(shape, hypothesis, scale, logs, robot);
         std::vector<VectorXd> combined;
         for (const VectorXd& so_far : hypothesis.shapes) {
-          for (std::size_t g = 0; g < grid.size(); ++g) {
+          for (const double value : grid) {
             VectorXd next(so_far.size() + 1);
-            next << so_far, grid[g];
+            next << so_far, value;
             combined.push_back(next);
           }
         }
@@ -177,6 +177,13 @@ std::vector<MatrixXd> hypothesis_rows(const EffectModel& model, const LogRows& l
   for (std::size_t j = 0; j < raw.size(); ++j) {
     if (raw[j].size() > 0) out[j] = low_passed_rows(log.log, raw[j]);
   }
+  return out;
+}
+
+PerLogAndDrive<MatrixXd> hypothesis_rows(const EffectModel& model, const std::vector<LogRows>& logs,
+                                         const Hypothesis& hypothesis) {
+  PerLogAndDrive<MatrixXd> out;
+  for (const LogRows& log : logs) out.push_back(hypothesis_rows(model, log, log.signals, hypothesis));
   return out;
 }
 

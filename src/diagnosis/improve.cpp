@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <utility>
 
 #include "deltadyn/runtime/error.hpp"
-#include "deltadyn/runtime/statistics.hpp"
 
-#include "diagnosis_steps.hpp"
 #include "written_proof.hpp"
 
 namespace deltadyn::detail {
-
-using Eigen::Index;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -52,38 +46,22 @@ void settle_amplitudes(const ImproveInput& input, const std::vector<Log>& logs, 
   }
 }
 
-void fit_improved(const ImproveInput& input, double cutoff_hz, bool keep_extras, Trial& trial) {
+void fit_improved(const ImproveInput& input, bool keep_extras, Trial& trial) {
   trial.effects = input.known;
   for (const NamedEffect& one : trial.named) trial.effects.push_back(one.effect);
   // As delta-identify takes the logs: a delay that no effect explains is no part of the model.
   const std::vector<Log> logs = as_validated(input.robot, input.logs, trial.effects);
-  trial.improved = identify_beside(input, logs, trial.effects, cutoff_hz, keep_extras);
+  trial.improved = identify_beside(input, logs, trial.effects, keep_extras);
   settle_amplitudes(input, logs, trial);
-  trial.improved = identify_beside(input, logs, trial.effects, cutoff_hz, keep_extras);
+  trial.improved = identify_beside(input, logs, trial.effects, keep_extras);
 }
 
-WrittenModel given_model(const ImproveInput& input) {
-  const ProcessingOptions& own = input.options.processing;
-  return {input.p, input.known, own.presliding, own.presliding_damping_s, own.ripples};
-}
-
-WrittenModel improved_model(const Trial& trial) {
-  const ProcessingOptions& own = trial.improved.processing;
-  return {trial.improved.fit.p, trial.effects, own.presliding, own.presliding_damping_s, own.ripples};
-}
-
-std::vector<int> reached_drives(const std::vector<NamedEffect>& named) {
-  std::vector<int> out;
-  for (const NamedEffect& one : named) {
-    for (const int j : one.drives) {
-      if (std::count(out.begin(), out.end(), j) == 0) out.push_back(j);
-    }
-  }
-  return out;
+WrittenModel model_of(const VectorXd& p, const std::vector<Effect>& effects, const ProcessingOptions& extras) {
+  return {p, effects, extras.presliding, extras.presliding_damping_s, extras.ripples};
 }
 
 /// Fits the model with the names, with bristles found anew and, if that is not borne out, with those of the search.
-Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named, double cutoff_hz) {
+Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named) {
   const ProcessingOptions& own = input.extras;
   const bool has_extras = (own.presliding.array() > 0).any() || !own.ripples.empty();
   Trial best;
@@ -91,9 +69,10 @@ Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named
     if (keep_extras && (!has_extras || best.proof.passed())) break;
     Trial trial;
     trial.named = named;
-    fit_improved(input, cutoff_hz, keep_extras, trial);
-    trial.proof = prove_written(input.robot, *input.holdout, given_model(input), improved_model(trial),
-                                reached_drives(named), cutoff_hz, input.options);
+    fit_improved(input, keep_extras, trial);
+    trial.proof = prove_written(input.robot, *input.holdout, model_of(input.p, input.known, input.options.processing),
+                                model_of(trial.improved.fit.p, trial.effects, trial.improved.processing),
+                                reached_drives(named), input.cutoff_hz, input.options);
     if (!keep_extras || trial.proof.passed()) best = std::move(trial);
   }
   return best;
@@ -118,14 +97,14 @@ int freedom(const Effect& effect) {
 
 /// What the hold-out log says to one name and those that the training logs cannot tell from it: the one that it bears
 /// out, and of those the simplest. Alternatives of one name only, as those of several grow with their product.
-Trial try_set(const ImproveInput& input, const NamedEffect& named, double cutoff_hz) {
-  Trial best = try_names(input, {named}, cutoff_hz);
+Trial try_set(const ImproveInput& input, const NamedEffect& named) {
+  Trial best = try_names(input, {named});
   const bool alone = best.proof.passed();
   std::vector<std::size_t> refused;
   for (std::size_t k = 0; k < named.confusable.size(); ++k) {
     const bool simpler = freedom(named.confusable[k].effect) < freedom(best.named.front().effect);
     if (alone && !simpler) continue;
-    Trial other = try_names(input, {swapped(named, k)}, cutoff_hz);
+    Trial other = try_names(input, {swapped(named, k)});
     if (!other.proof.passed()) {
       refused.push_back(k);
     } else if (!best.proof.passed() || other.proof.rms_ratio < kWorseRms * best.proof.rms_ratio) {
@@ -149,26 +128,18 @@ Trial try_set(const ImproveInput& input, const NamedEffect& named, double cutoff
   return best;
 }
 
-std::string names_of(const std::vector<NamedEffect>& named) {
-  std::string text;
-  for (const NamedEffect& one : named) text += (text.empty() ? "" : " and ") + one.name + " at " + one.joint;
-  return text;
-}
-
 /// What the proof said against the names.
 std::string refusal(const ImproveInput& input, const Trial& trial) {
   const WrittenProof& proof = trial.proof;
   const std::vector<int> touched = reached_drives(trial.named);
   const int j = proof.worse_drive >= 0 ? proof.worse_drive : (touched.empty() ? 0 : touched.front());
   const HoldoutFigure& figure = proof.drives[static_cast<std::size_t>(j)];
-  const char* unit = input.robot.description().kind_of_drive(j) == DriveKind::revolute ? "N m" : "N";
   const bool one = trial.named.size() == 1;
   return fmt::format(
       "{} fit{} the training logs, but the model with {} leaves {:.3g} {} of the hold-out log at drive {} where the "
-      "model as "
-      "given "
-      "leaves {:.3g}: not named, not written.",
-      names_of(trial.named), one ? "s" : "", one ? "it" : "them", figure.rms_written, unit, j + 1, figure.rms_given);
+      "model as given leaves {:.3g}: not named, not written.",
+      listed(trial.named, " and "), one ? "s" : "", one ? "it" : "them", figure.rms_written,
+      unit_of_drive(input.robot, j), j + 1, figure.rms_given);
 }
 
 /// The hold-out log has too few rows to tell.
@@ -179,17 +150,15 @@ void say_untestable(const Trial& trial, Diagnosis& out) {
   const Index rows = std::min(figure.rows_given, figure.rows_written);
   out.verdict = DiagnosisVerdict::not_testable;
   out.headline = fmt::format(
-      "Not testable: {} fits the training logs, but the hold-out log has {} rows of drive {} away from "
-      "reversals, too few to bear it out.",
-      names_of(trial.named), rows, j + 1);
+      "Not testable: {} fits the training logs, but the hold-out log has {} rows of drive {} away from reversals, too "
+      "few to bear it out.",
+      listed(trial.named, " and "), rows, j + 1);
   out.next.push_back("Give a longer hold-out log.");
 }
 
 /// No name is left.
 void withdraw(const ImproveInput& input, double largest_share, Diagnosis& out) {
-  double above = 0;
-  for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
-  const bool overt = largest_share > kMaterialStructure && above > kOvertFloor;
+  const bool overt = is_overt(out, largest_share);
   out.verdict = overt ? DiagnosisVerdict::unknown_structure : DiagnosisVerdict::nothing_missing;
   if (overt) out.region = out.named.front().region;
   for (ConsideredEffect& one : out.considered) {
@@ -199,8 +168,7 @@ void withdraw(const ImproveInput& input, double largest_share, Diagnosis& out) {
   out.improved.reset();
   out.effects = input.known;
   out.explained_share = 0;
-  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-  out.p_no_gain = 1;
+  forget_gap(out);
 }
 
 /// The figures that stand in the diagnosis are those of the written model.
@@ -211,16 +179,14 @@ void take(Trial trial, bool identify, Diagnosis& out) {
   out.holdout_figures = trial.proof.drives;
   out.holdout_cutoff_hz = trial.proof.cutoff_hz;
   if (out.holdout_figures.empty()) return;
+  VectorXd given(std::ssize(out.holdout_figures)), written = given;
+  for (Index j = 0; j < given.size(); ++j) {
+    given(j) = out.holdout_figures[static_cast<std::size_t>(j)].rms_given;
+    written(j) = out.holdout_figures[static_cast<std::size_t>(j)].rms_written;
+  }
   for (NamedEffect& one : out.named) {
-    double before = 0, after = 0;
-    for (const int j : one.drives) {
-      const HoldoutFigure& figure = out.holdout_figures[static_cast<std::size_t>(j)];
-      before += figure.rms_given * figure.rms_given;
-      after += figure.rms_written * figure.rms_written;
-    }
-    const auto count = static_cast<double>(one.drives.size());
-    one.rms_before = root_mean_square(before, count);
-    one.rms_after = root_mean_square(after, count);
+    one.rms_before = rms_over(one.drives, given);
+    one.rms_after = rms_over(one.drives, written);
     one.rms_floor = std::min(one.rms_floor, one.rms_after);
   }
 }
@@ -241,34 +207,36 @@ std::vector<Ripple> lost_ripples(const std::vector<Ripple>& found, const std::ve
 }
 
 Effect effect_of(const Ripple& ripple) {
-  Effect effect;
-  effect.id = effect_with(Role::wave);
-  effect.joint = ripple.drive;
-  effect.shape = VectorXd::Constant(1, ripple.n);
-  effect.amplitude = Eigen::Vector2d(ripple.cosine, ripple.sine);
-  return effect;
+  return {effect_with(Role::wave),
+          ripple.drive,
+          VectorXd::Constant(1, ripple.n),
+          Eigen::Vector2d(ripple.cosine, ripple.sine),
+          {},
+          {}};
 }
 
 }  // namespace
 
+void take_extras(const ProcessingOptions& from, ProcessingOptions& to) {
+  to.presliding = from.presliding;
+  to.presliding_damping_s = from.presliding_damping_s;
+  to.ripples = from.ripples;
+}
+
 Identification identify_beside(const ImproveInput& input, const std::vector<Log>& logs,
-                               const std::vector<Effect>& effects, double cutoff_hz, bool keep_extras) {
+                               const std::vector<Effect>& effects, bool keep_extras) {
   IdentificationOptions identification;
   identification.processing = input.options.processing;
-  identification.processing.cutoff_hz = cutoff_hz;
+  identification.processing.cutoff_hz = input.cutoff_hz;
   identification.choose_cutoff = false;
   identification.threads = input.options.threads;
-  const double motion_hz = identification.processing.motion_over_pass * cutoff_hz;
+  const double motion_hz = identification.processing.motion_over_pass * input.cutoff_hz;
   const std::vector<Log> rest = without_effects(input.robot, logs, input.p_fit, effects, motion_hz);
   if (keep_extras) {
-    identification.processing.presliding = input.extras.presliding;
-    identification.processing.presliding_damping_s = input.extras.presliding_damping_s;
-    identification.processing.ripples = input.extras.ripples;
+    take_extras(input.extras, identification.processing);
     identification.reversals = Reversals::mask;
   } else {
-    identification.processing.presliding.resize(0);
-    identification.processing.presliding_damping_s.resize(0);
-    identification.processing.ripples.clear();
+    take_extras({}, identification.processing);
   }
   Identification out = identify(input.robot, rest, input.p, input.p_std, identification);
   // Beside other structure a ripple is not claimed anew: known ones stay, their torque taken off before the fit.
@@ -302,14 +270,13 @@ void improve_and_prove(const ImproveInput& input, double largest_share, Diagnosi
       Trial trial;
       trial.named = out.named;
       if (input.options.identify) {
-        fit_improved(input, out.cutoff_hz, false, trial);
+        fit_improved(input, false, trial);
         take(std::move(trial), true, out);
       }
       return;
     }
     for (std::vector<NamedEffect> named = out.named; !named.empty(); named.pop_back()) {
-      Trial trial =
-          named.size() == 1 ? try_set(input, named.front(), out.cutoff_hz) : try_names(input, named, out.cutoff_hz);
+      Trial trial = named.size() == 1 ? try_set(input, named.front()) : try_names(input, named);
       if (trial.proof.passed()) {
         take(std::move(trial), input.options.identify, out);
         out.verdict = verdict_of(out.named);

@@ -1,23 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
-#include <numbers>
-#include <numeric>
 #include <optional>
 
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
-#include "confusable_set.hpp"
 #include "holdout_proof.hpp"
 #include "ranking.hpp"
 
 namespace deltadyn::detail {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -50,13 +44,14 @@ constexpr double kOtherMachine = 2.0;
 // Rms over floor from which a hold-out log contradicts a model that fits the training logs
 constexpr double kHoldoutGap = 1.4;
 
-bool turns(const SearchContext& context, int drive) {
-  return context.robot.description().kind_of_drive(drive) == DriveKind::revolute;
-}
-
 /// Drives that bear at least a twentieth of the effect.
 std::vector<int> drives_of(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
-  const VectorXd energy = squares_by_drive(context, problem, fit);
+  VectorXd energy = VectorXd::Zero(context.robot.drives());
+  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
+    if (fit.white.blocks[s].size() > 0)
+      energy(static_cast<Index>(problem.segments[s].drive)) +=
+          (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
+  }
   std::vector<int> out;
   for (Index j = 0; j < energy.size(); ++j) {
     if (energy(j) > 0.05 * energy.sum()) out.push_back(static_cast<int>(j));
@@ -91,7 +86,7 @@ std::string region_of(const SearchContext& context, const Fit& fit, const WhiteP
   std::string names;
   for (const int j : drives) names += (names.empty() ? "drive " : ", ") + std::to_string(j + 1);
   return fmt::format("{}; 80 % of it at {:.3g} to {:.3g} {} of drive {}", names, low, high,
-                     turns(context, drives.front()) ? "rad/s" : "m/s", drives.front() + 1);
+                     turns(context.robot, drives.front()) ? "rad/s" : "m/s", drives.front() + 1);
 }
 
 std::string place_of(const Diagnosis& out, std::size_t drive) {
@@ -169,8 +164,7 @@ std::vector<EffectCandidate> possible_ones(const SearchContext& context, const S
   all.insert(all.end(), found.sets[k].begin(), found.sets[k].end());
   std::erase_if(all, [&](const EffectCandidate& one) {
     const std::string reason = no_effect(one.effect, out.cutoff_hz);
-    if (!reason.empty())
-      out.notes.push_back(fmt::format("{} at {} fits, but {}: not named", one.name, one.joint, reason));
+    if (!reason.empty()) out.notes.push_back(fmt::format("{} fits, but {}: not named", one.at_joint(), reason));
     return !reason.empty();
   });
   return all;
@@ -192,12 +186,11 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
         fmt::format("{} fits {}, {}: as a term of the model it would be a guess{}.", one.name, one.joint, open->reason,
                     alone ? "" : ", and is left out of it (the figures before and after still hold it)"));
     out.next.push_back(fmt::format("Record {} at {:.2g} {} or more, too, and give that log beside the slow one.",
-                                   one.joint, open->needed_rate, turns(context, one.effect.joint) ? "rad/s" : "m/s"));
+                                   one.joint, open->needed_rate,
+                                   turns(context.robot, one.effect.joint) ? "rad/s" : "m/s"));
     headline = fmt::format(
         "Not testable: the friction of {} is no straight line at low speed, but these logs are too slow to tell its "
-        "course at "
-        "higher "
-        "speeds.",
+        "course at higher speeds.",
         one.joint);
     region = one.region;
   }
@@ -209,8 +202,7 @@ void leave_out_open_courses(const SearchContext& context, Diagnosis& out) {
   out.verdict = DiagnosisVerdict::not_testable;
   out.headline = headline;
   out.region = region;
-  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-  out.p_no_gain = 1;
+  forget_gap(out);
 }
 
 /// A drive whose residual is far above the noise of its own torque signal and, for the size of its torque, above that
@@ -231,12 +223,11 @@ std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context
     over_torque.push_back(out.drives[j].rms_after / std::max(torque, 1e-300));
   }
   if (over_torque.size() < 2) return std::nullopt;
-  const auto worst =
-      static_cast<std::size_t>(std::max_element(over_torque.begin(), over_torque.end()) - over_torque.begin());
+  const auto place = std::ranges::max_element(over_torque) - over_torque.begin();
+  const auto worst = static_cast<std::size_t>(place);
   std::vector<double> others = over_torque;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(worst));
-  std::sort(others.begin(), others.end());
-  const double over_others = over_torque[worst] / std::max(others[others.size() / 2], 1e-300);
+  others.erase(others.begin() + place);
+  const double over_others = over_torque[worst] / std::max(upper_median(std::move(others)), 1e-300);
   const bool slow = over_noise[worst] > kSlowOverNoise && over_others > kSlowOverOthers &&
                     over_noise[worst] * over_others > kSlowOverBoth;
   return slow ? std::optional<std::size_t>(worst) : std::nullopt;
@@ -245,9 +236,31 @@ std::optional<std::size_t> drive_with_slow_residual(const SearchContext& context
 }  // namespace
 
 DiagnosisVerdict verdict_of(const std::vector<NamedEffect>& named) {
-  const bool set =
-      std::any_of(named.begin(), named.end(), [](const NamedEffect& one) { return !one.confusable.empty(); });
+  const bool set = std::ranges::any_of(named, [](const NamedEffect& one) { return !one.confusable.empty(); });
   return set ? DiagnosisVerdict::confusable : DiagnosisVerdict::named;
+}
+
+std::vector<int> reached_drives(const std::vector<NamedEffect>& named) {
+  std::vector<int> out;
+  for (const NamedEffect& one : named) {
+    for (const int j : one.drives) {
+      if (std::ranges::count(out, j) == 0) out.push_back(j);
+    }
+  }
+  return out;
+}
+
+double rms_over(const std::vector<int>& drives, const VectorXd& rms) {
+  return root_mean_square(rms(drives));
+}
+
+void forget_gap(Diagnosis& out) {
+  out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
+}
+
+bool is_overt(const Diagnosis& out, double largest_share) {
+  const auto above = [](const DriveFit& drive) { return drive.rms / std::max(drive.floor, 1e-300) > kOvertFloor; };
+  return largest_share > kMaterialStructure && std::ranges::any_of(out.drives, above);
 }
 
 double judge(const SearchContext& context, const SearchResult& found, const std::vector<Effect>& known,
@@ -265,16 +278,15 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     const auto drive = static_cast<std::size_t>(j);
     left += std::max(0.0, found.structure_after(j) - found.null.omnibus[drive].quantile(0.5));
     if (found.null.omnibus[drive].p_value(found.structure_after(j)) >= kStructureChance) continue;
-    const VectorXd clear = found.omnibus_after.clear_part(*found.after.problem, found.after.problem->r, drive);
+    const VectorXd clear = found.omnibus_after.clear_part(*found.after.problem, drive);
     PerLogAndDrive<MatrixXd> columns(context.logs.size(), std::vector<MatrixXd>(static_cast<std::size_t>(n)));
     for (std::size_t l = 0; l < context.logs.size(); ++l) columns[l][drive] = context.basis.columns[l][drive];
     const Remainder structure = remainder_of(context, *found.after.problem, columns, clear);
     const double share = noise_shares(context, structure, found.floor)(j);
     double repeated = 1;  // share of the hold-out log's residual that the same function explains there
     if (holdout != nullptr) {
-      const VectorXd there = context.basis.columns.back()[drive] * clear -
-                             holdout->Y[drive] * structure.beta.head(context.base.count()) -
-                             proof->effects[drive] * structure.beta.tail(structure.beta.size() - context.base.count());
+      const VectorXd there = without_model(context.basis.columns.back()[drive] * clear, holdout->Y[drive],
+                                           proof->effects[drive], structure.beta);
       const VectorXd e = proof->after.col(j);
       const double before = root_mean_square(e, holdout->usable[drive]),
                    after = root_mean_square(e - there, holdout->usable[drive]);
@@ -290,22 +302,22 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
   out.explained_share = gain > 0 ? gain / (gain + left) : 0.0;
 
   double largest_share = 0, largest_gain = 0;  // share of the noise variance, by a named effect
-  for (std::size_t k = 0; k < found.fits.size(); ++k) {
-    if (!found.hygiene[k]) largest_gain = std::max(largest_gain, found.fits[k].gain);
+  for (const Fit& fit : found.fits) {
+    if (!fit.hygiene) largest_gain = std::max(largest_gain, fit.gain);
   }
-  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+  for (std::size_t k = 0; k < found.fits.size(); ++k) {
     const Fit& fit = found.fits[k];
     const Hypothesis& hypothesis = context.search.hypotheses()[fit.hypothesis];
-    if (found.hygiene[k]) {
+    if (fit.hygiene) {
       if (near_rest(context, fit)) {
         out.notes.push_back(fmt::format(
             "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
             hypothesis.joint_name(), fit.effect.shape(0)));
       } else {
-        out.notes.push_back(fmt::format(
-            "torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the search, "
-            "not counted as an effect",
-            hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
+        out.notes.push_back(
+            fmt::format("torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the "
+                        "search, not counted as an effect",
+                        hypothesis.joint_name(), 1e3 * fit.effect.shape(0)));
       }
       continue;
     }
@@ -328,8 +340,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     one.region = region_of(context, fit, *found.before.problem, one.drives);
     out.named.push_back(std::move(one));
   }
-  std::sort(out.named.begin(), out.named.end(),
-            [](const NamedEffect& a, const NamedEffect& b) { return a.gain > b.gain; });
+  std::ranges::sort(out.named, std::greater(), &NamedEffect::gain);
   out.p_value = out.named.empty() ? found.null.omnibus_p(found.structure_before) : out.named.front().p_value;
   if (!out.named.empty()) out.verdict = verdict_of(out.named);
   const double must_explain = out.named.size() > 1 ? kExplainedByMany : kHardlyExplained;
@@ -339,45 +350,28 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     out.verdict = DiagnosisVerdict::unknown_structure;
     out.region = place_of(out, worst_drive);
     if (!out.named.empty()) {
-      out.lines.push_back(
-          fmt::format("The best of the catalogue, {} at {}{}, explains {:.0f} % of the structure only; a name for the "
-                      "rest would be a guess.",
-                      out.named.front().name, out.named.front().joint, out.named.size() > 1 ? " and others" : "",
-                      100 * out.explained_share));
+      out.lines.push_back(fmt::format(
+          "The best of the catalogue, {}{}, explains {:.0f} % of the structure only; a name for the rest "
+          "would be a guess.",
+          out.named.front().at_joint(), out.named.size() > 1 ? " and others" : "", 100 * out.explained_share));
     }
   }
 
   if (holdout != nullptr) {
-    DiagnosisTrace trace;
-    trace.file = holdout->log.file;
+    DiagnosisTrace trace = trace_of(*holdout);
     trace.holdout = true;
-    trace.t_s = holdout->t_s;
-    trace.q = holdout->q;
-    trace.qd = holdout->qd;
-    trace.torque = holdout->tau;
-    if (holdout->ripple.size() > 0) trace.torque += holdout->ripple;
     trace.before = proof->before;
     trace.after = proof->after;
-    trace.usable.resize(holdout->rows(), n);
-    for (Index j = 0; j < n; ++j) trace.usable.col(j) = holdout->usable[static_cast<std::size_t>(j)];
     out.traces.push_back(std::move(trace));
     for (Index j = 0; j < n; ++j) {
       out.drives[static_cast<std::size_t>(j)].rms_holdout = proof->rms_before(j);
       out.drives[static_cast<std::size_t>(j)].floor_holdout = proof->floor(j);
     }
-    std::vector<int> touched;
+    const std::vector<int> touched = reached_drives(out.named);
     for (NamedEffect& one : out.named) {
-      double before = 0, after = 0, floor = 0;
-      for (const int j : one.drives) {
-        before += proof->rms_before(j) * proof->rms_before(j);
-        after += proof->rms_after(j) * proof->rms_after(j);
-        floor += proof->floor(j) * proof->floor(j);
-        if (std::count(touched.begin(), touched.end(), j) == 0) touched.push_back(j);
-      }
-      const auto count = static_cast<double>(one.drives.size());
-      one.rms_before = root_mean_square(before, count);
-      one.rms_after = root_mean_square(after, count);
-      one.rms_floor = root_mean_square(floor, count);
+      one.rms_before = rms_over(one.drives, proof->rms_before);
+      one.rms_after = rms_over(one.drives, proof->rms_after);
+      one.rms_floor = rms_over(one.drives, proof->floor);
     }
     if (!touched.empty()) {
       shrink_of(*proof, *holdout, touched, context.options.seed, out);
@@ -387,33 +381,29 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
       if (out.verdict != DiagnosisVerdict::unknown_structure &&
           (worse || out.gap_shrink < (gap > 1.05 ? kCarriesOver : kLeastClosed))) {
         const std::string line =
-            fmt::format("{} at {} fits the training logs, but {} on the hold-out log: it is not what is missing.",
-                        out.named.front().name, out.named.front().joint,
+            fmt::format("{} fits the training logs, but {} on the hold-out log: it is not what is missing.",
+                        out.named.front().at_joint(),
                         worse ? std::string("makes the model worse")
                               : fmt::format("closes {:.0f} % of the gap only", 100 * out.gap_shrink));
-        double above = 0;
-        for (const DriveFit& drive : out.drives) above = std::max(above, drive.rms / std::max(drive.floor, 1e-300));
-        if (largest_share > kMaterialStructure && above > kOvertFloor) {
+        if (is_overt(out, largest_share)) {
           out.verdict = DiagnosisVerdict::unknown_structure;
           out.region = place_of(out, static_cast<std::size_t>(touched.front()));
           out.lines.push_back(line);
           for (NamedEffect& one : out.named) one.why = "the hold-out log does not confirm it";
           const auto drive = static_cast<std::size_t>(touched.front());
           if (proof->rms_before(touched.front()) > kOtherMachine * out.drives[drive].rms) {
-            out.next.push_back(fmt::format(
-                "The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was anything "
-                "changed in between "
-                "(load, hose, robot)?",
-                proof->rms_before(touched.front()), turns(context, touched.front()) ? "N m" : "N", drive + 1,
-                out.drives[drive].rms));
+            out.next.push_back(
+                fmt::format("The hold-out log leaves {:.3g} {} at drive {} where the training logs leave {:.3g}: was "
+                            "anything changed in between (load, hose, robot)?",
+                            proof->rms_before(touched.front()), unit_of_drive(context.robot, touched.front()),
+                            drive + 1, out.drives[drive].rms));
           }
         } else {
           // Chance, or a trace of no use to anybody.
           out.verdict = DiagnosisVerdict::nothing_missing;
           out.notes.push_back(line);
           out.named.clear();
-          out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
-          out.p_no_gain = 1;
+          forget_gap(out);
         }
       }
     }
@@ -449,9 +439,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     out.notes.push_back(
         "no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
   }
-  if (gives_a_name(out.verdict)) {
-    leave_out_open_courses(context, out);
-  }
+  if (gives_a_name(out.verdict)) leave_out_open_courses(context, out);
   if (out.verdict == DiagnosisVerdict::nothing_missing || out.verdict == DiagnosisVerdict::not_testable) {
     if (const std::optional<std::size_t> slow = drive_with_slow_residual(context, out)) {
       out.verdict = DiagnosisVerdict::unknown_structure;
@@ -474,9 +462,8 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
     }
   }
   for (ConsideredEffect& one : out.considered) {
-    const bool added = std::any_of(out.named.begin(), out.named.end(), [&](const NamedEffect& named) {
-      return named.name == one.name && named.joint == one.joint && named.why.empty();
-    });
+    const bool added = std::ranges::any_of(
+        out.named, [&](const NamedEffect& named) { return is_of(one, named) && named.why.empty(); });
     if (one.ruling == kFound && !added) one.ruling = "fits, but is not confirmed";
   }
   return largest_share;

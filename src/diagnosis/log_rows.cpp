@@ -8,10 +8,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, const PreparedLog& log) {
   const Index n = robot.drives();
   const auto b = static_cast<Index>(base.count());
@@ -68,6 +64,12 @@ LogRows make_log_rows(const Robot& robot, const BaseParameters& base, PreparedLo
     }
   }
   return out;
+}
+
+VectorXd without_model(const Eigen::Ref<const VectorXd>& torque, const MatrixXd& Y, const MatrixXd& effects,
+                       const VectorXd& beta) {
+  const Index b = Y.cols(), amplitudes = beta.size() - b;
+  return torque - Y * beta.head(b) - effects.leftCols(amplitudes) * beta.tail(amplitudes);
 }
 
 VectorXd closest_parameters(const BaseParameters& base, const VectorXd& beta, const VectorXd& around) {

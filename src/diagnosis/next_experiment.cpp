@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <random>
 #include <vector>
 
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
+#include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
 #include "hypothesis.hpp"
 
 namespace deltadyn {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -119,10 +117,9 @@ class Separation {
  private:
   [[nodiscard]] std::vector<MatrixXd> rows_of(const LogRows& rows, const EffectSignals& signals,
                                               const Effect& effect) const {
-    const Hypothesis one{effect.id, effect.joint, {effect.shape}, effect.amplitude.size()};
-    std::vector<MatrixXd> out = hypothesis_rows(model_, rows, signals, one);
+    std::vector<MatrixXd> out = hypothesis_rows(model_, rows, signals, hypothesis_of(effect));
     for (MatrixXd& drive : out) {
-      if (drive.size() == 0) drive.setZero(kStates, one.amplitudes);
+      if (drive.size() == 0) drive.setZero(kStates, effect.amplitude.size());
     }
     return out;
   }
@@ -208,19 +205,15 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
   limits.qd = limits.qd.cwiseMin(envelope.qd / kRoom * 1.02);
   limits.qdd = limits.qdd.cwiseMin(envelope.qdd / kRoom * 1.05);
   NextExperiment out;
-  std::sort(values.begin(), values.end());
-  out.typical = values[values.size() / 2];
-  out.separation = best_value;
   const PlanSegment segment{on_sample_grid(*best, kRate_hz), limits, 2};
   out.samples = sample_plan(robot, make_plan(robot, {segment}, kRate_hz, false), kRate_hz);
-  std::string others;
-  for (const EffectCandidate& other : diagnosis.named.front().confusable)
-    others += (others.empty() ? "" : ", ") + other.name;
+  std::vector<std::string> others;
+  for (const EffectCandidate& other : diagnosis.named.front().confusable) others.push_back(other.name);
   out.note = fmt::format(
       "motion of {:.1f} s that tells {} from {}: their torques differ by {:.2g} noise standard deviations (random "
-      "motions "
-      "{:.2g})",
-      out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, others, out.separation, out.typical);
+      "motions {:.2g})",
+      out.samples.t_s(out.samples.samples() - 1), diagnosis.named.front().name, fmt::join(others, ", "), best_value,
+      upper_median(values));
   return out;
 }
 

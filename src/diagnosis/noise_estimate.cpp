@@ -9,10 +9,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr int kPasses = 3;
@@ -30,9 +26,7 @@ class NoiseRows {
   NoiseRows(const LogRows& log, std::size_t drive, double std) : rows_(log.usable[drive]) {
     count_ = static_cast<double>(rows_.count());
     if (count_ >= kFewUsable * static_cast<double>(rows_.size())) return;
-    NoiseModel white;
-    white.std = std;
-    all_.emplace(white, log.present[drive], log.unknown[drive]);
+    all_.emplace(NoiseModel{{}, std}, log.present[drive], log.unknown[drive]);
     rows_ = log.present[drive];
     count_ = static_cast<double>(all_->freedom());
     std_ = std;

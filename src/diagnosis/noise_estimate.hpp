@@ -5,7 +5,6 @@
 /// generic basis as pays for itself. A basis that is fitted whole follows slow noise and makes it look smaller than it
 /// is.
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "generic_basis.hpp"
@@ -24,7 +23,7 @@ struct NoiseEstimate {
 /// \param extra  columns of effects that the model holds, [log][drive] rows x e
 /// \param start  noise to begin with; one pass then serves to compare models. Null: three passes from white noise
 [[nodiscard]] NoiseEstimate estimate_noise(const std::vector<LogRows>& logs, const GenericBasis& basis,
-                                           const PerLogAndDrive<Eigen::MatrixXd>& extra,
+                                           const PerLogAndDrive<MatrixXd>& extra,
                                            const PerLogAndDrive<NoiseModel>* start = nullptr);
 
 }  // namespace deltadyn

@@ -5,9 +5,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr Index kLeastPairs = 2;  // one in so many rows must have a usable row at the lag of the order
@@ -29,12 +26,26 @@ std::vector<double> impulse_response(const VectorXd& ar) {
   return h;
 }
 
+/// Levinson's step: the autoregression of the next order.
+VectorXd extended(const VectorXd& ar, double reflection) {
+  VectorXd next(ar.size() + 1);
+  next << ar - reflection * ar.reverse(), reflection;
+  return next;
+}
+
 }  // namespace
 
 double NoiseModel::total_std() const {
   double sum = 0;
   for (const double h : impulse_response(ar)) sum += h * h;
   return std * std::sqrt(sum);
+}
+
+PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise) {
+  for (auto& log : noise) {
+    for (NoiseModel& one : log) one = {{}, one.total_std()};
+  }
+  return noise;
 }
 
 NoiseModel with_white_share(const NoiseModel& noise, double share) {
@@ -57,10 +68,7 @@ NoiseModel with_white_share(const NoiseModel& noise, double share) {
     double reflection = covariance(m);
     for (Index k = 0; k < m - 1; ++k) reflection -= out.ar(k) * covariance(m - 1 - k);
     reflection /= power;
-    VectorXd next(m);
-    for (Index k = 0; k < m - 1; ++k) next(k) = out.ar(k) - reflection * out.ar(m - 2 - k);
-    next(m - 1) = reflection;
-    out.ar = next;
+    out.ar = extended(out.ar, reflection);
     power *= 1 - reflection * reflection;
   }
   out.std = std::sqrt(power);
@@ -117,10 +125,7 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
       run.forward = f - reflection * b;
       run.backward = b - reflection * f;
     }
-    VectorXd next(order);
-    for (Index k = 0; k < order - 1; ++k) next(k) = ar(k) - reflection * ar(order - 2 - k);
-    next(order - 1) = reflection;
-    ar = next;
+    ar = extended(ar, reflection);
     power *= std::max(1 - reflection * reflection, 1e-12);
     const double score = static_cast<double>(count) * std::log(power) + static_cast<double>(order) * log_count;
     if (score < best_score) {

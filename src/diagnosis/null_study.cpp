@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/in_parallel.hpp"
 #include "deltadyn/runtime/random.hpp"
@@ -14,10 +15,6 @@
 #include "deltadyn/signal/differentiate.hpp"
 
 namespace deltadyn {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -34,41 +31,6 @@ constexpr double kLeastClean = 0.6;
 constexpr double kMostNoise = 0.75;  // share of a column's squares
 constexpr std::size_t kGramRuns = 4;
 
-/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples
-/// to spare before its first row and after its last one, as the coarser low pass may be longer by one step.
-LogRows thinned(const LogRows& from, double low_pass_hz, Index& step, Index& start) {
-  LogRows out;
-  out.number = from.number;
-  out.tau.resize(from.rows(), from.tau.cols());
-  PreparedLog& log = out.log;
-  log = from.log;
-  // The rows' stride must be a whole number of steps.
-  step = 1;
-  for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
-    if (log.low_pass && log.stride % candidate == 0 &&
-        log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
-      step = candidate;
-      break;
-    }
-  }
-  start = log.first % step;
-  if (step == 1) return out;
-  const Index samples = (log.t_s.size() - start + step - 1) / step;
-  const auto rows = [&](const MatrixXd& m) {
-    MatrixXd thin(samples, m.cols());
-    for (Index k = 0; k < samples; ++k) thin.row(k) = m.row(start + k * step);
-    return thin;
-  };
-  for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
-  if (log.coulomb_share.size() > 0) log.coulomb_share = rows(log.coulomb_share);
-  log.t_s = rows(log.t_s);
-  log.first = (log.first - start) / step;
-  log.stride /= step;
-  log.rate_hz /= static_cast<double>(step);
-  log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
-  return out;
-}
-
 /// A bristle does not turn with the sign of a noisy rate: the share of Coulomb's friction is given the sign that was
 /// taken out of it.
 void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& log) {
@@ -83,6 +45,25 @@ void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& l
       if (bristle(joint) && own(joint) * noisy(joint) < 0) log.coulomb_share(k, joint) *= -1;
     }
   }
+}
+
+double rarity(double p) {
+  return -std::log(std::max(p, 1e-300));
+}
+
+/// \param scores  one a distribution
+double smallest_p(const std::vector<NullDistribution>& each, const VectorXd& scores) {
+  double least = 1;
+  for (std::size_t k = 0; k < each.size(); ++k) least = std::min(least, each[k].p_value(scores(static_cast<Index>(k))));
+  return least;
+}
+
+/// Distributions of the columns of scores, and that of the rarest score of each run.
+NullDistribution family_of(const MatrixXd& scores, std::vector<NullDistribution>& each) {
+  for (const auto& column : scores.colwise()) each.emplace_back(std::vector<double>(column.begin(), column.end()));
+  std::vector<double> rarest;
+  for (const auto& run : scores.rowwise()) rarest.push_back(rarity(smallest_p(each, run.transpose())));
+  return NullDistribution(std::move(rarest));
 }
 
 }  // namespace
@@ -112,15 +93,11 @@ double NullDistribution::quantile(double p) const {
 }
 
 double NullStudy::family_p(std::size_t index, double score) const {
-  const double p = std::max(hypothesis[index].p_value(score), 1e-300);
-  return std::min(1.0, family.p_value(-std::log(p)));
+  return std::min(1.0, family.p_value(rarity(hypothesis[index].p_value(score))));
 }
 
 double NullStudy::omnibus_p(const VectorXd& gains) const {
-  double least = 1;
-  for (std::size_t j = 0; j < omnibus.size(); ++j)
-    least = std::min(least, omnibus[j].p_value(gains(static_cast<Index>(j))));
-  return std::min(1.0, omnibus_family.p_value(-std::log(std::max(least, 1e-300))));
+  return std::min(1.0, omnibus_family.p_value(rarity(smallest_p(omnibus, gains))));
 }
 
 Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coordinate_(basis.coordinate) {
@@ -129,8 +106,8 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
     PerLogAndDrive<MatrixXd> columns(basis.columns.size(), std::vector<MatrixXd>(n));
     for (std::size_t l = 0; l < basis.columns.size(); ++l) columns[l][j] = basis.columns[l][j];
     white_.push_back(problem.whiten(columns));
-    MatrixXd G = white_.back().gram(0, white_.back().cols);
-    const VectorXd raw = white_.back().raw_gram(0, white_.back().cols).diagonal().cwiseMax(1e-300);
+    MatrixXd G = white_.back().gram(0, white_.back().cols());
+    const VectorXd raw = white_.back().raw_gram(0, white_.back().cols()).diagonal().cwiseMax(1e-300);
     const VectorXd scale = raw.cwiseSqrt().cwiseInverse();
     G = scale.asDiagonal() * G * scale.asDiagonal();
     const dense::Spectrum spectrum = dense::spectrum(G);
@@ -144,44 +121,75 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
       root.col(static_cast<Index>(k)) = scale.asDiagonal() * spectrum.vectors.col(kept[k]) / std::sqrt(values(kept[k]));
     }
     root_.push_back(root);
-    ranks_.push_back(root.cols());
   }
 }
 
-VectorXd Omnibus::gains(const WhiteProblem& problem, const VectorXd& r) const {
-  const VectorXd Q_r = problem.Q.transpose() * r;
+VectorXd Omnibus::gains(const WhiteProblem& problem, const VectorXd& r, const VectorXd& Q_r) const {
   VectorXd out(static_cast<Index>(white_.size()));
-  for (std::size_t j = 0; j < white_.size(); ++j) {
-    const VectorXd u = white_[j].inner(r, Q_r, problem.segments, 0, white_[j].cols);
-    out(static_cast<Index>(j)) = (root_[j].transpose() * u).squaredNorm();
-  }
+  for (std::size_t j = 0; j < white_.size(); ++j)
+    out(static_cast<Index>(j)) = (root_[j].transpose() * problem.inner(white_[j], r, Q_r)).squaredNorm();
   return out;
 }
 
-VectorXd Omnibus::clear_part(const WhiteProblem& problem, const VectorXd& r, std::size_t drive) const {
-  const VectorXd Q_r = problem.Q.transpose() * r;
-  const VectorXd u = white_[drive].inner(r, Q_r, problem.segments, 0, white_[drive].cols);
-  VectorXd t = root_[drive].transpose() * u;  // of unit variance if there is nothing but noise
+VectorXd Omnibus::clear_part(const WhiteProblem& problem, std::size_t drive) const {
+  // Of unit variance if there is nothing but noise.
+  VectorXd t = root_[drive].transpose() * problem.inner(white_[drive]);
   t = (t.array().abs() > kClear).select(t, 0.0);
   return root_[drive] * t;
 }
 
-std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhiteProblem& problem, const VectorXd& r,
+std::vector<std::pair<std::string, double>> Omnibus::by_coordinate(const WhiteProblem& problem,
                                                                    std::size_t drive) const {
   std::vector<std::pair<std::string, double>> out;
-  const VectorXd Q_r = problem.Q.transpose() * r;
-  const WhiteColumns& white = white_[drive];
   const auto& names = coordinate_[drive];
   for (std::size_t first = 0; first < names.size();) {
     std::size_t end = first;
     while (end < names.size() && names[end] == names[first]) ++end;
-    const auto at = static_cast<Index>(first), count = static_cast<Index>(end - first);
-    const Gain gain = constrained_gain(white.clear_gram(at, count), white.inner(r, Q_r, problem.segments, at, count),
-                                       std::vector<bool>(end - first, false));
+    const auto count = static_cast<Index>(end - first);
+    const WhiteColumns white = white_[drive].part(static_cast<Index>(first), count);
+    const std::vector<bool> positive(end - first, false);
+    const double gain = non_negative_least_squares(white.clear_gram(0, count), problem.inner(white), positive).gain;
     // What chance alone gives each column is taken off.
-    out.emplace_back(names[first], std::max(0.0, gain.gain - static_cast<double>(count)));
+    out.emplace_back(names[first], std::max(0.0, gain - static_cast<double>(count)));
     first = end;
   }
+  return out;
+}
+
+/// The motion of a log at every `step`-th sample, so that its rows stay where they are. The log must have a few samples
+/// to spare before its first row and after its last one, as the coarser low pass may be longer by one step.
+EncoderPilots::Thinned EncoderPilots::thinned(const LogRows& from, double low_pass_hz) {
+  Thinned out;
+  out.number = from.number;
+  out.samples = from.log.t_s.size();
+  out.rate_hz = from.log.rate_hz;
+  out.tau.resize(from.rows(), from.tau.cols());
+  PreparedLog& log = out.log;
+  log = from.log;
+  // The rows' stride must be a whole number of steps.
+  for (const Index candidate : {Index{4}, Index{3}, Index{2}}) {
+    if (log.low_pass && log.stride % candidate == 0 &&
+        log.rate_hz / static_cast<double>(candidate) >= 5 * low_pass_hz) {
+      out.step = candidate;
+      break;
+    }
+  }
+  const Index step = out.step, start = log.first % step;
+  out.start = start;
+  if (step == 1) return out;
+  const Index samples = (log.t_s.size() - start + step - 1) / step;
+  const auto rows = [&](const MatrixXd& m) {
+    MatrixXd thin(samples, m.cols());
+    for (Index k = 0; k < samples; ++k) thin.row(k) = m.row(start + k * step);
+    return thin;
+  };
+  for (MatrixXd* m : {&log.q, &log.qd, &log.qdd, &log.tau}) *m = rows(*m);
+  if (log.coulomb_share.size() > 0) log.coulomb_share = rows(log.coulomb_share);
+  log.t_s = rows(log.t_s);
+  log.first = (log.first - start) / step;
+  log.stride /= step;
+  log.rate_hz /= static_cast<double>(step);
+  log.low_pass = std::make_shared<FirDecimator>(log.rate_hz, low_pass_hz, static_cast<int>(log.stride));
   return out;
 }
 
@@ -191,17 +199,17 @@ std::vector<PreparedLog> EncoderPilots::motion(std::uint64_t seed) const {
   std::vector<PreparedLog> out;
   for (std::size_t l = 0; l < logs_.size(); ++l) {
     PreparedLog log = logs_[l].log;
-    MatrixXd noise(samples_[l], log.q.cols());
+    const double rate_hz = logs_[l].rate_hz;
+    MatrixXd noise(logs_[l].samples, log.q.cols());
     for (Index j = 0; j < noise.cols(); ++j) {
       for (Index k = 0; k < noise.rows(); ++k)
         noise(k, j) = position_noise_[l][static_cast<std::size_t>(j)] * normal(random);
     }
     // Through the same zero-phase filter and differentiation as the log's own motion.
-    noise = zero_phase_filter(noise, rate_hz_[l], cutoff_hz_, 4);
-    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz_[l], 1, 3),
-                   second = differentiate(noise, 1.0 / rate_hz_[l], 2, 3);
+    noise = zero_phase_filter(noise, rate_hz, cutoff_hz_, 4);
+    const MatrixXd rate = differentiate(noise, 1.0 / rate_hz, 1, 3), second = differentiate(noise, 1.0 / rate_hz, 2, 3);
     for (Index k = 0; k < log.q.rows(); ++k) {
-      const Index sample = start_[l] + k * step_[l];
+      const Index sample = logs_[l].start + k * logs_[l].step;
       log.q.row(k) += noise.row(sample);
       log.qd.row(k) += rate.row(sample);
       log.qdd.row(k) += second.row(sample);
@@ -252,12 +260,7 @@ EncoderPilots::EncoderPilots(const EffectModel& model, const BaseParameters& bas
       cutoff_hz_(cutoff_hz) {
   std::vector<PreparedLog> own;
   for (const LogRows& log : logs) {
-    Index step = 1, start = 0;
-    logs_.push_back(thinned(log, low_pass_hz, step, start));
-    step_.push_back(step);
-    start_.push_back(start);
-    samples_.push_back(log.log.t_s.size());
-    rate_hz_.push_back(log.log.rate_hz);
+    logs_.push_back(thinned(log, low_pass_hz));
     logs_.back().signals = model.signals(logs_.back().log, p, false);
     own.push_back(logs_.back().log);
   }
@@ -344,8 +347,8 @@ std::vector<VectorXd> EncoderPilots::bias(const WhiteProblem& problem, const std
     whole[run].resize(sensitive_.size());
     for (std::size_t k = 0; k < sensitive_.size(); ++k) {
       const WhiteColumns& white = signatures[sensitive_[k]].white;
-      if (white.cols == 0) continue;
-      whole[run][k] = white.inner(r, Q_r, problem.segments, 0, white.cols) + white.base.transpose() * Q_r;
+      if (white.cols() == 0) continue;
+      whole[run][k] = problem.inner(white, r, Q_r) + white.base.transpose() * Q_r;
       if (inner[k].size() > 0) whole[run][k] += inner[k];
     }
   });
@@ -364,13 +367,13 @@ void EncoderPilots::correct(const WhiteProblem& problem, std::vector<Signature>&
   in_parallel(sensitive_.size(), [&](std::size_t k) {
     const std::size_t h = sensitive_[k];
     Signature& signature = signatures[h];
-    if (signature.white.cols == 0) return;
+    if (signature.white.cols() == 0) return;
     const Index amplitudes = hypotheses_[h].amplitudes;
     std::vector<MatrixXd> noise(signature.gram.size(), MatrixXd::Zero(amplitudes, amplitudes));
     const std::size_t runs = std::min(kGramRuns, runs_.size());
     for (std::size_t run = 0; run < runs; ++run) {
       const WhiteColumns change = problem.whiten(runs_[run].rows[k]);
-      if (change.cols < signature.white.cols) continue;
+      if (change.cols() < signature.white.cols()) continue;
       for (std::size_t s = 0; s < noise.size(); ++s) {
         noise[s] += change.gram(static_cast<Index>(s) * amplitudes, amplitudes) / static_cast<double>(runs);
       }
@@ -433,15 +436,13 @@ std::vector<VectorXd> EncoderPilots::torque_noise(const WhiteProblem& problem, d
 
 NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& problem,
                          const std::vector<Hypothesis>& hypotheses, const std::vector<Signature>& signatures,
-                         const std::vector<VectorXd>& bias, const Omnibus& omnibus, const NullOptions& options) {
+                         const std::vector<VectorXd>& bias, const Omnibus& omnibus, const DiagnosisOptions& options,
+                         const std::function<void(double)>& progress) {
   NullStudy out;
-  out.runs = options.runs;
-  out.sensitive = static_cast<int>(pilots.sensitive().size());
   const VectorXd clean = pilots.clean(problem);
   const std::vector<VectorXd> taps = pilots.torque_noise(problem, out.encoder_share);
-  const auto drives = static_cast<Index>(omnibus.ranks().size());
-  MatrixXd scores = MatrixXd::Zero(options.runs, static_cast<Index>(hypotheses.size()));
-  MatrixXd generic = MatrixXd::Zero(options.runs, drives);
+  MatrixXd scores = MatrixXd::Zero(options.null_runs, static_cast<Index>(hypotheses.size()));
+  MatrixXd generic = MatrixXd::Zero(options.null_runs, omnibus.drives());
   int done = 0;
   std::mutex counting;
   const auto run = [&](int k) {
@@ -464,8 +465,8 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
     std::vector<const VectorXd*> changed(hypotheses.size(), nullptr);
     for (std::size_t c = 0; c < sensitive.size(); ++c) changed[pilots.sensitive()[c]] = &sensitive[c];
     for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-      if (signatures[h].white.cols == 0) continue;
-      inner[h] = signatures[h].white.inner(r, Q_r, problem.segments, 0, signatures[h].white.cols);
+      if (signatures[h].white.cols() == 0) continue;
+      inner[h] = problem.inner(signatures[h].white, r, Q_r);
       if (changed[h] != nullptr) {
         // The column itself, not only its part beside the base model, moves with the regressor.
         inner[h] += signatures[h].white.base.transpose() * Q_r;
@@ -474,28 +475,14 @@ NullStudy run_null_study(const EncoderPilots& pilots, const WhiteProblem& proble
       inner[h] = freed_of_bias(inner[h], bias[h]);
       scores(k, static_cast<Index>(h)) = best_score(hypotheses[h], signatures[h], inner[h]).gain;
     }
-    generic.row(k) = omnibus.gains(problem, r).transpose();
+    generic.row(k) = omnibus.gains(problem, r, Q_r).transpose();
     const std::lock_guard<std::mutex> lock(counting);
-    if (options.progress) options.progress(static_cast<double>(++done) / options.runs);
+    progress(static_cast<double>(++done) / options.null_runs);
   };
-  in_parallel(options.runs, run, options.threads);
+  in_parallel(options.null_runs, run, options.threads);
 
-  const auto column = [](const MatrixXd& m, Index c) { return std::vector<double>(m.col(c).begin(), m.col(c).end()); };
-  for (Index h = 0; h < scores.cols(); ++h) out.hypothesis.emplace_back(column(scores, h));
-  for (Index j = 0; j < generic.cols(); ++j) out.omnibus.emplace_back(column(generic, j));
-  std::vector<double> smallest, smallest_generic;
-  for (int k = 0; k < options.runs; ++k) {
-    double least = 1, least_generic = 1;
-    for (Index h = 0; h < scores.cols(); ++h)
-      least = std::min(least, out.hypothesis[static_cast<std::size_t>(h)].p_value(scores(k, h)));
-    for (Index j = 0; j < generic.cols(); ++j) {
-      least_generic = std::min(least_generic, out.omnibus[static_cast<std::size_t>(j)].p_value(generic(k, j)));
-    }
-    smallest.push_back(-std::log(std::max(least, 1e-300)));
-    smallest_generic.push_back(-std::log(std::max(least_generic, 1e-300)));
-  }
-  out.family = NullDistribution(smallest);
-  out.omnibus_family = NullDistribution(smallest_generic);
+  out.family = family_of(scores, out.hypothesis);
+  out.omnibus_family = family_of(generic, out.omnibus);
   return out;
 }
 

@@ -14,10 +14,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kMotionOverPass = 2.0;  // cut-off of the motion in units of the one that identification uses: then the
@@ -105,8 +101,7 @@ void leave_rest_out(const Robot& robot, const ProcessingOptions& processing, con
   const auto limbs = static_cast<Index>(robot.description().limbs.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (Index joint = 0; joint < slow[l].cols(); ++joint) {
-      const bool holds = std::find(masked.begin(), masked.end(), static_cast<int>(joint)) == masked.end();
-      if (has_bristle(processing, joint) && holds) continue;
+      if (has_bristle(processing, joint) && std::ranges::count(masked, static_cast<int>(joint)) == 0) continue;
       // The telescope bar's friction acts on the limbs' drives.
       const Index first = joint < robot.drives() ? joint : 0, count = joint < robot.drives() ? 1 : limbs;
       for (Index j = first; j < first + count; ++j)
@@ -138,9 +133,7 @@ std::optional<double> rms_near_reversals(const std::vector<LogRows>& logs, const
 
 /// Largest floor over the logs, beside a basis that follows whatever the motion explains.
 VectorXd floors(const std::vector<LogRows>& logs) {
-  PerLogAndDrive<MatrixXd> no_effects;
-  for (const LogRows& log : logs) no_effects.emplace_back(log.usable.size(), MatrixXd(log.rows(), 0));
-  const PerLogAndDrive<double> floor = estimate_noise(logs, make_generic_basis(logs), no_effects).floor_rms;
+  const PerLogAndDrive<double> floor = estimate_noise(logs, make_generic_basis(logs), {}).floor_rms;
   VectorXd out = VectorXd::Zero(static_cast<Index>(floor.front().size()));
   for (const auto& log : floor) {
     for (std::size_t j = 0; j < log.size(); ++j)
@@ -168,7 +161,6 @@ DiagnosisRows prepare_rows(const Robot& robot, const BaseParameters& base, const
   if (holdout != nullptr) all.push_back(*holdout);
   DiagnosisRows out;
   out.processing = row_processing(all, wanted, cutoff_hz);
-  out.masked = masked;
   std::vector<PreparedLog> ready;
   for (const Log& log : all) ready.push_back(prepared(robot, log, out.processing));
   leave_rest_out(robot, out.processing, slow_samples(robot, ready), masked, ready);
@@ -206,8 +198,7 @@ KnownRows fewest_rows(const std::vector<LogRows>& logs) {
     double known = 0, all = 0;
     for (const LogRows& log : logs) {
       const auto tau = log.tau.col(static_cast<Index>(j));
-      NoiseModel noise;
-      noise.std = std::max(kUsualNoise * root_mean_square(tau), 1e-12);
+      const NoiseModel noise{{}, std::max(kUsualNoise * root_mean_square(tau), 1e-12)};
       known += static_cast<double>(Whitener(noise, log.present[j], log.unknown[j]).freedom());
       all += static_cast<double>(log.rows());
     }

@@ -15,7 +15,6 @@ namespace deltadyn::detail {
 struct DiagnosisRows {
   ProcessingOptions processing;     ///< of `logs` and `held`
   std::vector<LogRows> logs, held;  ///< signals left empty; `held` has at most one
-  std::vector<int> masked;          ///< drives from 0 whose known bristles do not hold near reversals: left out there
 };
 
 /// Cut-offs for the search.
@@ -42,7 +41,7 @@ struct SearchCutoff {
 /// \param p  around which the parameters are fitted
 [[nodiscard]] std::vector<int> drives_without_hold(const EffectModel& model, const BaseParameters& base,
                                                    const std::vector<Log>& logs, const ProcessingOptions& wanted,
-                                                   double cutoff_hz, const Eigen::VectorXd& p);
+                                                   double cutoff_hz, const VectorXd& p);
 
 /// Rows of the drive of which least is known in all logs, less the directions that reversals take.
 struct KnownRows {

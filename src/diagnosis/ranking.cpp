@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace deltadyn::detail {
 
@@ -19,14 +18,8 @@ bool nearly_special(const Fit& rich) {
 }  // namespace
 
 std::vector<std::size_t> best_of(const EffectSearch& search, const EffectSearch::State& state, std::size_t count) {
-  std::vector<std::size_t> order(state.scores.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return search.worth(a, state.scores[a].gain, state) > search.worth(b, state.scores[b].gain, state);
-  });
-  order.resize(std::min(count, order.size()));
-  order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t h) { return !(state.scores[h].gain > 0); }),
-              order.end());
+  std::vector<std::size_t> order = search.ranked(state, count);
+  std::erase_if(order, [&](std::size_t h) { return !(state.scores[h].gain > 0); });
   return order;
 }
 
@@ -50,24 +43,19 @@ std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits
 
 std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
                             const std::function<bool(const Fit&)>& counts) {
-  double best_worth = 0;
-  std::size_t best = 0;
   std::vector<Fit> fits;
-  std::vector<double> gains;
+  std::vector<double> gains, worths;
   const auto order = best_of(search, state, kRefined);
   search.refine_all(state, order);
   for (const std::size_t h : order) {
-    Fit fit = search.refine(state, h);
+    const Fit& fit = search.refine(state, h);
     if (!counts(fit)) continue;
-    const double worth = search.worth(h, fit.gain, state);
-    if (fits.empty() || worth > best_worth) {
-      best_worth = worth;
-      best = fits.size();
-    }
     gains.push_back(fit.gain);
-    fits.push_back(std::move(fit));
+    worths.push_back(search.worth(h, fit.gain, state));
+    fits.push_back(fit);
   }
   if (fits.empty()) return std::nullopt;
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(worths) - worths.begin());
   return std::move(fits[simpler_one(search, fits, gains, best)]);
 }
 

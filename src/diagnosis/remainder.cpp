@@ -5,10 +5,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem,
                        const PerLogAndDrive<MatrixXd>& columns, const VectorXd& amplitude) {
   VectorXd white = VectorXd::Zero(problem.rows);
@@ -33,19 +29,10 @@ Remainder remainder_of(const SearchContext& context, const WhiteProblem& problem
   return out;
 }
 
-VectorXd squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {
-  VectorXd out = VectorXd::Zero(context.robot.drives());
-  for (std::size_t s = 0; s < fit.white.blocks.size(); ++s) {
-    if (fit.white.blocks[s].size() == 0) continue;
-    out(static_cast<Index>(problem.segments[s].drive)) += (fit.white.blocks[s] * fit.effect.amplitude).squaredNorm();
-  }
-  return out;
-}
-
 VectorXd remaining_torque(const WhiteProblem& problem, const Fit& fit) {
   const WhiteColumns white = problem.whiten(fit.rows);
-  if (white.cols < fit.effect.amplitude.size()) return VectorXd::Zero(problem.rows);
-  return white.projected(problem.Q, problem.segments, 0, white.cols) * fit.effect.amplitude;
+  if (white.cols() < fit.effect.amplitude.size()) return VectorXd::Zero(problem.rows);
+  return problem.projected(white) * fit.effect.amplitude;
 }
 
 VectorXd remaining_squares_by_drive(const SearchContext& context, const WhiteProblem& problem, const Fit& fit) {

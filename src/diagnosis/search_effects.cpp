@@ -4,7 +4,6 @@
 
 #include "deltadyn/runtime/in_parallel.hpp"
 
-#include "confusable_set.hpp"
 #include "form_error.hpp"
 #include "ranking.hpp"
 
@@ -19,42 +18,29 @@ constexpr std::size_t kBestForPairs = 10;
 constexpr int kMostExchanges = 3;  // of one name for another, at the end
 constexpr double kBetter = 2.0;    // worth that another hypothesis must have more than one that was taken before
 
-/// The same noise without its memory: smooth effects, which an autoregression takes for noise, show in it.
-PerLogAndDrive<NoiseModel> without_memory(PerLogAndDrive<NoiseModel> noise) {
-  for (auto& log : noise) {
-    for (NoiseModel& one : log) {
-      one.std = one.total_std();
-      one.ar.resize(0);
-    }
-  }
-  return noise;
-}
-
 /// The effect that raises the likelihood most when the noise is estimated again beside it, among the best by their gain
 /// with and without the noise's memory. None if no effect raises it enough.
 std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots& pilots,
-                               const std::vector<AcceptedEffect>& provisional, const NoiseEstimate& estimate) {
+                               const std::vector<Fit>& provisional, const NoiseEstimate& estimate) {
   const EffectSearch& search = context.search;
   std::vector<Fit> candidates;
+  // Smooth effects, which an autoregression takes for noise, show in noise without memory.
   for (const auto& noise : {estimate.noise, without_memory(estimate.noise)}) {
     const EffectSearch::State state = search.state(noise, provisional, &pilots);
     const auto order = best_of(search, state, kProvisionalCandidates);
     search.refine_all(state, order);
     for (const std::size_t h : order) candidates.push_back(search.refine(state, h));
   }
-  const double rows = [&] {
-    double sum = 0;
-    for (const LogRows& log : context.logs) {
-      for (const RowMask& usable : log.usable) sum += static_cast<double>(usable.count());
-    }
-    return sum;
-  }();
+  double rows = 0;
+  for (const LogRows& log : context.logs) {
+    for (const RowMask& usable : log.usable) rows += static_cast<double>(usable.count());
+  }
   // All start from the same noise and take one pass, the model without a further effect, too.
   const double reference = search.noise_beside(provisional, &estimate.noise).log_likelihood;
   std::vector<double> gain(candidates.size(), 0.0);
   in_parallel(candidates.size(), [&](std::size_t k) {
-    std::vector<AcceptedEffect> with = provisional;
-    with.push_back(search.accept(candidates[k]));
+    std::vector<Fit> with = provisional;
+    with.push_back(candidates[k]);
     gain[k] = 2 * (search.noise_beside(with, &estimate.noise).log_likelihood - reference) -
               search.hypotheses()[candidates[k].hypothesis].freedom() * std::log(rows);
   });
@@ -75,15 +61,15 @@ bool counts(const SearchContext& context, const SearchResult& found, const Effec
 }
 
 EffectSearch::State beside_others(const SearchContext& context, const SearchResult& found, std::size_t k) {
-  std::vector<AcceptedEffect> others = found.accepted;
+  std::vector<Fit> others = found.fits;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
   return context.search.state(found.noise, others, found.pilots.get());
 }
 
 Fit fit_beside(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others,
                std::size_t k) {
-  const Fit& fit = context.search.refine(others, found.accepted[k].hypothesis);
-  if (!found.hygiene[k] || hygienic(context, fit)) return fit;
+  const Fit& fit = context.search.refine(others, found.fits[k].hypothesis);
+  if (!found.fits[k].hygiene || hygienic(context, fit)) return fit;
   Fit allowed = found.fits[k];  // no more than was allowed for without a name
   allowed.white = others.problem->whiten(allowed.rows);
   return allowed;
@@ -92,9 +78,9 @@ Fit fit_beside(const SearchContext& context, const SearchResult& found, const Ef
 /// The hypothesis that fits better than `fit` in its place, now that the others are known; `fit` if there is none.
 Fit best_in_place(const SearchContext& context, const SearchResult& found, const EffectSearch::State& others,
                   std::size_t k, Fit fit) {
-  if (found.hygiene[k]) return fit;
+  if (found.fits[k].hygiene) return fit;
   const FormErrors form_errors(context, found, others, k);
-  const auto named = std::count(found.hygiene.begin(), found.hygiene.end(), false);
+  const auto named = std::ranges::count(found.fits, false, &Fit::hygiene);
   const double material = named > 1 ? kMaterialFurther : kMaterial;
   const auto may_follow = [&](const Fit& one) {
     return !hygienic(context, one) && counts(context, found, others, one, material) && !form_errors.explain(one);
@@ -110,33 +96,27 @@ Fit best_in_place(const SearchContext& context, const SearchResult& found, const
 bool drop_weakest(const SearchContext& context, SearchResult& found) {
   std::optional<std::size_t> weakest;
   double least = 0;
-  for (std::size_t k = 0; k < found.accepted.size() && found.accepted.size() > 1; ++k) {
+  for (std::size_t k = 0; k < found.fits.size() && found.fits.size() > 1; ++k) {
     const EffectSearch::State others = beside_others(context, found, k);
     const Fit fit = fit_beside(context, found, others, k);
     if (weakest && fit.gain >= least) continue;
     const FormErrors form_errors(context, found, others, k);
-    if (counts(context, found, others, fit) && (found.hygiene[k] || !form_errors.explain(fit))) continue;
+    if (counts(context, found, others, fit) && (found.fits[k].hygiene || !form_errors.explain(fit))) continue;
     weakest = k;
     least = fit.gain;
   }
   if (!weakest) return false;
-  const auto at = static_cast<std::ptrdiff_t>(*weakest);
-  found.accepted.erase(found.accepted.begin() + at);
-  found.fits.erase(found.fits.begin() + at);
-  found.hygiene.erase(found.hygiene.begin() + at);
+  found.fits.erase(found.fits.begin() + static_cast<std::ptrdiff_t>(*weakest));
   return true;
 }
 
 /// Another hypothesis in the place of effect k, if one fits better now that the others are known.
-bool exchange(const SearchContext& context, SearchResult& found, std::size_t k) {
-  if (found.hygiene[k]) return false;
+void exchange(const SearchContext& context, SearchResult& found, std::size_t k) {
+  if (found.fits[k].hygiene) return;
   const EffectSearch::State others = beside_others(context, found, k);
   const Fit now = fit_beside(context, found, others, k);
   Fit best = best_in_place(context, found, others, k, now);
-  if (best.hypothesis == now.hypothesis) return false;
-  found.accepted[k] = context.search.accept(best);
-  found.fits[k] = std::move(best);
-  return true;
+  if (best.hypothesis != now.hypothesis) found.fits[k] = std::move(best);
 }
 
 /// The best effect beside those found, as long as one counts.
@@ -145,21 +125,20 @@ void take_in_forward(const SearchContext& context, SearchResult& found) {
   std::optional<EffectSearch::State> beside;
   int named = 0;
   while (named < context.options.max_effects &&
-         static_cast<int>(found.accepted.size()) < context.options.max_effects + kHygienic) {
+         static_cast<int>(found.fits.size()) < context.options.max_effects + kHygienic) {
     const EffectSearch::State& state = beside ? *beside : found.before;
     const FormErrors form_errors(context, found, state);
     std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
       return counts(context, found, state, one, named > 0 ? kMaterialFurther : kMaterial) && !form_errors.explain(one);
     });
     if (!fit) break;
-    found.hygiene.push_back(hygienic(context, *fit));
-    named += found.hygiene.back() ? 0 : 1;
-    found.accepted.push_back(search.accept(*fit));
+    fit->hygiene = hygienic(context, *fit);
+    named += fit->hygiene ? 0 : 1;
     found.fits.push_back(std::move(*fit));
     // An earlier one may have stood for a mixture with the newest: what such a mixture leaves must not be taken for a
     // third.
-    for (std::size_t k = 0; k + 1 < found.accepted.size(); ++k) exchange(context, found, k);
-    beside = search.state(found.noise, found.accepted, found.pilots.get());
+    for (std::size_t k = 0; k + 1 < found.fits.size(); ++k) exchange(context, found, k);
+    beside = search.state(found.noise, found.fits, found.pilots.get());
   }
 }
 
@@ -167,22 +146,17 @@ void take_in_forward(const SearchContext& context, SearchResult& found) {
 /// follower.
 void prefer_the_best_pair(const SearchContext& context, SearchResult& found) {
   const EffectSearch& search = context.search;
-  if (found.accepted.size() != 2 || found.hygiene[0] || found.hygiene[1]) return;
+  if (found.fits.size() != 2 || found.fits[0].hygiene || found.fits[1].hygiene) return;
   const EffectSearch::Pair pair = search.best_pair(found.before, kBestForPairs);
-  const double forward_gain = found.before.problem->r.squaredNorm() -
-                              search.state(found.noise, found.accepted, nullptr).problem->r.squaredNorm();
-  const auto taken = [&](std::size_t h) {
-    return found.accepted[0].hypothesis == h || found.accepted[1].hypothesis == h;
-  };
+  const double forward_gain =
+      found.before.problem->r.squaredNorm() - search.state(found.noise, found.fits, nullptr).problem->r.squaredNorm();
+  const auto taken = [&](std::size_t h) { return found.fits[0].hypothesis == h || found.fits[1].hypothesis == h; };
   if (pair.gain <= 1.02 * forward_gain || (taken(pair.first) && taken(pair.second))) return;
-  found.accepted.clear();
   found.fits.clear();
-  found.hygiene.clear();
   for (const std::size_t h : {pair.first, pair.second}) {
-    const EffectSearch::State beside = search.state(found.noise, found.accepted, found.pilots.get());
+    const EffectSearch::State beside = search.state(found.noise, found.fits, found.pilots.get());
     found.fits.push_back(search.refine(beside, h));
-    found.accepted.push_back(search.accept(found.fits.back()));
-    found.hygiene.push_back(hygienic(context, found.fits.back()));
+    found.fits.back().hygiene = hygienic(context, found.fits.back());
   }
 }
 
@@ -195,15 +169,14 @@ void settle_backward(const SearchContext& context, SearchResult& found) {
     }
     exchanged = false;
     found.sets.clear();
-    for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    for (std::size_t k = 0; k < found.fits.size(); ++k) {
       const EffectSearch::State others = beside_others(context, found, k);
       Fit fit = best_in_place(context, found, others, k, fit_beside(context, found, others, k));
-      exchanged |= fit.hypothesis != found.accepted[k].hypothesis;
-      found.hygiene[k] = found.hygiene[k] || hygienic(context, fit);
+      exchanged |= fit.hypothesis != found.fits[k].hypothesis;
+      fit.hygiene = found.fits[k].hygiene || hygienic(context, fit);
       set_uncertainty(context, others, fit);
-      found.sets.push_back(found.hygiene[k] ? std::vector<EffectCandidate>()
-                                            : confusable_set(context, found, others, fit, k));
-      found.accepted[k] = context.search.accept(fit);
+      found.sets.push_back(fit.hygiene ? std::vector<EffectCandidate>()
+                                       : confusable_set(context, found, others, fit, k));
       found.fits[k] = std::move(fit);
     }
   }
@@ -225,61 +198,53 @@ SearchResult search_effects(const SearchContext& context, Diagnosis& out, const 
 
   // Encoder noise: which scores it fakes. With the noise model of the base model; a large effect in it only makes this
   // coarser.
-  NoiseEstimate estimate;
   if (earlier != nullptr) {
-    estimate.noise = earlier->noise;
-    estimate.floor_rms = earlier->floor;
-  } else {
-    estimate = search.noise_beside({});
-  }
-  if (earlier != nullptr) {
+    found.noise = earlier->noise;
+    found.floor = earlier->floor;
     found.pilots = earlier->pilots;
+    report(0.3);
   } else {
+    NoiseEstimate estimate = search.noise_beside({});
     const EffectSearch::State state = search.state(estimate.noise, {}, nullptr);
     const double pass_hz = std::min(context.processing.torque_cutoff_ratio * context.processing.cutoff_hz,
                                     0.4 * context.logs.front().log.rate_hz);
     found.pilots = std::make_shared<EncoderPilots>(
         context.model, context.base, context.logs, context.p, *state.problem, search.hypotheses(), state.signatures,
         context.position_noise, context.processing.cutoff_hz, pass_hz, options.seed, options.threads);
+    report(0.3);
+    // Provisional effects, so that the noise model is not made of what is missing.
+    std::vector<Fit> provisional;
+    for (int step = 0; step < options.max_effects + kHygienic; ++step) {
+      std::optional<Fit> fit = most_likely(context, *found.pilots, provisional, estimate);
+      if (!fit) break;
+      provisional.push_back(std::move(*fit));
+      estimate = search.noise_beside(provisional);
+      report(0.3 + 0.03 * (step + 1));
+    }
+    found.noise = std::move(estimate.noise);
+    found.floor = std::move(estimate.floor_rms);
   }
   const EncoderPilots& pilots = *found.pilots;
-  report(0.3);
-
-  // Provisional effects, so that the noise model is not made of what is missing.
-  std::vector<AcceptedEffect> provisional;
-  for (int step = 0; earlier == nullptr && step < options.max_effects + kHygienic; ++step) {
-    std::optional<Fit> fit = most_likely(context, pilots, provisional, estimate);
-    if (!fit) break;
-    provisional.push_back(search.accept(*fit));
-    estimate = search.noise_beside(provisional);
-    report(0.3 + 0.03 * (step + 1));
-  }
-  found.noise = estimate.noise;
-  found.floor = estimate.floor_rms;
 
   // The null, beside the base model, with that noise.
   found.before = search.state(found.noise, {}, &pilots);
   found.omnibus_before = Omnibus(*found.before.problem, context.basis);
-  found.structure_before = found.omnibus_before.gains(*found.before.problem, found.before.problem->r);
+  found.structure_before = found.omnibus_before.gains(*found.before.problem);
   if (earlier != nullptr) {
     found.null = earlier->null;
   } else {
-    NullOptions null_options;
-    null_options.runs = options.null_runs;
-    null_options.seed = options.seed;
-    null_options.threads = options.threads;
-    null_options.progress = [&](double share) { report(0.45 + 0.4 * share); };
-    found.null = run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures,
-                                found.before.bias, found.omnibus_before, null_options);
+    found.null =
+        run_null_study(pilots, *found.before.problem, search.hypotheses(), found.before.signatures, found.before.bias,
+                       found.omnibus_before, options, [&](double share) { report(0.45 + 0.4 * share); });
   }
   out.encoder_share = found.null.encoder_share;
 
   take_in_forward(context, found);
   prefer_the_best_pair(context, found);
   settle_backward(context, found);
-  found.after = search.state(found.noise, found.accepted, &pilots);
+  found.after = search.state(found.noise, found.fits, &pilots);
   found.omnibus_after = Omnibus(*found.after.problem, context.basis);
-  found.structure_after = found.omnibus_after.gains(*found.after.problem, found.after.problem->r);
+  found.structure_after = found.omnibus_after.gains(*found.after.problem);
   return found;
 }
 

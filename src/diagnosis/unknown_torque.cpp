@@ -8,10 +8,6 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 // Squared size of a direction that can be told from rounding, in units of the largest

@@ -6,7 +6,6 @@
 /// What happens there for a few milliseconds reaches every row within the low pass, but in a few directions only, so
 /// that most of each row can still be used.
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "deltadyn/identification/log_processing.hpp"
@@ -17,8 +16,8 @@ namespace deltadyn {
 
 /// What one stretch of unknown samples can add to the rows from `first` on.
 struct UnknownTorque {
-  Eigen::Index first = 0;
-  Eigen::MatrixXd
+  Index first = 0;
+  MatrixXd
       /// Rows x directions, orthogonal, each as large [N m or N] as an error of the drive's torque can make it
       directions;
 };
@@ -26,6 +25,6 @@ struct UnknownTorque {
 /// The stretches of samples that PreparedLog::reversal marks for a drive.
 /// \param present  set to false at rows that lie deep inside a long stretch (the joint stands), where nothing is known
 ///                 at all
-[[nodiscard]] std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Eigen::Index drive, RowMask& present);
+[[nodiscard]] std::vector<UnknownTorque> unknown_torque(const PreparedLog& log, Index drive, RowMask& present);
 
 }  // namespace deltadyn

@@ -4,8 +4,6 @@
 
 namespace deltadyn::detail {
 
-using Eigen::Index;
-
 namespace {
 
 constexpr double kLeftOver = 1.05;      // rms over floor from which structure that is left is worth a word
@@ -24,16 +22,12 @@ std::string amplitude_text(const NamedEffect& one, const RobotDescription& robot
   return text;
 }
 
-const char* torque_unit(const SearchContext& context, std::size_t drive) {
-  return context.robot.description().kind_of_drive(static_cast<int>(drive)) == DriveKind::revolute ? "N m" : "N";
-}
-
 /// A user's own parameters can be off although nothing is missing: the search fits them anew.
 void say_parameters_are_off(const SearchContext& context, Diagnosis& out) {
   for (std::size_t j = 0; j < out.drives.size(); ++j) {
     const DriveFit& drive = out.drives[j];
     if (!(drive.rms_given > kParametersOff * drive.rms)) continue;
-    const char* unit = torque_unit(context, j);
+    const char* unit = unit_of_drive(context.robot, static_cast<int>(j));
     out.lines.push_back(fmt::format(
         "But the parameters are off: at drive {} they leave {:.3g} {} of these logs, fitted anew {:.3g} {}.", j + 1,
         drive.rms_given, unit, drive.rms, unit));
@@ -49,14 +43,31 @@ std::string structure_left(const SearchContext& context, const Diagnosis& out) {
     if (drive.p_left >= kStructureChance || drive.rms_after < kLeftOver * drive.floor) continue;
     return fmt::format(
         "of drive {} {:.3g} {} are left where noise alone leaves {:.3g}, but no effect of the catalogue explains that "
-        "on "
-        "every log",
-        j + 1, drive.rms_after, torque_unit(context, j), drive.floor);
+        "on every log",
+        j + 1, drive.rms_after, unit_of_drive(context.robot, static_cast<int>(j)), drive.floor);
   }
   return "";
 }
 
+/// Squares of the hold-out residual beside the names, each drive in units of `scale`'s residual without them.
+double left_of_holdout(const Diagnosis& diagnosis, const Diagnosis& scale) {
+  double sum = 0;
+  for (std::size_t j = 0; j < diagnosis.holdout_figures.size(); ++j) {
+    const double given = scale.holdout_figures[j].rms_given, written = diagnosis.holdout_figures[j].rms_written;
+    if (given > 0) sum += written * written / (given * given);
+  }
+  return sum;
+}
+
 }  // namespace
+
+bool turns(const Robot& robot, int drive) {
+  return robot.description().kind_of_drive(drive) == DriveKind::revolute;
+}
+
+const char* unit_of_drive(const Robot& robot, int drive) {
+  return turns(robot, drive) ? "N m" : "N";
+}
 
 void say(const SearchContext& context, Diagnosis& out) {
   const RobotDescription& robot = context.robot.description();
@@ -84,29 +95,33 @@ void say(const SearchContext& context, Diagnosis& out) {
       return;
     default: break;
   }
-  std::string names;
-  for (const NamedEffect& one : out.named) names += (names.empty() ? "" : " and ") + one.name + " at " + one.joint;
   for (const NamedEffect& one : out.named) {
     const EffectKind& kind = effect_kind(one.effect.id);
     const std::string shape = effect_shape_text(one.effect, robot);
-    out.lines.push_back(fmt::format("{} at {}: {}. Size: {}{}.", one.name, one.joint, kind.meaning,
-                                    amplitude_text(one, robot), shape.empty() ? "" : "; " + shape));
+    out.lines.push_back(fmt::format("{}: {}. Size: {}{}.", one.at_joint(), kind.meaning, amplitude_text(one, robot),
+                                    shape.empty() ? "" : "; " + shape));
     if (!one.confusable.empty()) {
-      std::string others;
-      for (const EffectCandidate& other : one.confusable)
-        others += (others.empty() ? "" : ", ") + other.name + " at " + other.joint;
+      const std::string others = listed(one.confusable, ", ");
       out.lines.push_back("These logs cannot tell it from " + others + ": " + one.confusable.front().why + ".");
       out.next.push_back("To tell " + one.name + " from " + others +
                          ", record a motion that separates them: --plan-next FILE writes one.");
     }
     out.next.push_back(fmt::format("{}: {}.", one.name, kind.remedy));
   }
-  out.headline = out.verdict == DiagnosisVerdict::named
-                     ? "Missing: " + names + "."
-                     : "Missing: " + names + ", or an effect that these logs cannot tell from it.";
+  out.headline =
+      fmt::format("Missing: {}{}.", listed(out.named, " and "),
+                  out.verdict == DiagnosisVerdict::named ? "" : ", or an effect that these logs cannot tell from it");
   out.next.push_back(context.options.identify
                          ? "Go on with the improved parameters and the effect file."
                          : "Write the model with the effect by --params-out and --effects-out, and go on with it.");
+}
+
+bool explains_more(const Diagnosis& one, const Diagnosis& other) {
+  const bool name = gives_a_name(one.verdict), other_name = gives_a_name(other.verdict);
+  if (!name || !other_name) return name && !other_name;
+  const bool held = !one.holdout_figures.empty() && one.holdout_figures.size() == other.holdout_figures.size();
+  if (held) return left_of_holdout(one, other) < left_of_holdout(other, other);
+  return one.explained_share > other.explained_share;
 }
 
 }  // namespace deltadyn::detail

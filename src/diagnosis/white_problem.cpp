@@ -8,27 +8,12 @@
 
 namespace deltadyn {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
 
 constexpr double kRank = 1e-7;      // a direction of the regressor this much weaker than the strongest is rounding
 constexpr double kAbsorbed = 1e-5;  // of a signature's square: below, nothing of it is left beside the base model
-constexpr double kSingular = 1e-8;  // of the strongest direction of a scaled Gram matrix: what its rounding can hold
 
 }  // namespace
-
-VectorXd WhiteColumns::inner(const VectorXd& r, const VectorXd& Q_r, const std::vector<WhiteSegment>& segments,
-                             Index first, Index count) const {
-  VectorXd u = -base.middleCols(first, count).transpose() * Q_r;
-  for (std::size_t s = 0; s < blocks.size(); ++s) {
-    if (blocks[s].size() > 0)
-      u.noalias() += blocks[s].middleCols(first, count).transpose() * r.segment(segments[s].offset, segments[s].rows());
-  }
-  return u;
-}
 
 MatrixXd WhiteColumns::raw_gram(Index first, Index count) const {
   MatrixXd G = MatrixXd::Zero(count, count);
@@ -56,21 +41,10 @@ MatrixXd WhiteColumns::clear_gram(Index first, Index count) const {
 
 WhiteColumns WhiteColumns::part(Index first, Index count) const {
   WhiteColumns out;
-  out.cols = count;
   out.base = base.middleCols(first, count);
   for (const MatrixXd& block : blocks)
     out.blocks.push_back(block.size() > 0 ? MatrixXd(block.middleCols(first, count)) : MatrixXd());
   return out;
-}
-
-MatrixXd WhiteColumns::projected(const MatrixXd& Q, const std::vector<WhiteSegment>& segments, Index first,
-                                 Index count) const {
-  MatrixXd C = -Q * base.middleCols(first, count);
-  for (std::size_t s = 0; s < blocks.size(); ++s) {
-    if (blocks[s].size() > 0)
-      C.middleRows(segments[s].offset, segments[s].rows()) += blocks[s].middleCols(first, count);
-  }
-  return C;
 }
 
 MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b) {
@@ -108,14 +82,16 @@ WhiteProblem::WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDriv
   Q = qr.basis();
   beta = norm.cwiseInverse().asDiagonal() * qr.solve(y);
   r = y - Q * (Q.transpose() * y);
+  Q_r = Q.transpose() * r;
 }
 
 WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const {
   WhiteColumns out;
+  Index cols = 0;
   for (const auto& log : columns) {
-    for (const MatrixXd& drive : log) out.cols = std::max(out.cols, drive.cols());
+    for (const MatrixXd& drive : log) cols = std::max(cols, drive.cols());
   }
-  out.base = MatrixXd::Zero(Q.cols(), out.cols);
+  out.base = MatrixXd::Zero(Q.cols(), cols);
   for (const WhiteSegment& segment : segments) {
     const MatrixXd& raw = columns[segment.log][segment.drive];
     out.blocks.push_back(raw.size() > 0 ? segment.whitener.apply(raw) : MatrixXd());
@@ -125,9 +101,21 @@ WhiteColumns WhiteProblem::whiten(const PerLogAndDrive<MatrixXd>& columns) const
   return out;
 }
 
-Gain constrained_gain(const MatrixXd& gram, const VectorXd& inner, const std::vector<bool>& positive) {
-  const NonNegativeSolution best = non_negative_least_squares(gram, inner, positive, kSingular);
-  return {best.gain, best.x};
+MatrixXd WhiteProblem::projected(const WhiteColumns& C) const {
+  MatrixXd out = -Q * C.base;
+  for (std::size_t s = 0; s < C.blocks.size(); ++s) {
+    if (C.blocks[s].size() > 0) out.middleRows(segments[s].offset, segments[s].rows()) += C.blocks[s];
+  }
+  return out;
+}
+
+VectorXd WhiteProblem::inner(const WhiteColumns& C, const VectorXd& residual, const VectorXd& Q_residual) const {
+  VectorXd u = -C.base.transpose() * Q_residual;
+  for (std::size_t s = 0; s < C.blocks.size(); ++s) {
+    if (C.blocks[s].size() > 0)
+      u.noalias() += C.blocks[s].transpose() * residual.segment(segments[s].offset, segments[s].rows());
+  }
+  return u;
 }
 
 Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
@@ -137,26 +125,13 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
   const Index k = hypothesis.amplitudes;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     const Index first = static_cast<Index>(s) * k;
-    if (out.white.cols < first + k) {  // nowhere in these logs
-      out.gram.push_back(MatrixXd::Zero(k, k));
-      out.clean.push_back(1);
-      out.kept.push_back(0);
-      continue;
-    }
-    out.gram.push_back(out.white.clear_gram(first, k));
-    out.clean.push_back(1);
-    const MatrixXd raw = out.white.raw_gram(first, k);
-    const double whole = raw.trace();
+    const bool anywhere = out.white.cols() >= first + k;
+    const double whole = anywhere ? out.white.raw_gram(first, k).trace() : 0.0;
+    out.gram.push_back(anywhere ? out.white.clear_gram(first, k) : MatrixXd::Zero(k, k));
     out.kept.push_back(whole > 0 ? std::max(0.0, out.gram.back().trace() / whole) : 0.0);
   }
+  out.clean.assign(hypothesis.shapes.size(), 1);
   return out;
-}
-
-Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem) {
-  if (signature.white.cols == 0) return best_score(hypothesis, signature, VectorXd(0));
-  const VectorXd Q_r = problem.Q.transpose() * problem.r;
-  return best_score(hypothesis, signature,
-                    signature.white.inner(problem.r, Q_r, problem.segments, 0, signature.white.cols));
 }
 
 Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner) {
@@ -166,30 +141,29 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
   for (const AmplitudeTraits& amplitude : kind.amplitudes) positive.push_back(amplitude.positive());
   Score best;
   best.amplitude = VectorXd::Zero(k);
-  if (signature.white.cols == 0) return best;
+  if (signature.white.cols() == 0) return best;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
     if (signature.kept[s] < kAbsorbed) continue;
     const VectorXd u = inner.segment(static_cast<Index>(s) * k, k);
-    Gain gain;
+    NonNegativeSolution found;
     if (kind.tied) {
       const double amount = hypothesis.shapes[s](0);
       // Noise in the column would make the amplitude, here fixed, come out too large for the data.
-      gain.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
-      gain.amplitude = VectorXd::Constant(1, amount);
+      found.gain = 2 * amount * u(0) - amount * amount * signature.clean[s] * signature.gram[s](0, 0);
+      found.x = VectorXd::Constant(1, amount);
     } else {
-      gain = constrained_gain(signature.gram[s], u, positive);
+      found = non_negative_least_squares(signature.gram[s], u, positive);
       bool too_large = false;
-      for (Index c = 0; c < k; ++c)
-        too_large |= std::abs(gain.amplitude(c)) > hypothesis.largest(static_cast<std::size_t>(c));
+      for (Index c = 0; c < k; ++c) too_large |= std::abs(found.x(c)) > hypothesis.largest(static_cast<std::size_t>(c));
       // ... and a fitted one too small.
-      if (!too_large) gain.amplitude /= signature.clean[s];
+      if (!too_large) found.x /= signature.clean[s];
       for (Index c = 0; c < k; ++c) {
         const double largest = hypothesis.largest(static_cast<std::size_t>(c));
-        gain.amplitude(c) = std::clamp(gain.amplitude(c), -largest, largest);
+        found.x(c) = std::clamp(found.x(c), -largest, largest);
       }
-      if (too_large) gain.gain = 2 * gain.amplitude.dot(u) - gain.amplitude.dot(signature.gram[s] * gain.amplitude);
+      if (too_large) found.gain = 2 * found.x.dot(u) - found.x.dot(signature.gram[s] * found.x);
     }
-    if (gain.gain > best.gain) best = {gain.gain, s, gain.amplitude};
+    if (found.gain > best.gain) best = {found.gain, s, found.x};
   }
   return best;
 }

@@ -4,7 +4,6 @@
 /// The regression of all logs and drives in white, unit-variance rows, with the base model projected out: a candidate
 /// counts only by its part orthogonal to what a re-fit of the base parameters would absorb.
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "hypothesis.hpp"
@@ -14,99 +13,80 @@
 
 namespace deltadyn {
 
-/// [log][drive]
-template <class T>
-using PerLogAndDrive = std::vector<std::vector<T>>;
-
 /// White rows of one drive in one log.
 struct WhiteSegment {
   std::size_t log = 0, drive = 0;
-  Eigen::Index offset = 0;  ///< of its rows among all rows
+  Index offset = 0;  ///< of its rows among all rows
   Whitener whitener;
 
-  [[nodiscard]] Eigen::Index rows() const { return whitener.rows(); }
+  [[nodiscard]] Index rows() const { return whitener.rows(); }
 };
 
 /// Columns in white rows, one block a segment (empty where the column is zero).
 struct WhiteColumns {
-  std::vector<Eigen::MatrixXd> blocks;
-  Eigen::MatrixXd base;  ///< Q^T C
-  Eigen::Index cols = 0;
+  std::vector<MatrixXd> blocks;
+  MatrixXd base;  ///< Q^T C
 
-  /// C_perp^T r for the columns [first, first + count).
-  [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& r, const Eigen::VectorXd& Q_r,
-                                      const std::vector<WhiteSegment>& segments, Eigen::Index first,
-                                      Eigen::Index count) const;
+  [[nodiscard]] Index cols() const { return base.cols(); }
+
   /// C_perp^T C_perp.
-  [[nodiscard]] Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index count) const;
+  [[nodiscard]] MatrixXd gram(Index first, Index count) const;
   /// The same, zero in rows and columns of which the projection leaves rounding only.
-  [[nodiscard]] Eigen::MatrixXd clear_gram(Eigen::Index first, Eigen::Index count) const;
+  [[nodiscard]] MatrixXd clear_gram(Index first, Index count) const;
   /// C^T C without projection.
-  [[nodiscard]] Eigen::MatrixXd raw_gram(Eigen::Index first, Eigen::Index count) const;
+  [[nodiscard]] MatrixXd raw_gram(Index first, Index count) const;
   /// Columns [first, first + count) alone.
-  [[nodiscard]] WhiteColumns part(Eigen::Index first, Eigen::Index count) const;
-  /// C_perp over all rows.
-  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& Q, const std::vector<WhiteSegment>& segments,
-                                          Eigen::Index first, Eigen::Index count) const;
+  [[nodiscard]] WhiteColumns part(Index first, Index count) const;
 };
 
 /// a^T b between the projected columns of two sets.
-[[nodiscard]] Eigen::MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b);
+[[nodiscard]] MatrixXd cross_gram(const WhiteColumns& a, const WhiteColumns& b);
 
 class WhiteProblem {
  public:
   /// \param extra_columns  of effects that the model holds already, [log][drive] rows x e; may be empty
   WhiteProblem(const std::vector<LogRows>& logs, const PerLogAndDrive<NoiseModel>& noise,
-               const PerLogAndDrive<Eigen::MatrixXd>& extra_columns = {});
+               const PerLogAndDrive<MatrixXd>& extra_columns = {});
 
-  [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<Eigen::MatrixXd>& columns) const;
+  [[nodiscard]] WhiteColumns whiten(const PerLogAndDrive<MatrixXd>& columns) const;
+  /// C_perp over all rows.
+  [[nodiscard]] MatrixXd projected(const WhiteColumns& C) const;
+  /// C_perp^T r for a residual with its Q^T r, and for the problem's own.
+  [[nodiscard]] VectorXd inner(const WhiteColumns& C, const VectorXd& residual, const VectorXd& Q_residual) const;
+  [[nodiscard]] VectorXd inner(const WhiteColumns& C) const { return inner(C, r, Q_r); }
 
   std::vector<WhiteSegment> segments;
-  Eigen::Index rows = 0;
-  Eigen::Index freedom = 0;  ///< rows less the directions that nothing is known of
-  Eigen::MatrixXd X;         ///< white regressor
-  Eigen::MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
-  Eigen::VectorXd y, r;      ///< white torque, and its part orthogonal to Q
+  Index rows = 0;
+  Index freedom = 0;  ///< rows less the directions that nothing is known of
+  MatrixXd X;         ///< white regressor
+  MatrixXd Q;         ///< orthonormal basis of its columns: rows x rank
+  VectorXd y, r;      ///< white torque, and its part orthogonal to Q
+  VectorXd Q_r;       ///< Q^T r
   /// Base parameters, then amplitudes of `extra` (least norm where the logs do not tell)
-  Eigen::VectorXd beta;
-  PerLogAndDrive<Eigen::MatrixXd> extra;  ///< as given
+  VectorXd beta;
+  PerLogAndDrive<MatrixXd> extra;  ///< as given
 };
-
-/// Best amplitudes of k columns under sign constraints.
-struct Gain {
-  double gain = 0;            ///< fall of the sum of squares
-  Eigen::VectorXd amplitude;  ///< k
-};
-
-/// Minimises |r - C_perp a|^2 with a_i >= 0 where `positive`; columns whose square in `gram` is not above 0 take no
-/// part.
-/// \param gram   C_perp^T C_perp
-/// \param inner  C_perp^T r
-[[nodiscard]] Gain constrained_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& inner,
-                                    const std::vector<bool>& positive);
 
 /// The whitened signatures of one hypothesis, all shapes.
 struct Signature {
   WhiteColumns white;
-  std::vector<Eigen::MatrixXd> gram;  ///< of each shape, projected
+  std::vector<MatrixXd> gram;  ///< of each shape, projected
   /// Of each shape: share of gram that is not encoder noise in the columns (1: none is known)
   std::vector<double> clean;
   std::vector<double> kept;  ///< of each shape: share of its (smallest direction's) square that a re-fit cannot absorb
 };
 
 [[nodiscard]] Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothesis,
-                                       const PerLogAndDrive<Eigen::MatrixXd>& rows);
+                                       const PerLogAndDrive<MatrixXd>& rows);
 
 struct Score {
   double gain = 0;
   std::size_t shape = 0;
-  Eigen::VectorXd amplitude;
+  VectorXd amplitude;
 };
 
 /// Supremum of the gain over the shapes. Shapes that a re-fit absorbs count as nothing.
-/// \param inner  C_perp^T r of all columns, WhiteColumns::inner
-[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const Eigen::VectorXd& inner);
-/// The same for the problem's own residual.
-[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const WhiteProblem& problem);
+/// \param inner  C_perp^T r of all columns, WhiteProblem::inner
+[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner);
 
 }  // namespace deltadyn

@@ -1,15 +1,10 @@
 #include "whitener.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "deltadyn/runtime/dense.hpp"
 
 namespace deltadyn {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 namespace {
 

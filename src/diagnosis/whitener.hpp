@@ -23,40 +23,40 @@ class Whitener {
   Whitener(const NoiseModel& noise, const RowMask& present, const std::vector<UnknownTorque>& unknown = {});
 
   [[nodiscard]] const NoiseModel& noise() const { return noise_; }
-  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(source_.size()); }
+  [[nodiscard]] Index rows() const { return static_cast<Index>(source_.size()); }
   /// Rows less the unknown directions: what a sum of squares of noise comes to.
-  [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
+  [[nodiscard]] Index freedom() const { return freedom_; }
   /// \param x  one row a row of the log, any number of columns; what stands in rows that are not present does not
   ///           matter
-  [[nodiscard]] Eigen::MatrixXd apply(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  [[nodiscard]] MatrixXd apply(const Eigen::Ref<const MatrixXd>& x) const;
   /// The same without taking out what is unknown: enough for inner products with what it has been taken out of.
-  [[nodiscard]] Eigen::MatrixXd innovations(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  [[nodiscard]] MatrixXd innovations(const Eigen::Ref<const MatrixXd>& x) const;
   /// Takes what is unknown out of white rows.
-  [[nodiscard]] Eigen::VectorXd known_part(const Eigen::Ref<const Eigen::VectorXd>& white) const;
+  [[nodiscard]] VectorXd known_part(const Eigen::Ref<const VectorXd>& white) const;
   /// Row of the log that each white row stands for (for maps of the residual).
-  [[nodiscard]] const std::vector<Eigen::Index>& source() const { return source_; }
+  [[nodiscard]] const std::vector<Index>& source() const { return source_; }
 
  private:
   /// Orthonormal directions of the innovations of rows [first, first + basis.rows()).
   struct Directions {
-    Eigen::Index first;
-    Eigen::MatrixXd basis;
+    Index first;
+    MatrixXd basis;
 
-    [[nodiscard]] Eigen::Index end() const { return first + basis.rows(); }
+    [[nodiscard]] Index end() const { return first + basis.rows(); }
   };
   using Gram = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
 
   void factorise();
-  [[nodiscard]] Eigen::MatrixXd innovations_of_all_rows(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
-  void take_out(Eigen::MatrixXd& innovations) const;
-  [[nodiscard]] Eigen::MatrixXd rows_of(const Eigen::MatrixXd& innovations) const;
+  [[nodiscard]] MatrixXd innovations_of_all_rows(const Eigen::Ref<const MatrixXd>& x) const;
+  void take_out(MatrixXd& innovations) const;
+  [[nodiscard]] MatrixXd rows_of(const MatrixXd& innovations) const;
 
   NoiseModel noise_;
   RowMask present_;
   std::vector<Directions> taken_;     ///< out of the innovations; each meets only its neighbours
   std::shared_ptr<const Gram> gram_;  ///< of all directions with each other
-  std::vector<Eigen::Index> source_;
-  Eigen::Index freedom_ = 0;
+  std::vector<Index> source_;
+  Index freedom_ = 0;
 };
 
 }  // namespace deltadyn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -9,10 +10,9 @@
 #include "deltadyn/runtime/random.hpp"
 #include "deltadyn/signal/motion_band.hpp"
 
-namespace deltadyn::detail {
+#include "eigen_names.hpp"
 
-using Eigen::Index;
-using Eigen::MatrixXd;
+namespace deltadyn::detail {
 
 namespace {
 
@@ -26,13 +26,10 @@ constexpr Index kFewestDriveRows = 5;     // of a drive, below which its rms say
 constexpr int kWrittenResamples = 1000;
 constexpr std::size_t kFewestBlocks = 12;  // from which they say anything about the noise
 
-struct Block {
-  double before = 0, after = 0;
-};
-
 /// Squares of both residuals in rows that both models answer for, in units of the given model's, by blocks of time.
-std::vector<Block> blocks_of(const Prediction& before, const Prediction& after, const std::vector<int>& drives) {
-  std::vector<Block> blocks;
+std::vector<Eigen::Array2d> blocks_of(const Prediction& before, const Prediction& after,
+                                      const std::vector<int>& drives) {
+  std::vector<Eigen::Array2d> blocks;
   if (before.rows() != after.rows() || before.rows() < 2) return blocks;
   const auto per_block = std::max<Index>(1, static_cast<Index>(kWrittenBlock_s / (before.t_s(1) - before.t_s(0))));
   const MatrixXd e0 = before.residual(), e1 = after.residual();
@@ -45,22 +42,22 @@ std::vector<Block> blocks_of(const Prediction& before, const Prediction& after, 
       const Index count = std::min(per_block, before.rows() - first);
       const auto use = rows.segment(first, count);
       if (!use.any()) continue;
-      blocks.push_back({use.select(e0.col(j).segment(first, count).array(), 0.0).square().sum() / scale,
-                        use.select(e1.col(j).segment(first, count).array(), 0.0).square().sum() / scale});
+      blocks.emplace_back(use.select(e0.col(j).segment(first, count).array(), 0.0).square().sum() / scale,
+                          use.select(e1.col(j).segment(first, count).array(), 0.0).square().sum() / scale);
     }
   }
   return blocks;
 }
 
-double chance_of_no_gain(const std::vector<Block>& blocks, std::uint64_t seed) {
+double chance_of_no_gain(const std::vector<Eigen::Array2d>& blocks, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const UniformIndex pick(blocks.size());
   int losses = 0;
   for (int k = 0; k < kWrittenResamples; ++k) {
     double gain = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const Block& one = blocks[pick(random)];
-      gain += one.before - one.after;
+      const Eigen::Array2d& one = blocks[pick(random)];
+      gain += one(0) - one(1);
     }
     losses += gain <= 0 ? 1 : 0;
   }
@@ -75,8 +72,7 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
     out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
     if (std::min(b.rows, a.rows) < kFewestDriveRows) continue;
-    const bool named = std::find(touched.begin(), touched.end(), static_cast<int>(j)) != touched.end();
-    const double worse = named ? kWorse : kWorseElsewhere;
+    const double worse = std::ranges::count(touched, static_cast<int>(j)) > 0 ? kWorse : kWorseElsewhere;
     // Rows near reversals count where the given model answers for them.
     const bool near = b.reversal_rows < a.reversal_rows || b.rms_with_reversals < kWorse * b.rms_residual;
     const bool is_worse = a.rms_residual > worse * b.rms_residual ||
@@ -84,15 +80,12 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
     if (is_worse && out.worse_drive < 0) out.worse_drive = static_cast<int>(j);
     if (b.rms_residual > 0) out.largest_loss = std::max(out.largest_loss, a.rms_residual / b.rms_residual);
   }
-  const std::vector<Block> blocks = blocks_of(before.logs.front().prediction, after.logs.front().prediction, touched);
+  const std::vector<Eigen::Array2d> blocks =
+      blocks_of(before.logs.front().prediction, after.logs.front().prediction, touched);
   out.blocks = blocks.size();
   if (blocks.empty()) return out;
-  double b = 0, a = 0;
-  for (const Block& block : blocks) {
-    b += block.before;
-    a += block.after;
-  }
-  out.rms_ratio = std::sqrt(a / b);
+  const Eigen::Array2d all = std::accumulate(blocks.begin(), blocks.end(), Eigen::Array2d(0, 0));
+  out.rms_ratio = std::sqrt(all(1) / all(0));
   out.p_no_gain = chance_of_no_gain(blocks, seed);
   return out;
 }

@@ -4,7 +4,6 @@
 /// The proof of what is written: the model as given and the improved one on the hold-out log, on the path of
 /// delta-validate.
 
-#include <string>
 #include <vector>
 
 #include "deltadyn/diagnosis/diagnose.hpp"

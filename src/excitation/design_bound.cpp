@@ -19,6 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index kFirstStates = 600;  // in the working set at the start
 constexpr Index kMoreStates = 200;   // added at a time
+constexpr double kGap = 1e-3;        // of the bound to the efficiency of the design found, as a share: close enough
+constexpr int kMostIterations = 20000;
 
 /// Sensitivities d_k = tr(M_k M^-1) = |L^-1 A_k'|^2 of the blocks of rows A_k.
 VectorXd sensitivities(const std::vector<MatrixXd>& blocks, const std::vector<Index>& which, const MatrixXd& M) {
@@ -54,7 +56,7 @@ double DesignBound::gap(int p) const {
   return 1 - std::exp((log_det_found - log_det) / p);
 }
 
-DesignBound design_bound(const DesignSpace& space, const DesignBoundOptions& options) {
+DesignBound design_bound(const DesignSpace& space) {
   const Index p = space.base_parameters(), n = space.regressor->drives(), count = space.states.x.cols();
   std::vector<MatrixXd> blocks(static_cast<std::size_t>(count), MatrixXd::Zero(n, p));
   for (Index k = 0; k < count; ++k) {
@@ -65,19 +67,18 @@ DesignBound design_bound(const DesignSpace& space, const DesignBoundOptions& opt
   std::iota(all.begin(), all.end(), Index{0});
   std::vector<Index> set(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(count, kFirstStates)));
   VectorXd w = VectorXd::Constant(static_cast<Index>(set.size()), 1.0 / static_cast<double>(set.size()));
-  const double p_real = static_cast<double>(p), goal = p_real * (1 + options.gap / 2);
+  const double p_real = static_cast<double>(p), goal = p_real * (1 + kGap / 2);
 
   DesignBound result;
+  int iterations = 0;
   for (;;) {
     // w_k <- w_k (d_k / p)^power keeps the sum and never lowers det M for power 1; a state that the optimum cannot hold
     // (Harman and Pronzato 2007) leaves the set.
-    double largest = 0;
     for (;;) {
-      const MatrixXd M = information(blocks, set, w, p);
-      const VectorXd d = sensitivities(blocks, set, M);
-      largest = d.maxCoeff();
-      ++result.iterations;
-      if (largest <= goal || result.iterations >= options.max_iterations) break;
+      const VectorXd d = sensitivities(blocks, set, information(blocks, set, w, p));
+      const double largest = d.maxCoeff();
+      ++iterations;
+      if (largest <= goal || iterations >= kMostIterations) break;
       const double excess = largest - p_real;
       const double least = p_real * (1 + excess / 2 - std::sqrt(excess * (4 + excess - 4 / p_real)) / 2);
       std::vector<Index> kept;
@@ -96,7 +97,7 @@ DesignBound design_bound(const DesignSpace& space, const DesignBoundOptions& opt
     const VectorXd d = sensitivities(blocks, all, M);
     result.log_det_found = log_determinant(M);
     result.log_det = result.log_det_found + p_real * std::log(std::max(1.0, d.maxCoeff() / p_real));
-    if (d.maxCoeff() <= p_real * (1 + options.gap) || result.iterations >= options.max_iterations) break;
+    if (d.maxCoeff() <= p_real * (1 + kGap) || iterations >= kMostIterations) break;
     // The states that would gain most join with a small share.
     std::vector<Index> order = all;
     const auto more = static_cast<std::ptrdiff_t>(std::min<Index>(kMoreStates, count));

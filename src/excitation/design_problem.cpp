@@ -100,26 +100,24 @@ void DesignProblem::chain(const Samples& samples, Index i, const VectorXd& g, Ou
 void DesignProblem::limit_gradient(const Limit& limit, const Samples& samples, Index i, VectorXd& g) const {
   const Index n = g.size() / 3;
   const Index k = limit.index;
+  const auto at = static_cast<std::size_t>(i);
   const double slope = usage_slope(limit);
+  const auto of_drives = [&](Index row) { g = slope * samples.drive_jacobian[at].row(row).transpose(); };
+  g.setZero();
   switch (limit.quantity) {
     case LimitedQuantity::region: {
       Eigen::Vector3d by_r;
       limits_.region->usage(limit.index, samples.x.col(i).head<3>(), &by_r);
-      g.setZero();
       g.head<3>() = by_r;
       return;
     }
-    case LimitedQuantity::z: g.setZero(), g(k) = slope; return;
-    case LimitedQuantity::zd: g.setZero(), g(n + k) = slope; return;
-    case LimitedQuantity::zdd: g.setZero(), g(2 * n + k) = slope; return;
-    case LimitedQuantity::q: g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(k).transpose(); return;
-    case LimitedQuantity::qd:
-      g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(n + k).transpose();
-      return;
-    case LimitedQuantity::qdd:
-      g = slope * samples.drive_jacobian[static_cast<std::size_t>(i)].row(2 * n + k).transpose();
-      return;
-    case LimitedQuantity::tau: g = slope * samples.tau_jacobian[static_cast<std::size_t>(i)].row(k).transpose(); return;
+    case LimitedQuantity::z: g(k) = slope; return;
+    case LimitedQuantity::zd: g(n + k) = slope; return;
+    case LimitedQuantity::zdd: g(2 * n + k) = slope; return;
+    case LimitedQuantity::q: return of_drives(k);
+    case LimitedQuantity::qd: return of_drives(n + k);
+    case LimitedQuantity::qdd: return of_drives(2 * n + k);
+    case LimitedQuantity::tau: g = slope * samples.tau_jacobian[at].row(k).transpose(); return;
   }
 }
 
@@ -204,10 +202,7 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
   }
   out.regular = true;
   out.lacks_away = 0;
-  if (!derivatives) {
-    if (minds_reversals()) add_reversals(at, false, out);
-    return;
-  }
+  if (!derivatives) return add_reversals(at, false, out);
   out.gradient = VectorXd::Zero(v.size());
   out.jacobian = MatrixXd::Zero(v.size(), constraints());
   const RowMatrix G_A = (2 * settings_.share / samples_real) * (at.A * criterion.by_M);
@@ -243,11 +238,8 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
         at.tau_jacobian[static_cast<std::size_t>(i)].row(limit.index) = g.transpose();
       }
     }
-    const Index window = [&] {
-      Index w = 0;
-      while (i >= (w + 1) * count / windows) ++w;
-      return w;
-    }();
+    Index window = 0;
+    while (i >= (window + 1) * count / windows) ++window;
     for (Index k = 0; k < limits; ++k) {
       if (std::abs(weight(k, i)) < kNegligibleWeight) continue;
       limit_gradient(list_[static_cast<std::size_t>(k)], at, i, g);
@@ -255,12 +247,13 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
       chain(at, i, g, out.jacobian.col(k * windows + window));
     }
   }
-  if (minds_reversals()) add_reversals(at, true, out);
+  add_reversals(at, true, out);
 }
 
 /// One constraint a drive: least share away from reversals minus the mean of the smooth distances, own times that of
 /// the bar.
 void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Evaluation& out) const {
+  if (!minds_reversals()) return;
   const Index n = space_.regressor->drives(), count = settings_.samples;
   const auto first = static_cast<Index>(list_.size()) * settings_.windows;
   const RobotDescription& robot = space_.robot->description();

@@ -13,11 +13,7 @@
 
 namespace deltadyn::detail {
 
-struct ProblemSettings {
-  Criterion criterion = Criterion::log_det;
-  double velocity_weight = 0;  ///< w of (9)
-  int harmonics = 5;
-  double lowest_hz = 0.1, highest_hz = 1;
+struct ProblemSettings : MotionGoal {
   int samples = 100;  ///< of the period
   int windows = 4;    ///< parts of the period in which each limit is gathered into one constraint
   /// Of the smooth maximum over a window: it lies above the true one by log(samples)/sharpness at most
@@ -26,9 +22,6 @@ struct ProblemSettings {
   double sign_share = 0.02;
   Eigen::MatrixXd other_information;  ///< of the other segments, times their shares of time; empty: none
   double share = 1;                   ///< share of time of this segment
-  /// What counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
-  double reversal_reach_s = 0;
-  double least_away = 0;  ///< share of the period that every drive is away from reversals, at least
 };
 
 /// Variables v: the coefficients in units of the largest amplitude that the limits allow them, then the base frequency

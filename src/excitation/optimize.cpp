@@ -140,6 +140,13 @@ MotionLimits without_friction(const Robot& robot, MotionLimits limits) {
   return limits;
 }
 
+struct RunCount {
+  int planned = 1;
+  int done = 0, cut = 0;  ///< searches that ran; those of them that were ended early
+  int left_out = 0;       ///< for lack of time
+  long evaluations = 0;
+};
+
 struct Candidate {
   FourierSeries series;
   double value = -std::numeric_limits<double>::infinity();  ///< of the criterion with the other segments, true signs
@@ -179,19 +186,15 @@ class SegmentSearch {
         share_(share) {}
 
   [[nodiscard]] ProblemSettings settings(bool polish) const {
-    return {.criterion = options_.criterion,
-            .velocity_weight = options_.velocity_weight,
-            .harmonics = options_.harmonics,
-            .lowest_hz = options_.lowest_hz,
-            .highest_hz = options_.highest_hz,
-            .samples = search_samples(options_.harmonics) * (polish ? 2 : 1),
-            .windows = polish ? 6 : 4,
-            .sharpness = polish ? 300.0 : 150.0,
-            .sign_share = polish ? 0.01 : 0.02,
-            .other_information = other_,
-            .share = share_,
-            .reversal_reach_s = options_.reversal_reach_s,
-            .least_away = options_.least_away + kAwayRoom};
+    ProblemSettings out{options_,
+                        search_samples(options_.harmonics) * (polish ? 2 : 1),
+                        polish ? 6 : 4,
+                        polish ? 300.0 : 150.0,
+                        polish ? 0.01 : 0.02,
+                        other_,
+                        share_};
+    out.least_away += kAwayRoom;
+    return out;
   }
 
   /// Of the criterion as it is reported: true signs, many samples.
@@ -267,8 +270,10 @@ class SegmentSearch {
     return result;
   }
 
-  [[nodiscard]] const DesignSpace& space() const { return space_; }
-  [[nodiscard]] const MotionLimits& limits() const { return limits_; }
+  /// All stages: random starts, kicks of the best, polishing.
+  [[nodiscard]] std::optional<Candidate> all_stages(double slice_end_s, int starts, std::uint64_t seed,
+                                                    const std::optional<FourierSeries>& incumbent, RunCount& run,
+                                                    const std::function<void(const Candidate&)>& first) const;
 
  private:
   const DesignSpace& space_;
@@ -289,13 +294,6 @@ std::vector<std::size_t> ranked(const std::vector<std::optional<Candidate>>& can
                            [&](std::size_t a, std::size_t b) { return candidates[a]->value > candidates[b]->value; });
   return order;
 }
-
-struct RunCount {
-  int planned = 1;
-  int done = 0, cut = 0;  ///< searches that ran; those of them that were ended early
-  int left_out = 0;       ///< for lack of time
-  long evaluations = 0;
-};
 
 }  // namespace
 
@@ -338,20 +336,6 @@ std::string Excitation::brief_report() const {
       interrupted ? ", interrupted" : (out_of_time ? ", stopped by the time limit" : ""));
 }
 
-std::string Excitation::full_report() const {
-  std::string text = brief_report() + "\n";
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    const Segment& segment = segments[k];
-    text += fmt::format("segment {}: base frequency {:.6g} Hz, period {:.6g} s\n", k + 1,
-                        segment.series.base_frequency_hz, segment.series.period_s());
-    for (const LimitUse& use : segment.check.uses)
-      text += fmt::format("  {:<24} {:>10.4g} of {:.4g} {}, used to {:.2f} %\n", use.limit.name, use.value,
-                          use.value < 0 && std::isfinite(use.limit.lower) ? use.limit.lower : use.limit.upper,
-                          use.limit.unit, 100 * use.load);
-  }
-  return text;
-}
-
 FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimits& limits,
                                      const ExcitationOptions& options, std::uint64_t seed) {
   const Clock clock(options);
@@ -364,26 +348,25 @@ FourierSeries random_feasible_series(const DesignSpace& space, const MotionLimit
 
 namespace {
 
-/// All stages for one segment: random starts, kicks of the best, polishing.
-std::optional<Candidate> search_segment(const SegmentSearch& search, const ExcitationOptions& options,
-                                        const Clock& clock, double slice_end_s, int starts, std::uint64_t seed,
-                                        const std::optional<FourierSeries>& incumbent, RunCount& run,
-                                        const std::function<void(const Candidate&)>& first) {
-  const double begin = clock.seconds();
+std::optional<Candidate> SegmentSearch::all_stages(double slice_end_s, int starts, std::uint64_t seed,
+                                                   const std::optional<FourierSeries>& incumbent, RunCount& run,
+                                                   const std::function<void(const Candidate&)>& first) const {
+  const double begin = clock_.seconds();
   const int random_starts = std::max(1, static_cast<int>(std::lround((1 - kKickedShare) * starts)));
   std::vector<std::optional<Candidate>> found(static_cast<std::size_t>(starts + kPolished) + 1);
-  if (incumbent) found.back() = Candidate{*incumbent, search.value(*incumbent)};
+  if (incumbent) found.back() = Candidate{*incumbent, value(*incumbent)};
   std::mutex counting;
   const auto count = [&](long evaluations, double deadline_s) {
     const std::lock_guard<std::mutex> lock(counting);
     run.evaluations += evaluations;
     ++run.done;
-    run.cut += clock.over(deadline_s) ? 1 : 0;
-    if (options.progress)
-      options.progress(std::max(static_cast<double>(run.done) / run.planned, clock.seconds() / options.time_limit_s));
+    run.cut += clock_.over(deadline_s) ? 1 : 0;
+    if (options_.progress)
+      options_.progress(
+          std::max(static_cast<double>(run.done) / run.planned, clock_.seconds() / options_.time_limit_s));
   };
   const auto no_time = [&](double deadline_s) {
-    if (!clock.over(deadline_s)) return false;
+    if (!clock_.over(deadline_s)) return false;
     const std::lock_guard<std::mutex> lock(counting);
     ++run.left_out;
     return true;
@@ -391,30 +374,29 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   const auto attempt = [&](std::size_t k, const std::optional<FourierSeries>& start, bool polish, double deadline_s) {
     long evaluations = 0;
     if (start) {
-      auto better = search.improve(*start, polish, deadline_s, evaluations);
-      const double before = search.value(*start);
+      auto better = improve(*start, polish, deadline_s, evaluations);
+      const double before = value(*start);
       if (better && better->value > before) {
         found[k] = std::move(better);
-      } else if (std::isfinite(before) &&
-                 margin_of(search.space(), search.limits(), search.on_grid(*start), kRankSamples) >= 0) {
-        found[k] = Candidate{search.on_grid(*start), before};
+      } else if (std::isfinite(before) && margin_of(space_, limits_, on_grid(*start), kRankSamples) >= 0) {
+        found[k] = Candidate{on_grid(*start), before};
       }
     }
     count(evaluations, deadline_s);
   };
 
   // A feasible answer before anything else. How long its check takes tells what to keep for that of the result.
-  if (auto start = search.random_start(mixed(seed, 0))) {
-    const double before_check = clock.seconds();
-    const auto safe = fitted(search.space(), search.limits(), search.on_grid(*start), 1.0, kVerifySamples);
-    if (safe) first(Candidate{*safe, search.value(*safe)});
-    slice_end_s = std::max(begin, slice_end_s - kChecksKept * (clock.seconds() - before_check));
+  if (auto start = random_start(mixed(seed, 0))) {
+    const double before_check = clock_.seconds();
+    const auto safe = fitted(space_, limits_, on_grid(*start), 1.0, kVerifySamples);
+    if (safe) first(Candidate{*safe, value(*safe)});
+    slice_end_s = std::max(begin, slice_end_s - kChecksKept * (clock_.seconds() - before_check));
   }
   const double time = std::max(0.0, slice_end_s - begin);
   in_parallel(random_starts, [&](int k) {
     // The first start is always made, so that there is an answer however short the time.
     if (k > 0 && no_time(begin + kRandomUntil * time)) return;
-    attempt(static_cast<std::size_t>(k), search.random_start(mixed(seed, static_cast<std::uint64_t>(k))), false,
+    attempt(static_cast<std::size_t>(k), random_start(mixed(seed, static_cast<std::uint64_t>(k))), false,
             begin + kRandomUntil * time);
   });
   const std::vector<std::size_t> parents = ranked(found);
@@ -424,7 +406,7 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
       if (no_time(begin + kKicksUntil * time)) return;
       const std::size_t parent = parents[static_cast<std::size_t>(k) % std::min<std::size_t>(3, parents.size())];
       const auto number = static_cast<std::size_t>(random_starts + k);
-      attempt(number, search.kicked(before[parent]->series, mixed(seed, number)), false, begin + kKicksUntil * time);
+      attempt(number, kicked(before[parent]->series, mixed(seed, number)), false, begin + kKicksUntil * time);
     });
   }
   const std::vector<std::size_t> best = ranked(found);
@@ -435,8 +417,8 @@ std::optional<Candidate> search_segment(const SegmentSearch& search, const Excit
   });
   for (const std::size_t k : ranked(found)) {
     // Checked more finely, the room between the samples turns out larger.
-    const auto safe = fitted(search.space(), search.limits(), found[k]->series, kLargestStretch, kVerifySamples);
-    if (safe) return Candidate{*safe, search.value(*safe)};
+    const auto safe = fitted(space_, limits_, found[k]->series, kLargestStretch, kVerifySamples);
+    if (safe) return Candidate{*safe, value(*safe)};
   }
   return std::nullopt;
 }
@@ -509,7 +491,7 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
             d_efficiency(log_determinant(series_information(space, candidate.series)), bound, p);
       };
       const long evaluations_before = run.evaluations;
-      const auto found = search_segment(search, options, clock, slice_end, starts, seed, series[k], run, first);
+      const auto found = search.all_stages(slice_end, starts, seed, series[k], run, first);
       evaluations[k] += run.evaluations - evaluations_before;
       if (!found && !series[k]) {
         const LimitCheck check =
@@ -517,9 +499,8 @@ Excitation optimize_excitation(const DesignSpace& space, const MotionLimits& lim
         const LimitUse& use = check.tightest();
         throw Error(use.load > 1
                         ? fmt::format("no motion keeps all limits: even the slightest about the pose with the most "
-                                      "room breaks the limit '{}' "
-                                      "({:.4g} {} where {:.4g} to {:.4g} is allowed), and the others that were drawn "
-                                      "break theirs further",
+                                      "room breaks the limit '{}' ({:.4g} {} where {:.4g} to {:.4g} is allowed), and "
+                                      "the others that were drawn break theirs further",
                                       use.limit.name, use.value, use.limit.unit, use.limit.lower, use.limit.upper)
                         : fmt::format("no motion that keeps all limits was found in time; the tightest is '{}'",
                                       use.limit.name),

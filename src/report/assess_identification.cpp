@@ -57,8 +57,7 @@ Check check_solver(const ConsistentFitSummary& fit) {
     check.figure = "proven";
     check.meaning = fmt::format(
         "No physically consistent parameters fit data and prior better by more than {} in χ² (a change of 1 would be "
-        "within the "
-        "noise).",
+        "within the noise).",
         format_number(std::max(fit.certificate.gap, 0.0), 2));
   } else {
     check.figure = "not proven";
@@ -96,8 +95,7 @@ Check check_consistency(const Identification& identification) {
   } else {
     check.meaning =
         "Free base parameters fit better than any that a real machine near the prior can have: look for a wrong "
-        "length, a wrong "
-        "prior with too much weight, or an effect that the model lacks.";
+        "length, a wrong prior with too much weight, or an effect that the model lacks.";
   }
   return check;
 }
@@ -120,8 +118,7 @@ Check check_torque_knowledge(const Robot& robot, const IdentificationEvidence& e
   } else {
     check.meaning = fmt::format(
         "On the recorded logs the torque is known to ± {}, but not on fast motions {}: record a log that reaches "
-        "further and "
-        "accelerates harder, and trust the model only near the recorded motions.",
+        "further and accelerates harder, and trust the model only near the recorded motions.",
         format_percent(1.96 * evidence.on_logs.worst_relative(), 2), where);
   }
   return check;
@@ -150,18 +147,15 @@ Check check_excitation(const Identification& identification) {
 }
 
 Check check_mass_matrix(const Robot& robot, const MassMatrixSurvey& survey) {
-  Check check{"Mass matrix", "", survey.positive_definite() ? Verdict::good : Verdict::bad, ""};
-  check.figure = fmt::format("smallest eigenvalue {}", format_number(survey.min_eigenvalue, inertia_unit_of(robot), 3));
+  const bool good = survey.positive_definite();
   const std::string count = format_count(survey.states);
-  if (survey.positive_definite()) {
-    check.meaning =
-        fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count);
-  } else {
-    check.meaning = fmt::format(
-        "Not positive definite at {} of {} poses: simulation and model-based control with it can become unstable.",
-        format_count(survey.not_positive), count);
-  }
-  return check;
+  return {"Mass matrix",
+          fmt::format("smallest eigenvalue {}", format_number(survey.min_eigenvalue, inertia_unit_of(robot), 3)),
+          good ? Verdict::good : Verdict::bad,
+          good ? fmt::format("Positive definite at all {} poses tried: the model can be simulated and inverted.", count)
+               : fmt::format("Not positive definite at {} of {} poses: simulation and model-based control with it can "
+                             "become unstable.",
+                             format_count(survey.not_positive), count)};
 }
 
 Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>& visibility,
@@ -183,8 +177,7 @@ Check check_prior(const ConsistentFitSummary& fit, const std::vector<Visibility>
   } else if (prior + sums + neither > 0) {
     check.meaning =
         "All but the first act on the drives in sums with others, or hardly: the torque is right, the single values "
-        "are not "
-        "measured.";
+        "are not measured.";
   } else {
     check.meaning = "No value rests on the prior.";
   }

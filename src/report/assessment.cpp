@@ -147,6 +147,12 @@ Verdict grade_residual(double relative) {
   return grade(relative, kGoodResidual, kUsableResidual);
 }
 
+KeyFigure residual_figure(const Robot& robot, int drive, double rms, double relative) {
+  return {"residual, " + drive_name(drive), format_number(rms, units_of(robot, drive).torque, 3),
+          fmt::format("{} of the {}", format_percent(relative, 2), units_of(robot, drive).effort),
+          tone_of(grade_residual(relative))};
+}
+
 Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& drives) {
   std::size_t worst = 0;
   for (std::size_t j = 1; j < drives.size(); ++j) {
@@ -155,16 +161,15 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
   const double relative = drives.empty() ? 0.0 : drives[worst].relative();
   const auto drive = static_cast<int>(worst);
   Check check{"Size of the residual", "", grade_residual(relative), ""};
-  check.figure =
-      fmt::format("{} of the rms {} ({})", format_percent(relative, 2), effort_of(robot, drive), drive_name(drive));
+  check.figure = fmt::format("{} of the rms {} ({})", format_percent(relative, 2), units_of(robot, drive).effort,
+                             drive_name(drive));
   const double noise = drives.empty() ? 0.0 : drives[worst].torque_noise;
   if (check.verdict == Verdict::bad && drives[worst].rms < kNoiseOfRecord * noise) {
     check.verdict = Verdict::caution;
     check.meaning = fmt::format(
         "The torque record itself has noise of {} rms in these rows: what the model lacks may hide in it. Trust "
-        "parameters as "
-        "far as their intervals say, and record the torque faster or through a low pass.",
-        format_number(noise, torque_unit_of(robot, drive), 3));
+        "parameters as far as their intervals say, and record the torque faster or through a low pass.",
+        format_number(noise, units_of(robot, drive).torque, 3));
     return check;
   }
   switch (check.verdict) {
@@ -172,14 +177,12 @@ Check check_residual_size(const Robot& robot, const std::vector<DriveFigures>& d
     case Verdict::caution:
       check.meaning =
           "Usable as feed-forward, but not for forces estimated from the drive currents. The report shows what the "
-          "residual "
-          "follows.";
+          "residual follows.";
       break;
     case Verdict::bad:
       check.meaning =
           "Too large to be measurement noise. Check the lengths in the robot file, the signs and units of the torques, "
-          "the gear "
-          "ratios, and that position and torque belong to the same instant.";
+          "the gear ratios, and that position and torque belong to the same instant.";
       break;
   }
   return check;
@@ -268,8 +271,7 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
     check.figure = larger(worse);
     check.meaning =
         "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in "
-        "the first "
-        "instants after a reversal the model's torque is off by that much more.";
+        "the first instants after a reversal the model's torque is off by that much more.";
   } else if (!used.empty()) {
     check.figure = larger(used);
     check.meaning =

@@ -32,6 +32,8 @@ struct DriveFigures {
 [[nodiscard]] inline Tone tone_of(Verdict verdict) {
   return verdict == Verdict::good ? Tone::good : verdict == Verdict::caution ? Tone::caution : Tone::bad;
 }
+/// Of a residual over the rms torque, for the top of a report.
+[[nodiscard]] KeyFigure residual_figure(const Robot& robot, int drive, double rms, double relative);
 /// How a headline begins.
 struct Headlines {
   std::string good;     ///< the whole of it

@@ -36,14 +36,16 @@ struct BinnedResidual {
   VectorXd x, before, after, error;
 };
 
-BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
-                      const std::function<double(const DiagnosisTrace&, Index)>& coordinate) {
-  std::vector<std::array<double, 4>> points;  // x, before, after
+using TraceCoordinate = double (*)(const DiagnosisTrace&, Index row, int drive);
+
+/// Of the training logs.
+BinnedResidual binned(const Diagnosis& d, int drive, TraceCoordinate coordinate) {
+  std::vector<std::array<double, 3>> points;  // x, before, after
   for (const DiagnosisTrace& trace : d.traces) {
-    if (trace.holdout != holdout) continue;
+    if (trace.holdout) continue;
     for (Index k = 0; k < trace.t_s.size(); ++k) {
       if (trace.usable(k, drive))
-        points.push_back({coordinate(trace, k), trace.before(k, drive), trace.after(k, drive), 0});
+        points.push_back({coordinate(trace, k, drive), trace.before(k, drive), trace.after(k, drive)});
     }
   }
   std::ranges::sort(points);
@@ -67,11 +69,11 @@ BinnedResidual binned(const Diagnosis& d, int drive, bool holdout,
 }
 
 PlotSpec map_of(const Diagnosis& d, const Robot& robot, int drive, const std::string& x_label, const std::string& title,
-                const std::function<double(const DiagnosisTrace&, Index)>& coordinate) {
-  const BinnedResidual bins = binned(d, drive, false, coordinate);
+                TraceCoordinate coordinate) {
+  const BinnedResidual bins = binned(d, drive, coordinate);
   PlotSpec plot{.title = title,
                 .x_label = x_label,
-                .y_label = fmt::format("mean residual [{}]", torque_unit_of(robot, drive)),
+                .y_label = fmt::format("mean residual [{}]", units_of(robot, drive).torque),
                 .horizontal_markers = {{0.0, ""}},
                 .height = 230};
   plot.series.push_back({"model fitted to these logs, with standard error", bins.x, bins.before, SeriesStyle::errorbars,
@@ -101,22 +103,15 @@ void step_1(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("1. Does the model fit?");
   report.paragraph(
       "For each drive, rms on the training logs: what the parameters as given leave of the torque, what the same model "
-      "fitted to "
-      "these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on the "
-      "motion were "
-      "known. The figures leave out rows near velocity reversals; the search uses them but for what friction does "
-      "there. All "
-      "that follows speaks of the fitted model.");
-  Table table({{"drive", Align::left},
-               {"parameters as given"},
-               {"fitted"},
-               {"noise floor"},
-               {"share of the residual that follows the motion"},
-               {"chance of that by noise"},
-               {"residual follows", Align::left}});
+      "fitted to these logs leaves, and the noise floor, an estimate of what would be left if anything that depends on "
+      "the motion were known. The figures leave out rows near velocity reversals; the search uses them but for what "
+      "friction does there. All that follows speaks of the fitted model.");
+  Table table({text_column("drive"), "parameters as given", "fitted", "noise floor",
+               "share of the residual that follows the motion", "chance of that by noise",
+               text_column("residual follows")});
   for (std::size_t j = 0; j < d.drives.size(); ++j) {
     const DriveFit& drive = d.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     const bool fits = drive.structure < 0.12;
     std::vector<std::string> follows;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, drive.follows.size()) && !fits; ++k)
@@ -133,16 +128,15 @@ void step_2(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("2. Where does it fail?");
   report.paragraph(
       "Mean residual of the training logs over speed, position and time of the drives concerned. Where the model is "
-      "right, two "
-      "of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
+      "right, two of three bars (one standard error) cross zero; a curve is physics that the model lacks.");
   for (const int j : drives_to_show(d)) {
-    const std::string name = "drive " + std::to_string(j + 1), unit = position_unit_of(robot, j);
+    const std::string name = "drive " + std::to_string(j + 1), unit = units_of(robot, j).position;
     report.plot(map_of(d, robot, j, "rate of " + name + " [" + unit + "/s]", name + ": residual over its rate",
-                       [j](const DiagnosisTrace& trace, Index k) { return trace.qd(k, j); }));
+                       [](const DiagnosisTrace& trace, Index k, int drive) { return trace.qd(k, drive); }));
     report.plot(map_of(d, robot, j, "position of " + name + " [" + unit + "]", name + ": residual over its position",
-                       [j](const DiagnosisTrace& trace, Index k) { return trace.q(k, j); }));
+                       [](const DiagnosisTrace& trace, Index k, int drive) { return trace.q(k, drive); }));
     report.plot(map_of(d, robot, j, "time in the log [s]", name + ": residual over time",
-                       [](const DiagnosisTrace& trace, Index k) { return trace.t_s(k); }));
+                       [](const DiagnosisTrace& trace, Index k, int) { return trace.t_s(k); }));
   }
 }
 
@@ -161,9 +155,9 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
                p_text(one.p_left), one.ruling},
               tone);
   };
-  const std::vector<TableColumn> columns = {{"effect", Align::left}, {"at", Align::left}, {"class", Align::left},
-                                            {"explains [chi²]"},     {"chance alone"},    {"chance beside the found"},
-                                            {"ruling", Align::left}};
+  const std::vector<TableColumn> columns = {text_column("effect"), text_column("at"), text_column("class"),
+                                            "explains [chi²]",     "chance alone",    "chance beside the found",
+                                            text_column("ruling")};
   Table top(columns);
   for (std::size_t k = 0; k < std::min<std::size_t>(12, order.size()); ++k) fill(top, *order[k]);
   report.table(top, "The twelve that explain most of the residual, each alone.");
@@ -176,15 +170,10 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
                  [&](HtmlReport& inner) {
                    inner.paragraph(
                        "Visible: share of the effect's torque that a re-fit of all other parameters cannot absorb. "
-                       "Smallest size: the "
-                       "amplitude that would be named at the noise of these logs. Hardly told from: effects whose "
-                       "torques are alike in "
-                       "these motions, with the cosine between them.");
-                   Table table({{"effect", Align::left},
-                                {"at", Align::left},
-                                {"visible"},
-                                {"smallest size"},
-                                {"hardly told from", Align::left}});
+                       "Smallest size: the amplitude that would be named at the noise of these logs. Hardly told from: "
+                       "effects whose torques are alike in these motions, with the cosine between them.");
+                   Table table({text_column("effect"), text_column("at"), "visible", "smallest size",
+                                text_column("hardly told from")});
                    for (const ConsideredEffect& one : d.considered) {
                      table.row({one.name, one.joint, format_percent(one.kept, 2),
                                 format_number(one.detectable, pretty_unit(one.unit), 3),
@@ -203,36 +192,31 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   }
   for (const NamedEffect& one : d.named) {
     const EffectKind& kind = effect_kind(one.effect.id);
-    report.subheading(one.name + " at " + one.joint);
+    report.subheading(one.at_joint());
     report.paragraph(fmt::format("In words: {}. It acts at {}.", kind.meaning, one.region));
-    Table table({{"parameter", Align::left}, {"value ± standard deviation"}, {"95 % interval"}});
+    Table table({text_column("parameter"), "value ± standard deviation", "95 % interval"});
+    const auto add = [&](const auto& traits, double value, double std) {
+      const std::string unit = pretty_unit(effect_unit(traits.unit, one.effect.joint, robot.description()));
+      const bool choice = !std::isfinite(std);
+      table.row({std::string(traits.name),
+                 choice ? format_number(value, unit) : format_with_uncertainty(value, std, unit),
+                 choice ? "the best of a few choices" : format_interval(value - 1.96 * std, value + 1.96 * std, unit)});
+    };
     for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
       const auto at = static_cast<Index>(k);
-      const std::string unit = pretty_unit(effect_unit(kind.amplitudes[k].unit, one.effect.joint, robot.description()));
-      const double value = one.effect.amplitude(at),
-                   half = 1.96 * (one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0);
-      table.row({std::string(kind.amplitudes[k].name), format_with_uncertainty(value, half / 1.96, unit),
-                 format_interval(value - half, value + half, unit)});
+      add(kind.amplitudes[k], one.effect.amplitude(at),
+          one.effect.amplitude_std.size() > at ? one.effect.amplitude_std(at) : 0);
     }
     for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
-      const std::string unit = pretty_unit(effect_unit(kind.shapes[k].unit, one.effect.joint, robot.description()));
       const auto at = static_cast<Index>(k);
-      const double value = one.effect.shape(at),
-                   std = one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan("");
-      if (std::isfinite(std)) {
-        table.row({std::string(kind.shapes[k].name), format_with_uncertainty(value, std, unit),
-                   format_interval(value - 1.96 * std, value + 1.96 * std, unit)});
-      } else {
-        table.row({std::string(kind.shapes[k].name), format_number(value, unit), "the best of a few choices"});
-      }
+      add(kind.shapes[k], one.effect.shape(at),
+          one.effect.shape_std.size() > at ? one.effect.shape_std(at) : std::nan(""));
     }
     report.table(table);
     report.note(
         "The intervals hold what the noise leaves open and, as no machine follows the catalogue's law exactly, a "
-        "standard "
-        "deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the load, 15 "
-        "% for the "
-        "spring in a drive.");
+        "standard deviation of 1 % of the size, 3 % for laws of friction and phase, 6 % for losses that grow with the "
+        "load, 15 % for the spring in a drive.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.",
                             p_text(one.p_value), format_percent(one.explained_share)));
     if (!one.why.empty()) {
@@ -241,8 +225,7 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
       report.paragraph("Nothing else in the catalogue explains it as well.");
     } else {
       std::vector<std::string> items;
-      for (const EffectCandidate& other : one.confusable)
-        items.push_back(other.name + " at " + other.joint + ": " + other.why);
+      for (const EffectCandidate& other : one.confusable) items.push_back(other.at_joint() + ": " + other.why);
       report.paragraph("It could also be:");
       report.list(items);
     }
@@ -251,26 +234,26 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 
 void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
   report.heading("5. Does it hold on a log that took no part?");
-  const auto held = std::ranges::find_if(d.traces, [](const DiagnosisTrace& t) { return t.holdout; });
+  const auto held = std::ranges::find(d.traces, true, &DiagnosisTrace::holdout);
   if (held == d.traces.end()) {
     report.paragraph("There was no hold-out log (--holdout), so nothing can be proven.");
     return;
   }
   if (!d.named.empty()) {
-    Table table({{"effect", Align::left}, {"residual before"}, {"after"}, {"floor"}});
+    Table table({text_column("effect"), "residual before", "after", "floor"});
     for (const NamedEffect& one : d.named) {
-      const char* unit = torque_unit_of(robot, one.drives.empty() ? 0 : one.drives.front());
-      table.row({one.name + " at " + one.joint, format_number(one.rms_before, unit, 3),
-                 format_number(one.rms_after, unit, 3), format_number(one.rms_floor, unit, 3)});
+      const char* unit = units_of(robot, one.drives.empty() ? 0 : one.drives.front()).torque;
+      table.row({one.at_joint(), format_number(one.rms_before, unit, 3), format_number(one.rms_after, unit, 3),
+                 format_number(one.rms_floor, unit, 3)});
     }
     report.table(table, "Root mean square residual of the drives that the effect reaches, on " + held->file + ".");
     report.paragraph(
         fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
                     100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
   } else {
-    Table table({{"drive", Align::left}, {"residual"}, {"floor"}});
+    Table table({text_column("drive"), "residual", "floor"});
     for (std::size_t j = 0; j < d.drives.size(); ++j) {
-      const char* unit = torque_unit_of(robot, static_cast<int>(j));
+      const char* unit = units_of(robot, static_cast<int>(j)).torque;
       table.row({std::to_string(j + 1), format_number(d.drives[j].rms_holdout, unit, 3),
                  format_number(d.drives[j].floor_holdout, unit, 3)});
     }
@@ -280,14 +263,13 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
     const Index step = std::max<Index>(1, held->t_s.size() / kMostPoints);
     const VectorXd t = thinned(held->t_s, step);
     const bool changed = !d.named.empty();
-    PlotSpec torque{.title = fmt::format("Drive {}: torque on the hold-out log", j + 1),
-                    .x_label = "time [s]",
-                    .y_label = fmt::format("torque [{}]", torque_unit_of(robot, j)),
-                    .height = 240};
-    PlotSpec residual{.title = fmt::format("Drive {}: residual", j + 1),
+    const auto panel = [&](const char* title, const char* quantity) {
+      return PlotSpec{.title = fmt::format("Drive {}: {}", j + 1, title),
                       .x_label = "time [s]",
-                      .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
+                      .y_label = fmt::format("{} [{}]", quantity, units_of(robot, j).torque),
                       .height = 240};
+    };
+    PlotSpec torque = panel("torque on the hold-out log", "torque"), residual = panel("residual", "residual");
     const auto add = [&t, step](PlotSpec& plot, const char* label, const VectorXd& y, PlotColor color,
                                 bool dashed = false) {
       plot.series.push_back({label, t, thinned(y, step), SeriesStyle::line, {}, color, dashed});
@@ -334,8 +316,7 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   report.list(d.next);
   if (!d.notes.empty()) report.list(d.notes);
   report.heading("How this was done");
-  std::vector<std::pair<std::string, std::string>> facts = {{"robot", context.robot_file},
-                                                            {"model", context.parameter_file}};
+  Facts facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("training log", file);
   for (const DiagnosisTrace& trace : d.traces) {
     if (trace.holdout) facts.emplace_back("hold-out log", trace.file);

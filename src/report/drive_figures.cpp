@@ -137,12 +137,12 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
       panels.push_back(
           {.title = fmt::format("Drive {}", j + 1),
            .x_label = "time [s]",
-           .y_label = fmt::format("{} [{}]", effort_of(robot, j), torque_unit_of(robot, j)),
+           .y_label = fmt::format("{} [{}]", units_of(robot, j).effort, units_of(robot, j).torque),
            .series = {{"measured", t, piece(p.tau.col(j)), SeriesStyle::line, {}, PlotColor::blue},
                       {"model", t, piece(p.model.col(j)), SeriesStyle::line, {}, PlotColor::vermillion, true}},
            .height = 210});
       PlotSpec rest{
-          .x_label = "time [s]", .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)), .height = 150};
+          .x_label = "time [s]", .y_label = fmt::format("residual [{}]", units_of(robot, j).torque), .height = 150};
       const Eigen::VectorXd regular = piece(masked_residual(p, j, true, false)),
                             reversal = piece(masked_residual(p, j, false, true));
       if (reversal.array().isFinite().any()) {
@@ -159,7 +159,7 @@ void add_torque_figures(HtmlReport& report, const Robot& robot, const Validation
     }
     std::string caption =
         fmt::format("{}: measured and model {} with the residual below (measured minus model, filtered alike).",
-                    short_name(log.file), effort_of(robot, 0));
+                    short_name(log.file), units_of(robot, 0).effort);
     if (grey)
       caption +=
           fmt::format(" Grey: near velocity reversals{}.", cut_off ? ", where spikes are cut off at the edge" : "");
@@ -211,10 +211,10 @@ void add_residual_spectra(HtmlReport& report, const Robot& robot, const Validati
     report.note("The logs are too short for a spectrum.");
     return;
   }
-  report.plot(panels,
-              "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the "
-              "low pass; "
-              "what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
+  report.plot(
+      panels,
+      "Power spectrum of the residual (Welch; rows near velocity reversals included). Noise is flat up to the low "
+      "pass; what stands out at low frequencies follows the motion, a narrow peak is a resonance or a ripple.");
 }
 
 void add_residual_over(HtmlReport& report, const Robot& robot, const Validation& validation, Coordinate coordinate) {
@@ -239,9 +239,9 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
                   points = (X.size() + step - 1) / step;
       const auto shown = Eigen::seqN(0, points, step);
       panels.push_back({.title = fmt::format("Drive {}", j + 1),
-                        .x_label = velocity ? fmt::format("velocity [{}]", velocity_unit_of(robot, j))
-                                            : fmt::format("position [{}]", position_unit_of(robot, j)),
-                        .y_label = fmt::format("residual [{}]", torque_unit_of(robot, j)),
+                        .x_label = velocity ? fmt::format("velocity [{}]", units_of(robot, j).velocity)
+                                            : fmt::format("position [{}]", units_of(robot, j).position),
+                        .y_label = fmt::format("residual [{}]", units_of(robot, j).torque),
                         .series = {{"one row", X(shown), E(shown), SeriesStyle::points, {}, PlotColor::grey},
                                    interval_means(X, E, structure[static_cast<std::size_t>(j)].correlation)},
                         .horizontal_markers = {{0.0, ""}},
@@ -258,12 +258,7 @@ void add_residual_over(HtmlReport& report, const Robot& robot, const Validation&
 }
 
 void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure>& residual) {
-  Table table({{"drive", Align::left},
-               {"velocity"},
-               {"position"},
-               {"acceleration"},
-               {"memory [rows]"},
-               {"reading", Align::left}});
+  Table table({text_column("drive"), "velocity", "position", "acceleration", "memory [rows]", text_column("reading")});
   const auto cell = [](const DependenceOnMotion& d) {
     return d.p_value > kRareByChance ? std::string("by chance") : fmt::format("{:.0f} %", 100 * d.share);
   };
@@ -279,18 +274,14 @@ void add_structure_table(HtmlReport& report, const std::vector<ResidualStructure
                fmt::format("{:.1f}", r.correlation), reading},
               coordinate.empty() && !memory ? Tone::plain : Tone::caution);
   }
-  report.table(
-      table,
-      "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and its memory: "
-      "rows that tell as much as one of white noise.");
+  report.table(table,
+               "Share of the residual's mean square that follows the motion of its own drive, chance taken out, and "
+               "its memory: rows that tell as much as one of white noise.");
 }
 
 void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({{"drive", Align::left},
-               {"position"},
-               {"largest velocity"},
-               {"largest acceleration"},
-               {fmt::format("largest {}", effort_of(robot, 0))}});
+  Table table({text_column("drive"), "position", "largest velocity", "largest acceleration",
+               fmt::format("largest {}", units_of(robot, 0).effort)});
   for (int j = 0; j < robot.drives(); ++j) {
     double low = std::numeric_limits<double>::infinity(), high = -low, velocity = 0, acceleration = 0, torque = 0;
     for (const ValidatedLog& log : validation.logs) {
@@ -302,16 +293,17 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
       acceleration = std::max(acceleration, p.qdd.col(j).cwiseAbs().maxCoeff());
       torque = std::max(torque, p.tau.col(j).cwiseAbs().maxCoeff());
     }
-    table.row({drive_name(j), fmt::format("{:.3f} … {:.3f} {}", low, high, position_unit_of(robot, j)),
-               format_number(velocity, velocity_unit_of(robot, j), 3),
-               format_number(acceleration, acceleration_unit_of(robot, j), 3),
-               format_number(torque, torque_unit_of(robot, j), 3)});
+    table.row({drive_name(j), fmt::format("{:.3f} … {:.3f} {}", low, high, units_of(robot, j).position),
+               format_number(velocity, units_of(robot, j).velocity, 3),
+               format_number(acceleration, units_of(robot, j).acceleration, 3),
+               format_number(torque, units_of(robot, j).torque, 3)});
   }
   report.table(table, "Where the logs went. Beyond these values the model is an extrapolation.");
 }
 
 void add_check_table(HtmlReport& report, const Assessment& assessment) {
-  Table table({{"", Align::center}, {"question", Align::left}, {"finding", Align::left}, {"meaning", Align::left}});
+  Table table(
+      {TableColumn("", Align::center), text_column("question"), text_column("finding"), text_column("meaning")});
   for (const Check& check : assessment.checks) {
     const auto [mark, tone] = check.verdict == Verdict::good  ? std::pair("✓", Tone::plain)
                               : check.verdict == Verdict::bad ? std::pair("✗", Tone::bad)
@@ -321,9 +313,11 @@ void add_check_table(HtmlReport& report, const Assessment& assessment) {
   report.table(table);
 }
 
-std::vector<std::pair<std::string, std::string>> processing_facts(const Validation& validation) {
+Facts source_facts(const ReportContext& context, const std::string& model, const std::string& model_file,
+                   const Validation& validation) {
   const ProcessingOptions& options = validation.processing;
-  std::vector<std::pair<std::string, std::string>> facts;
+  Facts facts = {{"Robot file", context.robot_file}, {model, model_file}};
+  for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
   if (!options.filter) {
     facts.emplace_back("Filter", "none: torque, positions, velocities and accelerations as in the log");
   } else {

@@ -9,6 +9,7 @@
 #include "deltadyn/identification/validate.hpp"
 #include "deltadyn/report/assessment.hpp"
 #include "deltadyn/report/html_report.hpp"
+#include "deltadyn/report/report_context.hpp"
 
 namespace deltadyn {
 
@@ -32,8 +33,10 @@ void add_motion_table(HtmlReport& report, const Robot& robot, const Validation& 
 /// Name, finding and meaning of every check.
 void add_check_table(HtmlReport& report, const Assessment& assessment);
 
-/// How the logs were filtered.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> processing_facts(const Validation& validation);
+/// The files, and how the logs were filtered.
+/// \param model  name and file of the parameters that the torque was predicted or fitted with
+[[nodiscard]] Facts source_facts(const ReportContext& context, const std::string& model, const std::string& model_file,
+                                 const Validation& validation);
 
 /// File name without folders.
 [[nodiscard]] std::string short_name(const std::string& path);

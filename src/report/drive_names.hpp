@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <string>
@@ -34,21 +33,14 @@ inline std::string owner_in_words(const ParameterId& id) {
 inline bool turns(const Robot& robot, int drive) {
   return robot.description().kind_of_drive(drive) == DriveKind::revolute;
 }
-inline const char* torque_unit_of(const Robot& robot, int drive) {
-  return turns(robot, drive) ? "N m" : "N";
-}
-inline const char* position_unit_of(const Robot& robot, int drive) {
-  return turns(robot, drive) ? "rad" : "m";
-}
-inline const char* velocity_unit_of(const Robot& robot, int drive) {
-  return turns(robot, drive) ? "rad/s" : "m/s";
-}
-inline const char* acceleration_unit_of(const Robot& robot, int drive) {
-  return turns(robot, drive) ? "rad/s²" : "m/s²";
-}
-/// "torque", or "force" of a drive that slides.
-inline const char* effort_of(const Robot& robot, int drive) {
-  return turns(robot, drive) ? "torque" : "force";
+/// Units of a drive, and what it exerts.
+struct DriveUnits {
+  const char *torque, *position, *velocity, *acceleration, *effort;
+};
+inline const DriveUnits& units_of(const Robot& robot, int drive) {
+  static constexpr DriveUnits kTurning{"N m", "rad", "rad/s", "rad/s²", "torque"};
+  static constexpr DriveUnits kSliding{"N", "m", "m/s", "m/s²", "force"};
+  return turns(robot, drive) ? kTurning : kSliding;
 }
 
 /// Unit of a mass matrix over the limbs' drives.

@@ -29,16 +29,16 @@ double relative_std(const ExcitationReportInput& input, Eigen::Index k) {
   return input.predicted_std(k) / std::max(input.base_scale(k), 1e-300);
 }
 
-struct VisibilityCounts {
-  int well = 0, roughly = 0, not_at_all = 0;
-};
-VisibilityCounts counts(const ExcitationReportInput& input) {
-  VisibilityCounts c;
-  for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) {
-    const double relative = relative_std(input, k);
-    ++(relative <= kWell ? c.well : (relative <= kNot ? c.roughly : c.not_at_all));
-  }
-  return c;
+/// How well the motion shows a base parameter.
+enum Seen { well, roughly, hardly };
+Seen seen(double relative) {
+  return relative <= kWell ? well : (relative <= kNot ? roughly : hardly);
+}
+
+int count_of(const ExcitationReportInput& input, Seen level) {
+  int count = 0;
+  for (Eigen::Index k = 0; k < input.predicted_std.size(); ++k) count += seen(relative_std(input, k)) == level ? 1 : 0;
+  return count;
 }
 
 Check check_efficiency(const ExcitationReportInput& input) {
@@ -46,7 +46,7 @@ Check check_efficiency(const ExcitationReportInput& input) {
   Check check{"Information", fmt::format("D-efficiency {}", format_percent(efficiency, 3)), Verdict::good, ""};
   // The bound may be out of reach for any motion: what the motion will leave unknown decides whether little information
   // is too little.
-  const bool blind = counts(input).not_at_all > kFewBlind * static_cast<double>(input.base.count());
+  const bool blind = count_of(input, hardly) > kFewBlind * static_cast<double>(input.base.count());
   if (efficiency < kGoodEfficiency)
     check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
   check.meaning = "That share of the information which any states inside these limits could give.";
@@ -95,7 +95,7 @@ void add_key_figures(HtmlReport& report, const ExcitationReportInput& input) {
 }
 
 void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
-  Table table({{"limit", Align::left}, {"lower"}, {"upper"}, {"reached"}, {"unit", Align::left}, {"used"}, {"at [s]"}});
+  Table table({text_column("limit"), "lower", "upper", "reached", text_column("unit"), "used", "at [s]"});
   for (const LimitUse& use : input.check.uses) {
     table.row({use.limit.name, format_number(use.limit.lower, 4), format_number(use.limit.upper, 4),
                format_number(use.value, 4), pretty_unit(use.limit.unit), format_percent(use.load, 4),
@@ -108,37 +108,38 @@ void add_limit_table(HtmlReport& report, const ExcitationReportInput& input) {
 void add_identification_table(HtmlReport& report, const ExcitationReportInput& input) {
   std::string noise;
   for (Eigen::Index i = 0; i < input.torque_noise.size(); ++i) {
-    noise +=
-        (i > 0 ? ", " : "") + format_number(input.torque_noise(i), torque_unit_of(input.robot, static_cast<int>(i)), 3);
+    noise += (i > 0 ? ", " : "") +
+             format_number(input.torque_noise(i), units_of(input.robot, static_cast<int>(i)).torque, 3);
   }
   report.paragraph(fmt::format(
       "Predicted standard deviations for one run of this trajectory with white torque noise of {} in the drives. "
-      "Expected values "
-      "are those of {}; the last column but one is the standard deviation as a share of the size that the combination "
-      "may have.",
+      "Expected values are those of {}; the last column but one is the standard deviation as a share of the size that "
+      "the combination may have.",
       noise, input.values_are_nominal ? "simple shapes; give --params for better ones" : "the given model"));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(input.base.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::ranges::stable_sort(
       order, [&](Eigen::Index a, Eigen::Index b) { return relative_std(input, a) > relative_std(input, b); });
+  constexpr const char* kWords[] = {"well", "roughly", "hardly"};
+  constexpr Tone kTones[] = {Tone::plain, Tone::caution, Tone::bad};
   const auto fill = [&](Table& table, bool only_hidden) {
     for (const Eigen::Index k : order) {
       const double relative = relative_std(input, k);
       if (only_hidden && relative <= kNot) continue;
       const auto at = static_cast<std::size_t>(k);
       const std::string unit(pretty_unit(input.base.units[at]));
-      table.row({input.base.expressions[at], format_number(input.base_values(k), 4),
-                 format_number(input.predicted_std(k), 3), unit, relative > 10 ? "–" : format_percent(relative, 2),
-                 relative <= kWell ? "well" : (relative <= kNot ? "roughly" : "hardly")},
-                relative <= kWell ? Tone::plain : (relative <= kNot ? Tone::caution : Tone::bad));
+      table.row(
+          {input.base.expressions[at], format_number(input.base_values(k), 4), format_number(input.predicted_std(k), 3),
+           unit, relative > 10 ? "–" : format_percent(relative, 2), kWords[seen(relative)]},
+          kTones[seen(relative)]);
     }
   };
-  const std::vector<TableColumn> columns = {{"combination of parameters", Align::left},
-                                            {"expected"},
-                                            {"standard deviation"},
-                                            {"unit", Align::left},
-                                            {"share"},
-                                            {"seen", Align::left}};
+  const std::vector<TableColumn> columns = {text_column("combination of parameters"),
+                                            "expected",
+                                            "standard deviation",
+                                            text_column("unit"),
+                                            "share",
+                                            text_column("seen")};
   report.subheading("What the motion will hardly identify");
   Table hidden(columns);
   fill(hidden, true);
@@ -147,8 +148,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
   } else {
     report.table(hidden,
                  "Their effect on the torque is small in every motion inside these limits, or of this length; more "
-                 "periods lower "
-                 "the standard deviation with the root of their number.");
+                 "periods lower the standard deviation with the root of their number.");
   }
   report.details("All base parameters, the least visible first", [&](HtmlReport& inner) {
     Table all(columns);
@@ -167,7 +167,7 @@ void add_identification_table(HtmlReport& report, const ExcitationReportInput& i
 
 void add_settings(HtmlReport& report, const ExcitationReportInput& input, const ReportContext& context) {
   const Excitation& e = input.excitation;
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  Facts facts = {{"Robot file", context.robot_file}};
   if (!context.parameter_file.empty()) facts.emplace_back("Model", context.parameter_file);
   if (input.segments.front().limits.region)
     facts.emplace_back("Workspace", input.segments.front().limits.region->text());
@@ -194,7 +194,6 @@ void add_settings(HtmlReport& report, const ExcitationReportInput& input, const 
 
 Assessment assess_excitation(const ExcitationReportInput& input) {
   const Excitation& e = input.excitation;
-  const VisibilityCounts c = counts(input);
   Assessment out;
   out.checks = {check_efficiency(input), check_reversals(input)};
   const Check& worst = worst_of(out.checks);
@@ -209,7 +208,8 @@ Assessment assess_excitation(const ExcitationReportInput& input) {
     out.lines.push_back(fmt::format("{}: {}. {}", check.subject, check.figure, check.meaning));
   out.lines.push_back(
       fmt::format("Of {} base parameters {} will be known to {} of their size or better, {} roughly, {} hardly.",
-                  input.base.count(), c.well, format_percent(kWell, 1), c.roughly, c.not_at_all));
+                  input.base.count(), count_of(input, well), format_percent(kWell, 1), count_of(input, roughly),
+                  count_of(input, hardly)));
   if (e.out_of_time)
     out.lines.emplace_back("The search was stopped by its time limit; more time may find a better motion.");
   if (e.interrupted) out.lines.emplace_back("The search was interrupted; more time may find a better motion.");
@@ -237,7 +237,7 @@ std::string excitation_report(const ExcitationReportInput& input, const ReportCo
   add_identification_table(report, input);
   report.heading("Settings");
   add_settings(report, input, context);
-  if (!context.command_line.empty()) report.footer(context.command_line);
+  report.footer(context.command_line);
   return report.str();
 }
 

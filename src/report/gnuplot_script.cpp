@@ -213,28 +213,18 @@ Head head_of(const PlotSpec& spec, int area_width, bool with_legend) {
   return head;
 }
 
-/// 0 at the left end of the axis, 1 at the right.
-double fraction_of(double value, const PlotRange& range, bool log) {
-  return log ? std::log(value / range.low) / std::log(range.high / range.low)
-             : (value - range.low) / (range.high - range.low);
-}
-
 const char* number_format(const PlotRange& range, bool log) {
   if (!log) return "%h";
   return range.low >= 0.9e-3 && range.high <= 1.1e4 ? "%g" : "10^{%T}";
 }
 
 std::string plot_style(const Series& series, const char* color) {
-  const char* dash = series.dashed ? " dashtype 2" : "";
-  switch (series.style) {
-    case SeriesStyle::line: return fmt::format("with lines linewidth 1.3 linecolor rgb '{}'{}", color, dash);
-    case SeriesStyle::points: return fmt::format("with points pointtype 7 pointsize 0.35 linecolor rgb '{}'", color);
-    case SeriesStyle::impulses: return fmt::format("with impulses linewidth 2 linecolor rgb '{}'{}", color, dash);
-    case SeriesStyle::steps: return fmt::format("with steps linewidth 1.3 linecolor rgb '{}'{}", color, dash);
-    case SeriesStyle::errorbars:
-      return fmt::format("with yerrorbars pointtype 7 pointsize 0.5 linewidth 1.3 linecolor rgb '{}'", color);
-  }
-  return "with lines";
+  static constexpr std::array<const char*, 5> kStyles{"lines linewidth 1.3", "points pointtype 7 pointsize 0.35",
+                                                      "impulses linewidth 2", "steps linewidth 1.3",
+                                                      "yerrorbars pointtype 7 pointsize 0.5 linewidth 1.3"};
+  const bool dots = series.style == SeriesStyle::points || series.style == SeriesStyle::errorbars;
+  return fmt::format("with {} linecolor rgb '{}'{}", kStyles[static_cast<std::size_t>(series.style)], color,
+                     series.dashed && !dots ? " dashtype 2" : "");
 }
 
 /// Writes the commands of one panel after the other.
@@ -306,10 +296,10 @@ class ScriptWriter {
     }
     if (head.legend_rows > 0) {
       const int key_top = top + (head.title && !head.beside ? kTextRow : 0) + 4;
-      line(fmt::format(
-          "set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen 1.8 width 1 "
-          "maxrows {} textcolor rgb '#222222'",
-          screen_x(right + 4), screen_y(key_top), head.legend_rows));
+      line(
+          fmt::format("set key at screen {:.6f}, screen {:.6f} right top horizontal Left reverse noenhanced samplen "
+                      "1.8 width 1 maxrows {} textcolor rgb '#222222'",
+                      screen_x(right + 4), screen_y(key_top), head.legend_rows));
     } else {
       line("unset key");
     }
@@ -345,7 +335,7 @@ class ScriptWriter {
     for (const PlotMarker& marker : spec.vertical_markers) {
       if (!(marker.at >= x_range_.low && marker.at <= x_range_.high)) continue;
       line(fmt::format("set arrow from first {0:.12g}, graph 0 to first {0:.12g}, graph 1 {1}", marker.at, kStyle));
-      const double place = fraction_of(marker.at, x_range_, spec.log_x);
+      const double place = x_range_.fraction_of(marker.at, spec.log_x);
       text(marker.label, fmt::format("first {:.12g}, graph 0.95 {}", marker.at,
                                      place > 0.75 ? "right offset -0.6, 0" : "left offset 0.6, 0"));
     }

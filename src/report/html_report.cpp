@@ -61,8 +61,6 @@ std::string escape_html(std::string_view text) {
   return result;
 }
 
-Table::Table(std::vector<TableColumn> columns) : columns_(std::move(columns)) {}
-
 Table& Table::row(std::vector<std::string> cells, Tone tone) {
   if (cells.size() != columns_.size()) {
     throw Error(fmt::format("a row of {} cells for {} columns", cells.size(), columns_.size()), "table of the report",
@@ -71,9 +69,6 @@ Table& Table::row(std::vector<std::string> cells, Tone tone) {
   rows_.push_back({std::move(cells), tone});
   return *this;
 }
-
-HtmlReport::HtmlReport(std::string title, std::string subtitle)
-    : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 HtmlReport& HtmlReport::element(std::string_view name, std::string_view attributes, std::string_view text) {
   body_ += fmt::format("<{0}{1}>{2}</{0}>\n", name, attributes, escape_html(text));
@@ -107,16 +102,6 @@ HtmlReport& HtmlReport::heading(const std::string& text) {
   return element("h2", fmt::format(" id=\"section-{}\"", headings_.size()), text);
 }
 
-HtmlReport& HtmlReport::subheading(const std::string& text) {
-  return element("h3", "", text);
-}
-HtmlReport& HtmlReport::paragraph(const std::string& text) {
-  return element("p", "", text);
-}
-HtmlReport& HtmlReport::note(const std::string& text) {
-  return element("p", " class=\"note\"", text);
-}
-
 HtmlReport& HtmlReport::list(const std::vector<std::string>& items) {
   if (items.empty()) return *this;
   body_ += "<ul>\n";
@@ -146,17 +131,13 @@ HtmlReport& HtmlReport::table(const Table& table, const std::string& caption) {
   return *this;
 }
 
-HtmlReport& HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& name_and_value) {
+HtmlReport& HtmlReport::facts(const Facts& name_and_value) {
   if (name_and_value.empty()) return *this;
   body_ += "<dl>\n";
   for (const auto& [name, value] : name_and_value)
     body_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
   body_ += "</dl>\n";
   return *this;
-}
-
-HtmlReport& HtmlReport::plot(const PlotSpec& spec, const std::string& caption) {
-  return plot(std::vector<PlotSpec>{spec}, caption);
 }
 
 HtmlReport& HtmlReport::plot(const std::vector<PlotSpec>& panels, const std::string& caption) {

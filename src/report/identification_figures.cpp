@@ -37,9 +37,8 @@ void add_cutoff_figure(HtmlReport& report, const Identification& identification)
       {identification.processing.cutoff_hz,
        fmt::format("chosen: {}", format_number(identification.processing.cutoff_hz, "Hz", 3))});
   report.plot(spec, fmt::format("Choice of the cut-off: spectrum of the positions over that of the encoders' noise, of "
-                                "each drive in its fastest log. "
-                                "The motion has its accelerations below {}; accelerations from it stay below the noise "
-                                "of the torques up to {}.",
+                                "each drive in its fastest log. The motion has its accelerations below {}; "
+                                "accelerations from it stay below the noise of the torques up to {}.",
                                 format_number(identification.cutoff->band_hz, "Hz", 3),
                                 format_number(identification.cutoff->noise_limit_hz, "Hz", 3)));
 }
@@ -88,14 +87,14 @@ void add_mass_matrix(HtmlReport& report, const Robot& robot, const MassMatrixSur
     report.paragraph(fmt::format("Moving inertia of the axis: {}.", format_number(survey.max_eigenvalue, unit)));
     return;
   }
-  report.paragraph(fmt::format(
-      "{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. Smallest "
-      "eigenvalue at x {:.3f}, y {:.3f}, z {:.3f} m.",
-      survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
-      format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
-      format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
-  constexpr Index kStatesShown = 700;  // of each eigenvalue; a point takes 80 bytes
-  const Index points = std::min(survey.task.rows(), kStatesShown);
+  report.paragraph(
+      fmt::format("{} at {} random poses of the workspace. Eigenvalues from {} to {}; worst condition number {}. "
+                  "Smallest eigenvalue at x {:.3f}, y {:.3f}, z {:.3f} m.",
+                  survey.positive_definite() ? "Positive definite" : "NOT positive definite everywhere, checked", poses,
+                  format_number(survey.min_eigenvalue, 3), format_number(survey.max_eigenvalue, unit, 3),
+                  format_number(survey.worst_condition, 3), survey.z_min(0), survey.z_min(1), survey.z_min(2)));
+  constexpr Index kEigenvaluesShown = 700;  // of each eigenvalue; a point takes 80 bytes
+  const Index points = std::min(survey.task.rows(), kEigenvaluesShown);
   PlotSpec spec{.x_label = "height of the plate z [m]",
                 .y_label = fmt::format("eigenvalues of M [{}]", unit),
                 .log_y = survey.eigenvalues.topRows(points).minCoeff() > 0,

@@ -22,10 +22,7 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
     const double relative = drive.rms_torque > 0 ? drive.rms / drive.rms_torque : 0.0;
-    figures.push_back({"residual, " + drive_name(static_cast<int>(j)),
-                       format_number(drive.rms, torque_unit_of(robot, static_cast<int>(j)), 3),
-                       fmt::format("{} of the {}", format_percent(relative, 2), effort_of(robot, static_cast<int>(j))),
-                       tone_of(grade_residual(relative))});
+    figures.push_back(residual_figure(robot, static_cast<int>(j), drive.rms, relative));
   }
   int fitted = 0, from_prior = 0;
   for (std::size_t i = 0; i < identification.fit.parameters.size(); ++i) {
@@ -38,11 +35,9 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
                      identification.base_estimate.condition_number > kHighCondition ? Tone::caution : Tone::plain});
   figures.push_back(
       {"left to the prior", fmt::format("{} of {}", from_prior, fitted), "fitted parameters", Tone::plain});
-  figures.push_back({robot.description().parts.empty() ? "moving inertia" : "min. eigenvalue of M",
-                     format_number(survey.min_eigenvalue, 3),
-                     robot.description().parts.empty()
-                         ? inertia_unit_of(robot)
-                         : fmt::format("{}, {} poses", inertia_unit_of(robot), format_count(survey.states)),
+  const bool axis = robot.description().parts.empty();
+  figures.push_back({axis ? "moving inertia" : "min. eigenvalue of M", format_number(survey.min_eigenvalue, 3),
+                     inertia_unit_of(robot) + (axis ? "" : fmt::format(", {} poses", format_count(survey.states))),
                      survey.positive_definite() ? Tone::good : Tone::bad});
   figures.push_back({"time to identify", format_duration(identification.total_time_s),
                      fmt::format("{} samples", format_count(identification.samples)), Tone::plain});
@@ -51,12 +46,9 @@ std::vector<KeyFigure> key_figures(const Robot& robot, const Identification& ide
 
 void add_settings(HtmlReport& report, const Robot& robot, const Identification& identification,
                   const Validation& training, const ReportContext& context) {
-  std::vector<std::pair<std::string, std::string>> facts = {
-      {"Robot file", context.robot_file},
-      {"Prior", context.parameter_file.empty() ? "nominal values of simple shapes" : context.parameter_file}};
-  for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
-  const auto processing = processing_facts(training);
-  facts.insert(facts.end(), processing.begin(), processing.end());
+  Facts facts = source_facts(
+      context, "Prior", context.parameter_file.empty() ? "nominal values of simple shapes" : context.parameter_file,
+      training);
   const ConsistentFitSummary& fit = identification.fit;
   facts.emplace_back("Free variables of the fit",
                      fmt::format("{} of {} parameters", fit.variables, robot.parameters()));
@@ -124,7 +116,7 @@ std::string identification_report(const Robot& robot, const Identification& iden
   add_cutoff_figure(report, identification);
   add_regularization_figure(report, identification.fit);
   add_settings(report, robot, identification, training, context);
-  if (!context.command_line.empty()) report.footer(context.command_line);
+  report.footer(context.command_line);
   return report.str();
 }
 

@@ -34,39 +34,27 @@ std::string unbroken_items(std::vector<std::string> items) {
 }  // namespace
 
 void add_fit_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({{"drive", Align::left},
-               {"rms residual"},
-               {fmt::format("of the rms {}", effort_of(robot, 0))},
-               {"free base parameters"},
-               {"rows"},
-               {"left out near reversals"},
-               {"residual there / elsewhere"}});
+  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", units_of(robot, 0).effort),
+               "free base parameters", "rows", "left out near reversals", "residual there / elsewhere"});
   for (std::size_t j = 0; j < identification.drives.size(); ++j) {
     const DriveReport& drive = identification.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     table.row({drive_name(static_cast<int>(j)), format_number(drive.rms, unit, 3),
                drive.rms_torque > 0 ? format_percent(drive.rms / drive.rms_torque) : "–",
                format_number(drive.rms_base, unit, 3), format_count(drive.rows), format_count(drive.masked_rows),
                fmt::format("{:.2f}", drive.reversal_ratio)});
   }
-  report.table(
-      table,
-      "Residual of each drive with the physically consistent parameters, and with free base parameters, which nothing "
-      "can undercut.");
+  report.table(table,
+               "Residual of each drive with the physically consistent parameters, and with free base parameters, which "
+               "nothing can undercut.");
 }
 
 void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identification& identification) {
   const ConsistentFitSummary& fit = identification.fit;
   const std::vector<Visibility> visibility = parameter_visibility(identification.base);
-  Table table({{"parameter", Align::left},
-               {"unit", Align::left},
-               {"prior"},
-               {"estimate ± 95 %"},
-               {"data share"},
-               {"decided by", Align::left},
-               {"shows in the torque", Align::left}});
-  Table others(
-      {{"parameter", Align::left}, {"unit", Align::left}, {"prior"}, {"value"}, {"shows in the torque", Align::left}});
+  Table table({text_column("parameter"), text_column("unit"), "prior", "estimate ± 95 %", "data share",
+               text_column("decided by"), text_column("shows in the torque")});
+  Table others({text_column("parameter"), text_column("unit"), "prior", "value", text_column("shows in the torque")});
   bool any_neither = false;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const auto k = static_cast<Index>(i);
@@ -91,15 +79,14 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
   report.table(
       table,
       fmt::format(
-          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, "
-          "where the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly "
-          "tell: they lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
+          "Parameters of the consistent fit. Data share: how much of the prior's variance the data took away, where "
+          "the prior counts with the weight that was chosen. Marked rows (below {:.0f} %) the data hardly tell: they "
+          "lean on the prior and on the rest of their body; grey ones do not act on the drives at all.",
           100 * kPriorDecides));
   report.note(
       "A parameter that shows \"in sums\" acts on the drives only together with others: the sums are known as the base "
       "parameters below say, and with them the torque. Where \"only sums\" decided, the value by itself may be off by "
-      "its whole "
-      "interval. It matters if you use the body on its own.");
+      "its whole interval. It matters if you use the body on its own.");
   if (any_neither) {
     report.note(
         "(?): neither the data nor the prior, at the weight that was chosen, hold the value; it moved to keep its body "
@@ -109,21 +96,20 @@ void add_parameter_tables(HtmlReport& report, const Robot& robot, const Identifi
     report.details("Parameters that were not fitted", [&](HtmlReport& inside) {
       inside.paragraph(
           "In the reduced set, products of inertia and moments across a symmetric link are zero, and inertias that the "
-          "drives do "
-          "not feel follow the prior.");
+          "drives do not feel follow the prior.");
       inside.table(others);
     });
   }
 }
 
 void add_extras_table(HtmlReport& report, const Robot& robot, const Identification& identification) {
-  Table table({{"joint", Align::left}, {"what", Align::left}, {"figure ± std"}});
+  Table table({text_column("joint"), text_column("what"), "figure ± std"});
   for (std::size_t joint = 0; joint < identification.presliding.size(); ++joint) {
     const PreslidingJoint& found = identification.presliding[joint];
     if (!(found.displacement > 0)) continue;
     const auto at = static_cast<int>(joint);
     const std::string name = at < robot.drives() ? drive_name(at) : "telescope";
-    const char* unit = at < robot.drives() ? position_unit_of(robot, at) : "m";
+    const char* unit = at < robot.drives() ? units_of(robot, at).position : "m";
     table.row({name, "friction builds up after a reversal over",
                format_with_uncertainty(found.displacement, found.std, unit)});
     if (found.damping_s > 0)
@@ -135,7 +121,7 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     const double n = turning ? 1.0 : 1.0 / (2 * std::numbers::pi);
     table.row({drive_name(ripple.drive), "wave of the torque over the position (cogging, tooth meshing)",
                format_with_uncertainty(std::hypot(ripple.cosine, ripple.sine), ripple.amplitude_std,
-                                       torque_unit_of(robot, ripple.drive))});
+                                       units_of(robot, ripple.drive).torque)});
     table.row(
         {"", "its waves", format_with_uncertainty(n * ripple.n, n * ripple.n_std, turning ? "a turn" : "a metre")});
   }
@@ -149,9 +135,8 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
     report.paragraph("Nothing: the data decided every fitted parameter at least in part.");
     return;
   }
-  Table table({{"body or joint", Align::left},
-               {"from the prior (data share)", Align::left},
-               {"what would replace it", Align::left}});
+  Table table(
+      {text_column("body or joint"), text_column("from the prior (data share)"), text_column("what would replace it")});
   for (const bool by_motion : {true, false}) {
     for (const PriorGap& gap : gaps) {
       if (gap.by_motion != by_motion) continue;
@@ -162,9 +147,8 @@ void add_gap_table(HtmlReport& report, const std::vector<PriorGap>& gaps) {
   }
   report.table(table,
                "What is left to the prior. Marked rows would show in another motion of the drives. The others never "
-               "show on their own: "
-               "one value measured off the machine and entered in the prior with a small std sharpens the rest of its "
-               "sum, too.");
+               "show on their own: one value measured off the machine and entered in the prior with a small std "
+               "sharpens the rest of its sum, too.");
 }
 
 void add_base_parameters(HtmlReport& report, const Identification& identification) {
@@ -173,13 +157,8 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   const Eigen::VectorXd std = estimate.std();
   const Index count = base.count();
   Eigen::VectorXd index(count), deviation(count);
-  Table table({{""},
-               {"base parameter", Align::left},
-               {"unit", Align::left},
-               {"least squares ± std"},
-               {"rel. std"},
-               {"consistent fit"},
-               {"deviation [std]"}});
+  Table table({"", text_column("base parameter"), text_column("unit"), "least squares ± std", "rel. std",
+               "consistent fit", "deviation [std]"});
   Index poor = 0, far = 0;
   for (Index k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
@@ -197,8 +176,7 @@ void add_base_parameters(HtmlReport& report, const Identification& identificatio
   }
   report.paragraph(
       fmt::format("{} combinations of the {} parameters are all that the drives can feel. {} of them {} hardly seen "
-                  "(relative std above "
-                  "{:.0f} %, marked); condition number {}.",
+                  "(relative std above {:.0f} %, marked); condition number {}.",
                   count, base.B.cols(), poor, poor == 1 ? "is" : "are", 100 * kPoorlySeen,
                   format_number(estimate.condition_number, 3)));
   report.plot(

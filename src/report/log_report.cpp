@@ -36,12 +36,8 @@ std::string figure_of(const LogFinding& f) {
 
 /// The findings that are more than a measured property in order; nothing if there are none.
 void add_finding_table(HtmlReport& report, const std::vector<LogFinding>& findings, bool with_fine) {
-  Table table({{"", Align::left},
-               {"finding", Align::left},
-               {"figure"},
-               {"drive"},
-               {"log", Align::left},
-               {"what to do", Align::left}});
+  Table table(
+      {text_column(""), text_column("finding"), "figure", "drive", text_column("log"), text_column("what to do")});
   for (const FindingLevel level :
        {FindingLevel::fault, FindingLevel::warning, FindingLevel::mended, FindingLevel::fine}) {
     if (level == FindingLevel::fine && !with_fine) continue;
@@ -125,7 +121,7 @@ std::string log_report(const Robot& robot, const std::vector<Log>& logs, const R
   report.heading("Channels");
   add_channel_table(report, description, log_figures(logs));
   report.heading("Data");
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file}};
+  Facts facts = {{"Robot file", context.robot_file}};
   for (const Log& log : logs) {
     facts.emplace_back("Log", fmt::format("{}: {} samples, {} Hz", log.file, format_count(log.samples()),
                                           log.samples() > 1 ? format_number(1 / log.sample_time_s(), "", 4) : "–"));

@@ -60,8 +60,8 @@ std::string rows_in_words(double every) {
 }
 
 std::array<std::string, 8> cells_of(const RobotDescription& robot, int j, const ChannelFigures& drive, Writer write) {
-  const bool turns = robot.kind_of_drive(j) == DriveKind::revolute;
-  const std::string length = turns ? "rad" : "m", effort = turns ? "N m" : "N";
+  const bool turning = robot.kind_of_drive(j) == DriveKind::revolute;
+  const std::string length = turning ? "rad" : "m", effort = turning ? "N m" : "N";
   const auto step = [&](double value, const std::string& unit) {
     return value == 0 ? "not visible" : write(value, unit, 2);
   };

@@ -17,11 +17,6 @@ constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMaxPoints = 1500;      // an SVG point takes about 80 bytes,
 constexpr std::size_t kMaxPathPoints = 6000;  // a vertex of a line about 13
 
-double fraction(double value, const PlotRange& range, bool log) {
-  return log ? std::log(value / range.low) / std::log(range.high / range.low)
-             : (value - range.low) / (range.high - range.low);
-}
-
 /// Positions in pixels; NaN where the sample cannot be drawn.
 struct Pixels {
   Eigen::VectorXd x, y;
@@ -31,8 +26,8 @@ struct Pixels {
 Pixels to_pixels(const Series& series, const PlotFrame& frame) {
   Pixels pixels{Eigen::VectorXd(series.x.size()), Eigen::VectorXd(series.x.size())};
   for (Index i = 0; i < series.x.size(); ++i) {
-    pixels.x(i) = fraction(series.x(i), frame.x, frame.log_x) * frame.columns;
-    pixels.y(i) = fraction(series.y(i), frame.y, frame.log_y) * frame.rows;
+    pixels.x(i) = frame.x.fraction_of(series.x(i), frame.log_x) * frame.columns;
+    pixels.y(i) = frame.y.fraction_of(series.y(i), frame.log_y) * frame.rows;
   }
   return pixels;
 }

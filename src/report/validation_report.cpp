@@ -15,16 +15,11 @@ namespace deltadyn {
 namespace {
 
 void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& validation) {
-  Table table({{"drive", Align::left},
-               {"rms residual"},
-               {fmt::format("of the rms {}", effort_of(robot, 0))},
-               {"largest residual"},
-               {"rms with reversals"},
-               {"rows"},
-               {"left out near reversals"}});
+  Table table({text_column("drive"), "rms residual", fmt::format("of the rms {}", units_of(robot, 0).effort),
+               "largest residual", "rms with reversals", "rows", "left out near reversals"});
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];
-    const char* unit = torque_unit_of(robot, static_cast<int>(j));
+    const char* unit = units_of(robot, static_cast<int>(j)).torque;
     const Verdict verdict = grade_residual(drive.relative_residual);
     table.row(
         {drive_name(static_cast<int>(j)), format_number(drive.rms_residual, unit, 3),
@@ -34,17 +29,14 @@ void add_drive_table(HtmlReport& report, const Robot& robot, const Validation& v
   }
   report.table(table, "Residual of each drive over all logs.");
   if (validation.logs.size() < 2) return;
-  Table by_log({{"log", Align::left},
-                {"drive", Align::left},
-                {"rms residual"},
-                {fmt::format("of the rms {}", effort_of(robot, 0))},
-                {"rms with reversals"}});
+  Table by_log({text_column("log"), text_column("drive"), "rms residual",
+                fmt::format("of the rms {}", units_of(robot, 0).effort), "rms with reversals"});
   for (const ValidatedLog& log : validation.logs) {
     for (int j = 0; j < robot.drives(); ++j) {
       const double rms = log.prediction.rms_residual(j, false), torque = log.prediction.rms_torque(j, false);
-      by_log.row({j == 0 ? short_name(log.file) : "", drive_name(j), format_number(rms, torque_unit_of(robot, j), 3),
+      by_log.row({j == 0 ? short_name(log.file) : "", drive_name(j), format_number(rms, units_of(robot, j).torque, 3),
                   torque > 0 ? format_percent(rms / torque) : "–",
-                  format_number(log.prediction.rms_residual(j, true), torque_unit_of(robot, j), 3)});
+                  format_number(log.prediction.rms_residual(j, true), units_of(robot, j).torque, 3)});
     }
   }
   report.table(by_log, "The same log by log.");
@@ -58,7 +50,6 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
     throw Error("validation and parameters are not those of this robot", robot.description().name,
                 "validate with the same robot file", ExitCode::usage);
   }
-  const std::vector<ResidualStructure> residual = residual_structure(validation);
   Assessment assessment = assess_validation(robot, validation);
   weigh_findings(context.findings, assessment);
   const RobotDescription& description = robot.description();
@@ -70,11 +61,7 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   std::vector<KeyFigure> figures;
   for (std::size_t j = 0; j < validation.drives.size(); ++j) {
     const ValidatedDrive& drive = validation.drives[j];
-    figures.push_back(
-        {"residual, " + drive_name(static_cast<int>(j)),
-         format_number(drive.rms_residual, torque_unit_of(robot, static_cast<int>(j)), 3),
-         fmt::format("{} of the {}", format_percent(drive.relative_residual, 2), effort_of(robot, static_cast<int>(j))),
-         tone_of(grade_residual(drive.relative_residual))});
+    figures.push_back(residual_figure(robot, static_cast<int>(j), drive.rms_residual, drive.relative_residual));
   }
   report.key_figures(figures);
 
@@ -84,30 +71,25 @@ std::string validation_report(const Robot& robot, const Validation& validation, 
   report.heading("Measured and model");
   add_torque_figures(report, robot, validation);
   report.heading("What the residual is made of");
-  add_structure_table(report, residual);
+  add_structure_table(report, residual_structure(validation));
   add_residual_over(report, robot, validation, Coordinate::velocity);
   add_residual_over(report, robot, validation, Coordinate::position);
   add_residual_spectra(report, robot, validation);
   report.heading("Data and settings");
   add_motion_table(report, robot, validation);
-  std::vector<std::pair<std::string, std::string>> facts = {{"Robot file", context.robot_file},
-                                                            {"Parameters", context.parameter_file}};
-  for (const std::string& file : context.log_files) facts.emplace_back("Log", file);
-  const auto processing = processing_facts(validation);
-  facts.insert(facts.end(), processing.begin(), processing.end());
-  report.facts(facts);
+  report.facts(source_facts(context, "Parameters", context.parameter_file, validation));
   std::vector<std::string> notes;
   for (const ValidatedLog& log : validation.logs) notes.insert(notes.end(), log.notes.begin(), log.notes.end());
   if (!notes.empty()) report.subheading("Notes").list(notes);
   report.details("Parameters of the model", [&](HtmlReport& inside) {
-    Table table({{"parameter", Align::left}, {"value"}, {"unit", Align::left}});
+    Table table({text_column("parameter"), "value", text_column("unit")});
     for (Eigen::Index i = 0; i < p.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       table.row({robot.parameter_names()[k], format_number(p(i)), pretty_unit(robot.parameter_units()[k])});
     }
     inside.table(table);
   });
-  if (!context.command_line.empty()) report.footer(context.command_line);
+  report.footer(context.command_line);
   return report.str();
 }
 

@@ -1,6 +1,6 @@
-#include "../../src/diagnosis/explains_more.hpp"
-
 #include <gtest/gtest.h>
+
+#include "../../src/diagnosis/diagnosis_steps.hpp"
 
 namespace deltadyn::detail {
 namespace {

@@ -117,6 +117,46 @@ TEST(NonNegativeLeastSquares, EmptyAndEqualColumns) {
   EXPECT_EQ(found.free, (std::vector<bool>{true, true, false, false}));
 }
 
+TEST(NonNegativeLeastSquares, IsLeastSquaresWithoutConstraints) {
+  const MatrixXd C = MatrixXd::Random(30, 3);
+  const VectorXd r = VectorXd::Random(30);
+  const NonNegativeSolution gain =
+      non_negative_least_squares(C.transpose() * C, C.transpose() * r, {false, false, false});
+  const VectorXd a = C.colPivHouseholderQr().solve(r);
+  EXPECT_LT((gain.x - a).norm(), 1e-9);
+  EXPECT_NEAR(gain.gain, r.squaredNorm() - (r - C * a).squaredNorm(), 1e-9);
+}
+
+TEST(NonNegativeLeastSquares, GivesNothingForTheWrongSign) {
+  const MatrixXd C = MatrixXd::Identity(4, 1);
+  const VectorXd r = -VectorXd::Unit(4, 0);
+  EXPECT_EQ(non_negative_least_squares(C.transpose() * C, C.transpose() * r, {true}).gain, 0.0);
+  EXPECT_EQ(non_negative_least_squares(C.transpose() * C, C.transpose() * r, {false}).gain, 1.0);
+}
+
+TEST(NonNegativeLeastSquares, LeavesOutColumnsOfWhichNothingIsLeft) {
+  MatrixXd gram = MatrixXd::Zero(2, 2);
+  gram(0, 0) = 4;
+  gram(1, 1) = -1e-18;
+  const NonNegativeSolution gain =
+      non_negative_least_squares(gram, Eigen::Vector2d(2, 1e-9), {false, false});  // rounding in the second
+  EXPECT_NEAR(gain.gain, 1, 1e-12);
+  EXPECT_EQ(gain.x(1), 0);
+}
+
+TEST(NonNegativeLeastSquares, SharesBetweenEqualColumns) {
+  const MatrixXd C = MatrixXd::Random(30, 1) * Eigen::RowVector2d(1, 2);
+  const VectorXd r = 3 * C.col(0);
+  MatrixXd gram = C.transpose() * C;
+  VectorXd inner = C.transpose() * r;
+  gram(1, 1) *= 1 + 1e-11;  // rounding, which must not become a direction of its own
+  inner(1) *= 1 + 1e-7;
+  const NonNegativeSolution gain = non_negative_least_squares(gram, inner, {false, false});
+  EXPECT_NEAR(gain.gain, r.squaredNorm(), 1e-6 * r.squaredNorm());
+  EXPECT_LT(gain.x.norm(), 10);
+  EXPECT_LT((C * gain.x - r).norm(), 1e-6 * r.norm());
+}
+
 TEST(NonNegativeLeastSquares, NoColumns) {
   EXPECT_EQ(non_negative_least_squares(MatrixXd(0, 0), VectorXd(0), {}).gain, 0);
 }

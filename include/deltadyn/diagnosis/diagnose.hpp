@@ -48,6 +48,9 @@ struct EffectCandidate {
   double gain = 0;     ///< fall of the sum of squares in white rows
   double p_value = 1;  ///< chance of that gain on clean logs, all candidates considered
   std::string why;     ///< why it is (not) told apart from the best one
+
+  /// "stribeck at drive1"
+  [[nodiscard]] std::string at_joint() const { return name + " at " + joint; }
 };
 
 struct NamedEffect : EffectCandidate {
@@ -116,11 +119,9 @@ struct Diagnosis {
   double p_value = 1;                                ///< of the verdict
   double explained_share = 0;                        ///< of all structure, by the named effects
   double gap_shrink = 0, gap_low = 0, gap_high = 0;  ///< on the hold-out log, with its 95 % interval; NaN without one
-  /// Chance that the hold-out log does not gain (paired block bootstrap)
-  double p_no_gain = 1;
-  std::optional<double> needed_s;          ///< not_testable for shortness: length that would do
-  std::vector<Effect> effects;             ///< of the improved model: those it had before and the named ones
-  std::optional<Identification> improved;  ///< parameters with the effects
+  std::optional<double> needed_s;                    ///< not_testable for shortness: length that would do
+  std::vector<Effect> effects;                       ///< of the improved model: those it had before and the named ones
+  std::optional<Identification> improved;            ///< parameters with the effects
   /// One a drive, of the improved model; empty without one or without hold-out log
   std::vector<HoldoutFigure> holdout_figures;
   double holdout_cutoff_hz = 0;  ///< of these figures; 0: the one that delta-validate chooses

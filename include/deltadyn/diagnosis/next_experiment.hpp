@@ -16,8 +16,6 @@ namespace deltadyn {
 
 struct NextExperiment {
   TrajectorySamples samples;  ///< with run-in and run-out
-  double separation = 0;      ///< rms over the motion of what is left, in standard deviations of the noise of a row
-  double typical = 0;         ///< the same for the median of random motions within the same limits
   std::string note;           ///< one line, what it separates and how well
 };
 

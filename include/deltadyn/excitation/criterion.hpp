@@ -22,6 +22,16 @@ enum class Criterion {
 [[nodiscard]] Criterion criterion_of(const std::string& word);
 [[nodiscard]] const char* word_of(Criterion criterion);
 
+/// What makes a periodic motion a good one.
+struct MotionGoal {
+  Criterion criterion = Criterion::log_det;
+  double velocity_weight = 0;  ///< w of (9)
+  int harmonics = 5;
+  double lowest_hz = 0.1, highest_hz = 1;  ///< base frequency
+  double reversal_reach_s = 0;  ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
+  double least_away = 0.4;      ///< share of the time that every drive is away from them in every segment, at least
+};
+
 /// Value to be made large, and its gradient by M (symmetric). The eigenvalue criteria are smooth where the extreme
 /// eigenvalues are simple.
 struct CriterionValue {

@@ -18,21 +18,15 @@
 
 namespace deltadyn {
 
-struct ExcitationOptions {
-  Criterion criterion = Criterion::log_det;
-  double velocity_weight = 0;  ///< w of (9)
-  int harmonics = 5;
-  double lowest_hz = 0.1, highest_hz = 1;  ///< base frequency
-  std::vector<double> speeds = {1.0};      ///< one a segment: share of the velocity limits
-  double time_limit_s = 60;                ///< of the search, from `elapsed_s` on
-  double elapsed_s = 0;                    ///< spent before, counts for the figures and the limit
-  double planned_time_s = 0;               ///< that starts and rounds are planned for; 0: the time limit
+struct ExcitationOptions : MotionGoal {
+  std::vector<double> speeds = {1.0};  ///< one a segment: share of the velocity limits
+  double time_limit_s = 60;            ///< of the search, from `elapsed_s` on
+  double elapsed_s = 0;                ///< spent before, counts for the figures and the limit
+  double planned_time_s = 0;           ///< that starts and rounds are planned for; 0: the time limit
   /// Random starts of each segment; 0: as many as two threads of a desktop machine finish in 60 % of the planned time.
   /// The work is counted in evaluations, so that the result does not depend on the machine unless the time runs out.
   int starts = 0;
-  double rate_hz = 1000;        ///< the period becomes a whole number of samples
-  double reversal_reach_s = 0;  ///< what counts as near a velocity reversal (reversals.hpp); 0: reversals are no matter
-  double least_away = 0.4;      ///< share of the time that every drive is away from them in every segment, at least
+  double rate_hz = 1000;  ///< the period becomes a whole number of samples
   std::uint64_t seed = 1;
   const std::atomic<bool>* stop = nullptr;  ///< set by Ctrl-C: end soon with the best motion so far
   std::function<void(double share)> progress;
@@ -63,7 +57,6 @@ struct Excitation {
 
   [[nodiscard]] double margin() const;
   [[nodiscard]] std::string brief_report() const;
-  [[nodiscard]] std::string full_report() const;
 };
 
 /// Throws deltadyn::Error: usage or bad_input for limits and options that cannot be met, no_convergence if no feasible

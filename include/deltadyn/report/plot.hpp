@@ -5,6 +5,7 @@
 /// everything from its standard input; no temporary file, no shell.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -44,6 +45,11 @@ struct PlotMarker {
 struct PlotRange {
   double low = 0.0;
   double high = 1.0;
+
+  /// Of a value on an axis with this range: 0 at its lower end, 1 at the upper one.
+  [[nodiscard]] double fraction_of(double value, bool log) const {
+    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+  }
 };
 
 /// One pair of axes.
