@@ -179,8 +179,8 @@ double motion_cutoff_hz(const ProcessingOptions& options) {
 /// Low pass of regressor and torque.
 std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
   const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
-  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz,
-                                        std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz)));
+  const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
+  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz, factor);
 }
 
 /// The period to average over, if the log has one and the series stays small.

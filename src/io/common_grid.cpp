@@ -36,7 +36,7 @@ SampledChannel low_passed(const SampledChannel& series, double step_s, double cu
 
 }  // namespace
 
-Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
+ValueRange range_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
   const auto known = !values.array().isNaN();
   return {known.select(values.array(), HUGE_VAL).minCoeff(), known.select(values.array(), -HUGE_VAL).maxCoeff()};
 }

@@ -12,12 +12,12 @@ struct SampledChannel {
   Eigen::VectorXd t_s, values;
 };
 
-struct Range {
+struct ValueRange {
   double low, high;
   [[nodiscard]] double width() const { return high - low; }
 };
 /// Of the numbers that are there.
-[[nodiscard]] Range range_of(const Eigen::Ref<const Eigen::VectorXd>& values);
+[[nodiscard]] ValueRange range_of(const Eigen::Ref<const Eigen::VectorXd>& values);
 
 /// Median step of stamps [s].
 [[nodiscard]] double usual_step_s(const Eigen::Ref<const Eigen::VectorXd>& t_s);

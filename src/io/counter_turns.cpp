@@ -16,7 +16,7 @@ constexpr double kOvershoot = 0.02;
 
 /// The range of numbers that a counter without a jump may have: a turn of its angle, or of counts the encoder's turn or
 /// a usual number of bits. 0: none.
-double likely_wrap(const Range& recorded, const ChannelMap& map) {
+double likely_wrap(const ValueRange& recorded, const ChannelMap& map) {
   const auto unit = log_unit(map.unit);
   if (!unit) return 0.0;
   const auto holds = [&](double wrap) {
@@ -41,7 +41,7 @@ struct Fitting {
   double first = 0, count = 0;
 };
 
-Fitting fitting_turns(const Range& travel, double turn, const DriveLimits& limits) {
+Fitting fitting_turns(const ValueRange& travel, double turn, const DriveLimits& limits) {
   const double slack = kOvershoot * (limits.upper - limits.lower);
   const double first = std::ceil((limits.lower - slack - travel.low) / turn);
   const double last = std::floor((limits.upper + slack - travel.high) / turn);
@@ -54,7 +54,7 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
                            const DriveLimits& limits) {
   double wrap = map.wrap ? *map.wrap : find_wrap(values, map.counts_per_turn.value_or(0.0));
   const bool seen = wrap > 0;
-  const Range recorded = range_of(values);
+  const ValueRange recorded = range_of(values);
   const Index jumps = seen ? unwrap(values, wrap) : 0;
   std::string done;
   if (jumps > 0)
@@ -66,9 +66,9 @@ std::string settle_counter(Eigen::Ref<Eigen::VectorXd> values, const ChannelMap&
           : done + ", and the first value taken as it is (offset in the column map if that is another turn)";
   if (!std::isfinite(limits.lower) || !std::isfinite(limits.upper)) return as_it_is;
   if (!seen) wrap = likely_wrap(recorded, map);
-  const Range numbers = range_of(values);
+  const ValueRange numbers = range_of(values);
   const double one = factor * numbers.low, other = factor * numbers.high, shift = factor / map.scale * map.offset;
-  const Range travel{std::min(one, other) + shift, std::max(one, other) + shift};
+  const ValueRange travel{std::min(one, other) + shift, std::max(one, other) + shift};
   const double turn = std::abs(factor) * wrap;
   if (!(turn > 0) || !std::isfinite(travel.width())) return as_it_is;
   const Fitting fitting = fitting_turns(travel, turn, limits);

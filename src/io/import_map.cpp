@@ -143,7 +143,7 @@ std::string LogImport::map_text() const {
       remarks.push_back(fmt::format("  \"{}\"  no numbers", channel.name));
       continue;
     }
-    const Range range = range_of(channel.values);
+    const ValueRange range = range_of(channel.values);
     remarks.push_back(fmt::format("  \"{}\"{}  {:.6g} to {:.6g}", channel.name,
                                   channel.unit.empty() ? "" : " [" + channel.unit + "]", range.low, range.high));
   }
