@@ -179,8 +179,8 @@ double motion_cutoff_hz(const ProcessingOptions& options) {
 /// Low pass of regressor and torque.
 std::shared_ptr<const FirDecimator> low_pass_of(double rate_hz, const ProcessingOptions& options) {
   const double low_pass_hz = std::min(options.torque_cutoff_ratio * options.cutoff_hz, 0.4 * rate_hz);
-  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz,
-                                        std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz)));
+  const int factor = options.stride > 0 ? options.stride : std::max(1, static_cast<int>(0.4 * rate_hz / low_pass_hz));
+  return std::make_shared<FirDecimator>(rate_hz, low_pass_hz, factor);
 }
 
 /// The period to average over, if the log has one and the series stays small.
@@ -260,6 +260,7 @@ void ProcessingOptions::validate() const {
          "it must be above 0 and at most 10");
   demand(periods != Periods::given || period_s > 0, "period_s", "it must be above 0 s");
   demand(reversal_floor >= 0 && reversal_floor < 1, "reversal_floor", "it must be at least 0 and below 1");
+  demand(stride >= 0, "stride", "it must be at least 0");
   demand(not_negative(presliding), "presliding", "displacements must be at least 0");
   demand(not_negative(presliding_damping_s), "presliding_damping_s", "dampings must be at least 0 s");
 }
@@ -273,7 +274,8 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
       throw Error("without filtering, the log must hold velocities and accelerations", log.file,
                   "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
     }
-    out.rows = samples;
+    out.stride = std::max(1, options.stride);
+    out.rows = (samples + out.stride - 1) / out.stride;
     out.reversal.setConstant(samples, robot.drives(), false);
     add_ripples(options, out);
     (void)joint_rates(robot, out);  // refuses poses out of reach

@@ -41,6 +41,7 @@ struct ProcessingOptions {
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none
   std::vector<Ripple> ripples;           ///< torque that the model holds beside Y p
+  int stride = 0;                        ///< use every stride-th sample; 0: what the pass band asks for
 
   /// A cut-off far below the band of the motion (choose_cutoff) is one of the rows: the positions keep their band.
   void keep_motion(double motion_hz);
