@@ -260,6 +260,7 @@ void ProcessingOptions::validate() const {
          "it must be above 0 and at most 10");
   demand(periods != Periods::given || period_s > 0, "period_s", "it must be above 0 s");
   demand(reversal_floor >= 0 && reversal_floor < 1, "reversal_floor", "it must be at least 0 and below 1");
+  demand(stride >= 0, "stride", "it must be at least 0");
   demand(not_negative(presliding), "presliding", "displacements must be at least 0");
   demand(not_negative(presliding_damping_s), "presliding_damping_s", "dampings must be at least 0 s");
 }
@@ -273,7 +274,8 @@ PreparedLog prepare_log(const Robot& robot, const Log& log, const ProcessingOpti
       throw Error("without filtering, the log must hold velocities and accelerations", log.file,
                   "add the columns qd1_rad_s.. and qdd1_rad_s2.., or let the tool filter and differentiate");
     }
-    out.rows = samples;
+    out.stride = std::max(1, options.stride);
+    out.rows = (samples + out.stride - 1) / out.stride;
     out.reversal.setConstant(samples, robot.drives(), false);
     add_ripples(options, out);
     (void)joint_rates(robot, out);  // refuses poses out of reach

@@ -37,6 +37,7 @@ constexpr Index kFewestRowsOfPart = 20;  // of all drives in a part
 ProcessingOptions at_cutoff(ProcessingOptions options, double cutoff_hz) {
   options.cutoff_hz = cutoff_hz;
   options.periods = Periods::ignore;
+  options.stride = 0;
   return options;
 }
 

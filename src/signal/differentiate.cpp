@@ -13,8 +13,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Weights w of the polynomial through all points: its `derivative`-th derivative at the point `at` is sum_k w(k) x(k) /
-/// h^derivative, for samples at 0 .. points-1 in units of the sample time h.
+/// Weights w of the polynomial through all points: its `derivative`-th derivative at the point `at` is sum_k w(k) x(k)
+/// / h^derivative, for samples at 0 .. points-1 in units of the sample time h.
 /// \param at  in samples, e.g. (points - 1)/2 for the centre
 Eigen::VectorXd derivative_weights(int points, int derivative, double at) {
   const int degree = points - 1;

@@ -63,7 +63,8 @@ struct Points {
                                   const Reading& reading);
 
 /// Values of one column a stretch and their time derivatives at places shifted by the log's `shift_s` (later ones for a
-/// positive shift; none if it is empty), under a Gaussian of `sigma_s`, at most three times that of the sample: rows x (1 + derivatives).
+/// positive shift; none if it is empty), under a Gaussian of `sigma_s`, at most three times that of the sample: rows x
+/// (1 + derivatives).
 [[nodiscard]] Eigen::MatrixXd values_at(const Sample& sample, const std::vector<Eigen::VectorXd>& column,
                                         const std::vector<Place>& at, const std::vector<double>& shift_s_of_log,
                                         int derivatives, double sigma_s);
