@@ -17,15 +17,13 @@ constexpr std::pair<const char*, Criterion> kWords[] = {{"logdet", Criterion::lo
                                                         {"min-eigenvalue", Criterion::min_eigenvalue}};
 
 CriterionValue of_determinant(Criterion criterion, const Eigen::MatrixXd& M) {
-  const auto [L, positive_definite] = dense::cholesky(M);
-  if (!positive_definite) return {};
+  const dense::Cholesky factor = dense::cholesky(M);
+  if (!factor.positive_definite) return {};
   const auto p = static_cast<double>(M.rows());
   CriterionValue result;
   result.regular = true;
-  result.value = 2 * L.diagonal().array().log().sum();
-  const Eigen::MatrixXd root =
-      dense::solve_upper(L.transpose(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(M.rows(), M.cols())));
-  result.by_M = root * root.transpose();
+  result.value = 2 * factor.L.diagonal().array().log().sum();
+  result.by_M = dense::solve(factor, Eigen::MatrixXd::Identity(M.rows(), M.cols()));
   if (criterion == Criterion::det) {
     result.value = std::exp(result.value / p);
     result.by_M *= result.value / p;

@@ -24,16 +24,15 @@ constexpr int kMostIterations = 20000;
 
 /// Sensitivities d_k = tr(M_k M^-1) = |L^-1 A_k'|^2 of the blocks of rows A_k.
 VectorXd sensitivities(const std::vector<MatrixXd>& blocks, const std::vector<Index>& which, const MatrixXd& M) {
-  const auto [L, positive_definite] = dense::cholesky(M);
-  if (!positive_definite)
+  const dense::Cholesky factor = dense::cholesky(M);
+  if (!factor.positive_definite)
     throw Error("the admissible states do not show all base parameters", "limits", "widen the limits or the workspace",
                 ExitCode::no_convergence);
-  const MatrixXd R = L.transpose();
   const auto count = static_cast<Index>(which.size());
   VectorXd d(count);
   const auto pass = [&](Index k) {
     const MatrixXd& block = blocks[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])];
-    d(k) = dense::solve_upper_transposed(R, MatrixXd(block.transpose())).squaredNorm();
+    d(k) = dense::solve_lower(factor.L, block.transpose()).squaredNorm();
   };
   // Small sets are faster on one thread than the threads are to meet.
   in_parallel(count, pass, count > 2000 ? 0 : 1);

@@ -35,6 +35,18 @@ Cholesky cholesky(const MatrixXd& symmetric) {
   return {factor.matrixL(), factor.info() == Eigen::Success};
 }
 
+MatrixXd solve_lower(const MatrixXd& L, const MatrixXd& b) {
+  return L.triangularView<Eigen::Lower>().solve(b);
+}
+
+MatrixXd solve(const Cholesky& factor, const MatrixXd& b) {
+  const auto L = factor.L.triangularView<Eigen::Lower>();
+  MatrixXd x = b;
+  L.solveInPlace(x);
+  L.transpose().solveInPlace(x);
+  return x;
+}
+
 MatrixXd solve_symmetric(const MatrixXd& symmetric, const MatrixXd& b) {
   return symmetric.ldlt().solve(b);
 }
@@ -73,10 +85,6 @@ MatrixXd solve_upper(const MatrixXd& R, const MatrixXd& b) {
 
 VectorXd solve_upper(const MatrixXd& R, const VectorXd& b) {
   return R.triangularView<Eigen::Upper>().solve(b);
-}
-
-MatrixXd solve_upper_transposed(const MatrixXd& R, const MatrixXd& b) {
-  return R.triangularView<Eigen::Upper>().transpose().solve(b);
 }
 
 VectorXd solve_upper_transposed(const MatrixXd& R, const VectorXd& b) {

@@ -61,7 +61,8 @@ TEST_P(Dense, SolutionsSolve) {
   expect_near(R * solve_upper(R, b), b);
   expect_near(R * solve_upper(R, B), B);
   expect_near(R.transpose() * solve_upper_transposed(R, b), b);
-  expect_near(R.transpose() * solve_upper_transposed(R, B), B);
+  expect_near(R.transpose() * solve_lower(R.transpose(), B), B);
+  expect_near(S * solve(cholesky(S), B), B);
 }
 
 TEST_P(Dense, TheSmallestSolutionHasNothingThatTheMatrixDoesNotSee) {

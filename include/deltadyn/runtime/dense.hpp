@@ -35,6 +35,9 @@ struct Cholesky {
   bool positive_definite = false;
 };
 [[nodiscard]] Cholesky cholesky(const Eigen::MatrixXd& symmetric);
+/// L x = b, and L L^T x = b.
+[[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& L, const Eigen::MatrixXd& b);
+[[nodiscard]] Eigen::MatrixXd solve(const Cholesky& factor, const Eigen::MatrixXd& b);
 
 /// A x = b with A symmetric and not negative (L D L^T, pivoted).
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& symmetric, const Eigen::MatrixXd& b);
@@ -55,7 +58,6 @@ struct Cholesky {
 /// R x = b and R^T x = b with R upper triangular.
 [[nodiscard]] Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& R, const Eigen::MatrixXd& b);
 [[nodiscard]] Eigen::VectorXd solve_upper(const Eigen::MatrixXd& R, const Eigen::VectorXd& b);
-[[nodiscard]] Eigen::MatrixXd solve_upper_transposed(const Eigen::MatrixXd& R, const Eigen::MatrixXd& b);
 [[nodiscard]] Eigen::VectorXd solve_upper_transposed(const Eigen::MatrixXd& R, const Eigen::VectorXd& b);
 
 /// A P = Q R with the columns in the order of their weight: what shows the rank, and solves least squares by it.
