@@ -78,7 +78,7 @@ double judge(const SearchContext& context, const SearchResult& found, const std:
 /// Names and sets may have changed since the effects were ruled on: the rulings say what holds at the end.
 void settle_rulings(Diagnosis& out);
 
-/// "stribeck at drive1 and backlash at drive2", with this between them.
+/// "NAME at drive1 and OTHER at drive2", with this between them.
 template <class Candidate>
 [[nodiscard]] std::string listed(const std::vector<Candidate>& candidates, const char* between) {
   std::string text;

@@ -498,7 +498,7 @@ std::vector<Row> effects() {
       {"EffectBeyondItsRange",
        [](const W& w) { return with_effects(w, "saturation,drive2,level,20,N*m,\nsaturation,drive2,share,1.5,,\n"); },
        3,
-       {"bad\\.csv, line 3, column value", "share of saturation is 1\\.5, beyond", "mend: give a number up to 1"}},
+       {"bad\\.csv, line 3, column value", "share of saturation is 1\\.5, beyond", "mend: give a number from -1 to 1"}},
       {"EffectNotFinite",
        [=](const W& w) { return with_effects(w, bend + "stribeck,drive2,friction,nan,N*m,\n"); },
        3,

@@ -160,6 +160,7 @@ TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
     if (key == "kind" || key == "recorded" || key == "encoder" || key == "log") return "1";
     if (key == "share") return "0.5";  // of the load, of a peak or of a torque constant
     if (key == "motor_share") return "0.4";
+    if (key == "exponent") return effect.starts_with("shear") ? "0.5" : "2";
     return key == "inertia_over_stiffness" ? "1e-5" : "0.01";
   };
   std::size_t count = 0;

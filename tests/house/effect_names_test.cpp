@@ -37,6 +37,7 @@ const std::set<std::string> kRows = {"presliding", "rotor_inertia"};
 
 struct Named {
   std::string name, type;
+  std::regex as_type, as_word;
 };
 
 std::vector<Named> listed_effects() {
@@ -50,7 +51,7 @@ std::vector<Named> listed_effects() {
       if (std::isupper(static_cast<unsigned char>(c)) != 0 && !name.empty()) name += '_';
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
-    all.push_back({name, words});
+    all.push_back({name, words, std::regex("\\beffects::" + words + "\\b"), std::regex("\\b" + name + "\\b")});
   }
   return all;
 }
@@ -58,11 +59,10 @@ std::vector<Named> listed_effects() {
 /// The first word of a text that names an effect, else nothing.
 std::string named_in(const std::string& text, const std::vector<Named>& effects) {
   for (const Named& one : effects) {
-    if (std::regex_search(text, std::regex("\\beffects::" + one.type + "\\b"))) return one.type;
+    if (std::regex_search(text, one.as_type)) return one.type;
     if (text.find("effects/" + one.name + ".hpp") != std::string::npos) return one.name + ".hpp";
     if (kRows.count(one.name) == 0 && text.find('"' + one.name + '"') != std::string::npos) return '"' + one.name + '"';
-    if (kOtherMeaning.count(one.name) == 0 && std::regex_search(text, std::regex("\\b" + one.name + "\\b")))
-      return one.name;
+    if (kOtherMeaning.count(one.name) == 0 && std::regex_search(text, one.as_word)) return one.name;
   }
   return {};
 }

@@ -49,7 +49,7 @@ struct EffectCandidate {
   double p_value = 1;  ///< chance of that gain on clean logs, all candidates considered
   std::string why;     ///< why it is (not) told apart from the best one
 
-  /// "stribeck at drive1"
+  /// "NAME at drive1"
   [[nodiscard]] std::string at_joint() const { return name + " at " + joint; }
 };
 

@@ -28,8 +28,8 @@ struct SingularValues {
 [[nodiscard]] SingularValues svd(const Eigen::MatrixXd& A);
 [[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 
-/// Cholesky's factor of a positive definite matrix, A = L L^T. Of another matrix L holds what was done until a pivot was
-/// not positive: A's own part beyond it.
+/// Cholesky's factor of a positive definite matrix, A = L L^T. Of another matrix L holds what was done until a pivot
+/// was not positive: A's own part beyond it.
 struct Cholesky {
   Eigen::MatrixXd L;
   bool positive_definite = false;
