@@ -124,8 +124,7 @@ class DiagnosisRun {
         cutoff = {cutoff_hz, cutoff_hz, cutoff_hz};
       } else if (in_.options.choose_cutoff) {
         // A delay, which the search weighs, must not end the band in which the model holds.
-        const std::vector<Log> mended = detail::as_validated(in_.robot, in_.logs, {});
-        cutoff = detail::search_cutoff(in_.robot, base_, mended, wanted_, in_.options.threads);
+        cutoff = detail::search_cutoff(in_.robot, base_, in_.training.beside({}), wanted_, in_.options.threads);
       }
       out_.cutoff_hz = cutoff.chosen_hz;
       widest_hz = cutoff.widest_hz;
@@ -284,7 +283,9 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* 
   options.validate();
   if (logs.empty()) throw Error("there is no log", "", "give at least one log file", ExitCode::usage);
   if (holdout != nullptr) refuse_training_log(logs, *holdout);
-  const detail::DiagnosisInput input{robot, logs, holdout, p, p_std, known, options};
+  const detail::ValidatedLogs training(robot, logs),
+      held(robot, holdout != nullptr ? std::vector<Log>{*holdout} : std::vector<Log>());
+  const detail::DiagnosisInput input{robot, logs, holdout, p, p_std, known, options, training, held};
   double wider_hz = 0;
   const auto search = [&](double cutoff_hz) {
     Diagnosis out;

@@ -10,6 +10,7 @@
 #include "deltadyn/diagnosis/diagnose.hpp"
 
 #include "effect_search.hpp"
+#include "written_proof.hpp"
 
 namespace deltadyn::detail {
 
@@ -21,6 +22,7 @@ struct DiagnosisInput {
   const VectorXd &p, &p_std;         ///< of the model as given
   const std::vector<Effect>& known;  ///< effects of the model as given
   const DiagnosisOptions& options;
+  const ValidatedLogs &training, &held;  ///< `held` has none without a hold-out log
 };
 
 struct SearchContext {

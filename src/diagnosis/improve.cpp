@@ -50,7 +50,7 @@ void fit_improved(const ImproveInput& input, bool keep_extras, Trial& trial) {
   trial.effects = input.known;
   for (const NamedEffect& one : trial.named) trial.effects.push_back(one.effect);
   // As delta-identify takes the logs: a delay that no effect explains is no part of the model.
-  const std::vector<Log> logs = as_validated(input.robot, input.logs, trial.effects);
+  const std::vector<Log>& logs = input.training.beside(trial.effects);
   trial.improved = identify_beside(input, logs, trial.effects, keep_extras);
   settle_amplitudes(input, logs, trial);
   trial.improved = identify_beside(input, logs, trial.effects, keep_extras);
@@ -70,7 +70,7 @@ Trial try_names(const ImproveInput& input, const std::vector<NamedEffect>& named
     Trial trial;
     trial.named = named;
     fit_improved(input, keep_extras, trial);
-    trial.proof = prove_written(input.robot, *input.holdout, model_of(input.p, input.known, input.options.processing),
+    trial.proof = prove_written(input.robot, input.held, model_of(input.p, input.known, input.options.processing),
                                 model_of(trial.improved.fit.p, trial.effects, trial.improved.processing),
                                 reached_drives(named), input.cutoff_hz, input.options);
     if (!keep_extras || trial.proof.passed()) best = std::move(trial);

@@ -107,20 +107,22 @@ bool WrittenProof::passed() const {
   return testable() && rms_ratio < kClearlyBetter && p_no_gain < kChance && worse_drive < 0;
 }
 
-std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs, const std::vector<Effect>& effects) {
+const std::vector<Log>& ValidatedLogs::beside(const std::vector<Effect>& effects) const {
   GateOptions gate;
   gate.keep_delay = holds_timing(effects);
-  return examine_logs(robot, std::move(logs), {}, {}, gate).logs;
+  std::optional<std::vector<Log>>& logs = gate.keep_delay ? with_delay_ : mended_;
+  if (!logs) logs = examine_logs(robot_, logs_, {}, {}, gate).logs;
+  return *logs;
 }
 
-WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given_model,
+WrittenProof prove_written(const Robot& robot, const ValidatedLogs& holdout, const WrittenModel& given_model,
                            const WrittenModel& written, const std::vector<int>& touched, double search_hz,
                            const DiagnosisOptions& options) {
   const WrittenModel given = of_another_log(given_model), improved = of_another_log(written);
   // A delay that the improved model explains is in the log of both: else the check would have mended what one of them
   // lacks.
   const bool keep_delay = holds_timing(improved.effects);
-  const std::vector<Log> logs = as_validated(robot, {holdout}, improved.effects);
+  const std::vector<Log>& logs = holdout.beside(improved.effects);
   ProcessingOptions processing = options.processing;
   const auto proof_with = [&](bool choose_cutoff) {
     const auto validation_of = [&](const WrittenModel& model) {

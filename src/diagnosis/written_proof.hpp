@@ -4,6 +4,8 @@
 /// The proof of what is written: the model as given and the improved one on the hold-out log, on the path of
 /// delta-validate.
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "deltadyn/diagnosis/diagnose.hpp"
@@ -25,14 +27,25 @@ struct WrittenProof {
   [[nodiscard]] bool passed() const;
 };
 
-/// The hold-out log as delta-validate takes it: a delay that is certain is removed, unless the effects explain it.
-[[nodiscard]] std::vector<Log> as_validated(const Robot& robot, std::vector<Log> logs,
-                                            const std::vector<Effect>& effects);
+/// Logs as delta-validate takes them: a delay that is certain is removed, unless the effects explain it. The checks
+/// that find it take longer than a fit, so each of the two answers is found once, when it is asked for.
+class ValidatedLogs {
+ public:
+  ValidatedLogs(const Robot& robot, std::vector<Log> logs) : robot_(robot), logs_(std::move(logs)) {}
+
+  /// Not for several threads at a time.
+  [[nodiscard]] const std::vector<Log>& beside(const std::vector<Effect>& effects) const;
+
+ private:
+  const Robot& robot_;
+  std::vector<Log> logs_;
+  mutable std::optional<std::vector<Log>> mended_, with_delay_;
+};
 
 /// \param touched    drives from 0 that the named effects reach
 /// \param search_hz  cut-off of the search, for hold-out logs in which the chosen one leaves too few rows
 /// Throws deltadyn::Error as validate_written() does.
-[[nodiscard]] WrittenProof prove_written(const Robot& robot, const Log& holdout, const WrittenModel& given,
+[[nodiscard]] WrittenProof prove_written(const Robot& robot, const ValidatedLogs& holdout, const WrittenModel& given,
                                          const WrittenModel& improved, const std::vector<int>& touched,
                                          double search_hz, const DiagnosisOptions& options);
 

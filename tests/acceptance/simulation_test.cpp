@@ -156,7 +156,7 @@ TEST_F(VirtualRobot, EveryEffectOfTheListRuns) {
   plan("t.csv", 0.5, 0.4, 1);
   std::istringstream list(succeed({"delta-simulate", "--list-effects"}).out);
   std::string line, effect, keys;
-  const auto usual = [](const std::string& key) {
+  const auto usual = [&effect](const std::string& key) {
     if (key == "kind" || key == "recorded" || key == "encoder" || key == "log") return "1";
     if (key == "share") return "0.5";  // of the load, of a peak or of a torque constant
     if (key == "motor_share") return "0.4";

@@ -37,7 +37,7 @@ const std::set<std::string> kRows = {"presliding", "rotor_inertia"};
 
 struct Named {
   std::string name, type;
-  std::regex as_type, as_word;
+  std::regex as_type = std::regex("\\beffects::" + type + "\\b"), as_word = std::regex("\\b" + name + "\\b");
 };
 
 std::vector<Named> listed_effects() {
@@ -51,7 +51,7 @@ std::vector<Named> listed_effects() {
       if (std::isupper(static_cast<unsigned char>(c)) != 0 && !name.empty()) name += '_';
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
-    all.push_back({name, words, std::regex("\\beffects::" + words + "\\b"), std::regex("\\b" + name + "\\b")});
+    all.push_back({name, words});
   }
   return all;
 }
