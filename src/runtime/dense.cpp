@@ -114,7 +114,13 @@ VectorXd PivotedQr::rotated(const VectorXd& b) const {
 }
 
 VectorXd PivotedQr::solve(const VectorXd& b) const {
-  return qr_.solve(b);
+  // Eigen's own takes pivots below the threshold for numbers.
+  const Index count = rank();
+  VectorXd head = rotated(b).head(count);
+  qr_.matrixQR().topLeftCorner(count, count).triangularView<Eigen::Upper>().solveInPlace(head);
+  VectorXd x = VectorXd::Zero(qr_.cols());
+  for (Index k = 0; k < count; ++k) x(qr_.colsPermutation().indices()(k)) = head(k);
+  return x;
 }
 
 }  // namespace deltadyn::dense

@@ -64,7 +64,7 @@ TEST_F(EffectFile, RefusesSizesThatCannotBe) {
   refuses(header + rest + "stribeck,drive1,rate,0,rad/s,\nstribeck,drive1,friction,1,N*m,\n",
           "line 3, column value: rate of stribeck must be positive");
   refuses(header + "saturation,drive2,level,20,N*m,\nsaturation,drive2,share,1.5,,\n",
-          "line 3, column value: share of saturation is 1.5, beyond its largest size");
+          "line 3, column value: share of saturation is 1.5, beyond its largest value");
   refuses(header + "hysteresis,drive1,torque,inf,N*m,\n", "line 2, column value: 'inf' is not a finite number");
 }
 

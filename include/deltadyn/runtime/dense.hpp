@@ -76,6 +76,7 @@ class PivotedQr {
   [[nodiscard]] Eigen::MatrixXd basis() const;
   /// Q^T b with all of Q: beyond the rank stands what A cannot reach.
   [[nodiscard]] Eigen::VectorXd rotated(const Eigen::VectorXd& b) const;
+  /// Nearest to A x = b, with 0 for the columns beyond the rank.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
  private:
