@@ -37,7 +37,6 @@ const std::set<std::string> kRows = {"presliding", "rotor_inertia"};
 
 struct Named {
   std::string name, type;
-  std::regex as_type = std::regex("\\beffects::" + type + "\\b"), as_word = std::regex("\\b" + name + "\\b");
 };
 
 std::vector<Named> listed_effects() {
@@ -56,13 +55,23 @@ std::vector<Named> listed_effects() {
   return all;
 }
 
+/// Does the word stand in the text, not as a part of another? (std::regex takes minutes for all files and effects.)
+bool has_word(const std::string& text, const std::string& word) {
+  const auto is_part = [&text](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if (!(at > 0 && is_part(at - 1)) && !is_part(at + word.size())) return true;
+  return false;
+}
+
 /// The first word of a text that names an effect, else nothing.
 std::string named_in(const std::string& text, const std::vector<Named>& effects) {
   for (const Named& one : effects) {
-    if (std::regex_search(text, one.as_type)) return one.type;
+    if (has_word(text, "effects::" + one.type)) return one.type;
     if (text.find("effects/" + one.name + ".hpp") != std::string::npos) return one.name + ".hpp";
     if (kRows.count(one.name) == 0 && text.find('"' + one.name + '"') != std::string::npos) return '"' + one.name + '"';
-    if (kOtherMeaning.count(one.name) == 0 && std::regex_search(text, one.as_word)) return one.name;
+    if (kOtherMeaning.count(one.name) == 0 && has_word(text, one.name)) return one.name;
   }
   return {};
 }
