@@ -58,15 +58,21 @@ void refuse_effects(const RobotDescription& robot, model_export::Parts& parts) {
   parts.effects = std::move(accepted);
 }
 
-/// work(R(), "name of R") with the robot's type in the core.
-void with_type(const RobotDescription& robot, const auto& work) {
-  const bool slides = robot.drive_kind == DriveKind::prismatic;
-  if (robot.type == Delta3::kName) return work(Delta3(), "Delta3");
-  if (robot.type == LinearDelta3::kName) return work(LinearDelta3(), "LinearDelta3");
-  if (robot.type == Delta4::kName) return work(Delta4(), "Delta4");
-  if (robot.type == Axis::kName && slides) return work(LinearAxis(), "LinearAxis");
-  if (robot.type == Axis::kName) return work(Axis(), "Axis");
-  throw Error(fmt::format("robots of type {} cannot be written as a header", robot.type), robot.name, "");
+/// The name of a robot's type in the core.
+const char* type_name(Delta3 /*type*/) {
+  return "Delta3";
+}
+const char* type_name(LinearDelta3 /*type*/) {
+  return "LinearDelta3";
+}
+const char* type_name(Delta4 /*type*/) {
+  return "Delta4";
+}
+const char* type_name(Axis /*type*/) {
+  return "Axis";
+}
+const char* type_name(LinearAxis /*type*/) {
+  return "LinearAxis";
 }
 
 /// A motion and its torque, so that the firmware can prove on its own machine that it computes what was identified.
@@ -219,8 +225,8 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
   model_export::Parts parts = model_export::collect(robot, p, effects);
   const RobotDescription& description = robot.description();
   std::string type;
-  with_type(description, [&](auto robot_type, const char* name) {
-    type = name;
+  with_robot_type(description, [&](auto robot_type) {
+    type = type_name(robot_type);
     refuse_effects<decltype(robot_type)>(description, parts);
   });
   // The firmware's layout has every column; those that were not identified are zero there.
