@@ -17,9 +17,14 @@
 namespace deltadyn {
 
 const char* verdict_name(DiagnosisVerdict verdict) {
-  static constexpr const char* kNames[] = {"nothing-missing", "named", "confusable", "unknown-structure",
-                                           "not-testable"};
-  return kNames[static_cast<std::size_t>(verdict)];
+  switch (verdict) {
+    case DiagnosisVerdict::nothing_missing: return "nothing-missing";
+    case DiagnosisVerdict::named: return "named";
+    case DiagnosisVerdict::confusable: return "confusable";
+    case DiagnosisVerdict::unknown_structure: return "unknown-structure";
+    case DiagnosisVerdict::not_testable: return "not-testable";
+  }
+  return "";
 }
 
 void DiagnosisOptions::validate() const {
