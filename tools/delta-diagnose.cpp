@@ -19,6 +19,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/io/trajectory_file.hpp"
 #include "deltadyn/report/diagnosis_report.hpp"
+#include "deltadyn/report/diagnosis_text.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 #include "deltadyn/runtime/robot.hpp"
@@ -134,7 +135,7 @@ class Diagnose {
     if (!params_out_.empty()) write_improved(*robot, table, result);
     if (!plan_file_.empty()) plan_next(*robot, result, match.value, run);
     if (!report_file_.empty()) write_file(report_file_, diagnosis_report(*robot, result, context));
-    tell(result, description, run);
+    tell(result, *robot, run);
     return ExitCode::done;
   }
 
@@ -174,7 +175,7 @@ class Diagnose {
         "region,rms_before,rms_after,rms_floor\n");
     if (result.named.empty()) {
       file.print("1,{},,,,{},{},,,,,,{},,,\n", verdict_name(result.verdict), result.p_value, result.explained_share,
-                 clean(result.region));
+                 clean(place_text(robot, result)));
     }
     const bool unknown = result.verdict == DiagnosisVerdict::unknown_structure;
     int rank = 0;
@@ -188,7 +189,7 @@ class Diagnose {
         // The name that does not suffice is no name: it stands in the report only.
         // Nothing is added to the model, so that its error stays what it was.
         file.print("{},{},,,,{},{},,,,,,{},{},{},{}\n", rank, verdict, result.p_value, result.explained_share,
-                   clean(result.region), one.rms_before, one.rms_before, one.rms_floor);
+                   clean(place_text(robot, result)), one.rms_before, one.rms_before, one.rms_floor);
         break;
       }
       std::string shape = effect_shape_text(one.effect, robot.description());
@@ -202,7 +203,7 @@ class Diagnose {
                  one.explained_share, one.effect.amplitude(0),
                  one.effect.amplitude_std.size() > 0 ? one.effect.amplitude_std(0) : 0.0,
                  effect_unit(kind.amplitudes[0].unit, one.effect.joint, robot.description()), clean(shape),
-                 joined(one.confusable), clean(one.region), one.rms_before, one.rms_after, one.rms_floor);
+                 joined(one.confusable), clean(region_text(robot, one)), one.rms_before, one.rms_after, one.rms_floor);
     }
     file.commit();
   }
@@ -278,11 +279,13 @@ class Diagnose {
     }
   }
 
-  void tell(const Diagnosis& result, const RobotDescription& robot, ToolRun& run) const {
-    fmt::print("{}\n", result.headline);
-    for (const std::string& line : result.lines) fmt::print("  {}\n", line);
-    tell_known(robot, options_.processing);
-    tell_proof(robot, result, run.summary);
+  void tell(const Diagnosis& result, const Robot& robot, ToolRun& run) const {
+    const DiagnosisText text = diagnosis_text(robot, result);
+    fmt::print("{}\n", text.headline);
+    for (const std::string& line : text.lines) fmt::print("  {}\n", line);
+    const RobotDescription& description = robot.description();
+    tell_known(description, options_.processing);
+    tell_proof(description, result, run.summary);
     if (std::isfinite(result.gap_shrink)) {
       fmt::print(
           "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to "
@@ -290,8 +293,8 @@ class Diagnose {
           "%).\n",
           100 * result.gap_shrink, 100 * result.gap_low, 100 * result.gap_high);
     }
-    for (const std::string& line : result.next) fmt::print("next: {}\n", line);
-    for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
+    for (const std::string& line : text.next) fmt::print("next: {}\n", line);
+    for (const std::string& note : text.notes) fmt::print("note: {}\n", note);
     if (!params_out_.empty() && !result.improved)
       fmt::print("note: {} holds the parameters as they were given\n", params_out_);
     tell_rows(result);
@@ -314,7 +317,7 @@ class Diagnose {
     if (name) {
       const Effect& first = result.named.front().effect;
       out.add("amplitude", first.amplitude(0),
-              effect_unit(effect_kind(first.id).amplitudes[0].unit, first.joint, robot));
+              effect_unit(effect_kind(first.id).amplitudes[0].unit, first.joint, description));
       std::vector<EffectCandidate> sets;
       for (const NamedEffect& one : result.named) sets.insert(sets.end(), one.confusable.begin(), one.confusable.end());
       out.add("confusable_with", joined(sets));
@@ -323,7 +326,7 @@ class Diagnose {
     if (result.needed_s) out.add("needed_length_s", *result.needed_s, "s");
     if (result.cutoff_hz > 0) out.add("cutoff_hz", result.cutoff_hz, "Hz");
     for (std::size_t j = 0; j < result.drives.size(); ++j) {
-      const char* unit = tools::torque_unit(robot, static_cast<int>(j));
+      const char* unit = tools::torque_unit(description, static_cast<int>(j));
       out.add(fmt::format("rms_residual_drive{}", j + 1), result.drives[j].rms, unit);
       out.add(fmt::format("rms_floor_drive{}", j + 1), result.drives[j].floor, unit);
       Eigen::Index rows = 0;

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fmt/format.h>
+#include <limits>
 #include <memory>
 #include <set>
 
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/signal/reversal_mask.hpp"
 
-#include "improve.hpp"
-#include "prepare_rows.hpp"
-#include "written_proof.hpp"
+#include "evidence/prepare_rows.hpp"
+#include "verdict/describe.hpp"
+#include "verdict/written_trial.hpp"
 
 namespace deltadyn {
 
@@ -45,12 +45,10 @@ void DiagnosisOptions::validate() const {
 
 namespace {
 
-constexpr int kMostPasses = 3;              // of the search with parameters that are better each time ...
-constexpr double kSameSize = 0.003;         // ... until no amplitude changes by more than this share
-constexpr double kFewestRowsPerBase = 4.0;  // rows of a drive in units of base parameters a drive
-constexpr double kLeastKnown = 0.5;         // of a drive's rows beside reversals: with less, the low pass is too narrow
-constexpr double kOtherBand = 1.4;          // from which a wider band is worth a search of its own
-constexpr double kSameBristle = 0.1;        // of a displacement: a change that moves no row
+constexpr int kMostPasses = 3;        // of the search with parameters that are better each time ...
+constexpr double kLeastKnown = 0.5;   // of a drive's rows beside reversals: with less, the low pass is too narrow
+constexpr double kSameSize = 0.003;   // ... until no amplitude changes by more than this share
+constexpr double kSameBristle = 0.1;  // of a displacement: a change that moves no row
 
 /// Positions and torques of every sample, to be compared as they are.
 std::set<std::vector<double>> samples_of(const Log& log) {
@@ -118,18 +116,16 @@ class DiagnosisRun {
   /// \param cutoff_hz  of the search; 0: chosen from the logs
   /// \returns false if the logs are too short, which then is said
   bool prepare(double cutoff_hz) {
-    double length = 0;
-    for (const Log& log : in_.logs) length += static_cast<double>(log.samples()) * log.sample_time_s();
+    for (const Log& log : in_.logs) out_.length_s += static_cast<double>(log.samples()) * log.sample_time_s();
     double widest_hz = 0;
-    if (wanted_.periods == Periods::given)
-      out_.notes.push_back("periods are not averaged here: every log is used as it is");
+    if (wanted_.periods == Periods::given) out_.remarks.push_back({.kind = Remark::Kind::periods_not_averaged});
     try {
       detail::SearchCutoff cutoff{wanted_.cutoff_hz, wanted_.cutoff_hz, wanted_.cutoff_hz};
       if (cutoff_hz > 0) {
         cutoff = {cutoff_hz, cutoff_hz, cutoff_hz};
       } else if (in_.options.choose_cutoff) {
         // A delay, which the search weighs, must not end the band in which the model holds.
-        cutoff = detail::search_cutoff(in_.robot, base_, in_.training.beside({}), wanted_, in_.options.threads);
+        cutoff = detail::search_cutoff(rules(), in_.training.beside({}), in_.options.threads);
       }
       out_.cutoff_hz = cutoff.chosen_hz;
       widest_hz = cutoff.widest_hz;
@@ -140,16 +136,16 @@ class DiagnosisRun {
       if (cutoff.sharp_hz > out_.cutoff_hz && too_few()) use_cutoff(cutoff.sharp_hz);
     } catch (const Error& error) {
       if (std::string(error.problem()).find("too short") == std::string::npos) throw;
-      detail::say_too_short(length, std::max(10.0, 4 * length), out_);
+      set_too_short(std::max(10.0, 4 * out_.length_s));
       return false;
     }
     // Rows enough to fit the base model and still see something beside it?
     if (too_few()) {
-      detail::say_too_short(length, 1.2 * length * rows_needed() / std::max(fewest_.count, 1.0), out_);
+      set_too_short(1.2 * out_.length_s * rows_needed() / std::max(fewest_.count, 1.0));
       return false;
     }
     p_fit_ = refit_parameters(base_, rows_.logs, in_.p);
-    if (widest_hz > kOtherBand * out_.cutoff_hz) wider_hz_ = widest_hz;
+    if (widest_hz > in_.options.policy.wider_band * out_.cutoff_hz) wider_hz_ = widest_hz;
     return true;
   }
 
@@ -159,7 +155,7 @@ class DiagnosisRun {
   void search() {
     set_up();
     report(0.15);
-    found_ = detail::search_effects(context(), out_);
+    found_ = detail::search_effects(context());
     // Loads, torques and tilts were those of a model that had to make up for what is missing: again with the better
     // one. So were bristles and ripples: where they turn out otherwise, the rows are new, too.
     for (int pass = 0; pass < kMostPasses && !found_.fits.empty(); ++pass) {
@@ -168,7 +164,7 @@ class DiagnosisRun {
       if (new_rows) make_rows();
       set_up();
       const detail::SearchResult last = std::move(found_);
-      found_ = detail::search_effects(context(), out_, new_rows ? nullptr : &last);
+      found_ = detail::search_effects(context(), new_rows ? nullptr : &last);
       if (!new_rows && settled(last, found_)) break;
     }
     report(0.9);
@@ -176,15 +172,14 @@ class DiagnosisRun {
 
   void name() {
     const detail::SearchContext now = context();
+    out_.encoder_share = found_.null.encoder_share;
     detail::describe_drives(now, found_, in_.p, known_, out_);
-    for (const int joint : masked_) {
-      out_.notes.push_back(fmt::format(
-          "rows near reversals of drive {} do not follow the known build-up of its friction: left out", joint + 1));
-    }
-    const double largest_share = detail::judge(now, found_, known_, out_);
-    detail::improve_and_prove(input(), largest_share, out_);
+    detail::list_considered(now, found_, out_);
+    for (const int joint : masked_) out_.remarks.push_back({.kind = Remark::Kind::bristle_left_out, .drive = joint});
+    const detail::VerdictFacts facts = detail::facts_of(now, found_, known_, out_);
+    detail::decide(facts, in_.options.policy, out_);
+    detail::improve_and_prove(input(), facts, out_);
     detail::settle_rulings(out_);
-    detail::say(now, out_);
   }
 
  private:
@@ -199,10 +194,19 @@ class DiagnosisRun {
     fewest_ = detail::fewest_rows(rows_.logs);
   }
 
-  [[nodiscard]] bool too_few() const { return fewest_.count < rows_needed(); }
-  [[nodiscard]] double rows_needed() const { return std::max(120.0, kFewestRowsPerBase * base_.count()); }
+  void set_too_short(double needed_s) {
+    out_.verdict = DiagnosisVerdict::not_testable;
+    out_.reason = VerdictReason::logs_too_short;
+    out_.needed_s = needed_s;
+  }
 
-  detail::ImproveInput input() const { return {in_, p_fit_, wanted_, masked_, out_.cutoff_hz}; }
+  [[nodiscard]] detail::RowRules rules() const { return {in_.robot, base_, wanted_, in_.options.policy}; }
+  [[nodiscard]] bool too_few() const { return fewest_.count < rows_needed(); }
+  [[nodiscard]] double rows_needed() const {
+    return std::max(120.0, in_.options.policy.rows_per_parameter * base_.count());
+  }
+
+  detail::TrialInput input() const { return {in_, p_fit_, wanted_, masked_, out_.cutoff_hz}; }
 
   /// Known effects whose shape is their amplitude are taken off at once, the others are fitted along.
   void take_fixed_effects_off() {
@@ -218,15 +222,13 @@ class DiagnosisRun {
   }
 
   void make_rows() {
-    rows_ = detail::prepare_rows(in_.robot, base_, logs_, held_log_ ? &*held_log_ : nullptr, wanted_, out_.cutoff_hz,
-                                 masked_);
+    rows_ = detail::prepare_rows(rules(), logs_, held_log_ ? &*held_log_ : nullptr, out_.cutoff_hz, masked_);
   }
 
   /// \param effects  that were found by now
   void judge_bristles(const std::vector<Effect>& effects) {
-    masked_ =
-        detail::drives_without_hold(model_, base_, without_effects(in_.robot, logs_, p_fit_, effects, motion_hz()),
-                                    wanted_, out_.cutoff_hz, p_fit_);
+    masked_ = detail::drives_without_hold(
+        rules(), model_, without_effects(in_.robot, logs_, p_fit_, effects, motion_hz()), out_.cutoff_hz, p_fit_);
   }
 
   double motion_hz() const { return wanted_.motion_over_pass * out_.cutoff_hz; }
@@ -296,7 +298,7 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* 
     Diagnosis out;
     out.null_runs = options.null_runs;
     out.effects = known;
-    detail::forget_gap(out);
+    out.gap_shrink = out.gap_low = out.gap_high = std::numeric_limits<double>::quiet_NaN();
     DiagnosisRun run(input, out);
     if (run.prepare(cutoff_hz)) {
       wider_hz = run.wider_hz();

@@ -13,7 +13,7 @@
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/trajectory/motion_plan.hpp"
 
-#include "hypothesis.hpp"
+#include "search/hypothesis.hpp"
 
 namespace deltadyn {
 

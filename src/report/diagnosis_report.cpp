@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <functional>
 
+#include "deltadyn/report/diagnosis_text.hpp"
 #include "deltadyn/report/format.hpp"
 #include "deltadyn/report/html_report.hpp"
 #include "deltadyn/report/log_report.hpp"
@@ -150,9 +151,11 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
       "sign that physics allows, against {} simulated logs of this motion that miss nothing.",
       d.considered.size(), d.null_runs));
   const auto fill = [](Table& table, const ConsideredEffect& one) {
-    const Tone tone = one.ruling == "found" ? Tone::strong : (one.ruling == "no evidence" ? Tone::muted : Tone::plain);
+    const Tone tone = one.ruling == Ruling::found         ? Tone::strong
+                      : one.ruling == Ruling::no_evidence ? Tone::muted
+                                                          : Tone::plain;
     table.row({one.name, one.joint, one.effect_class, format_number(one.gain_alone, 4), p_text(one.p_alone),
-               p_text(one.p_left), one.ruling},
+               p_text(one.p_left), ruling_text(one)},
               tone);
   };
   const std::vector<TableColumn> columns = {text_column("effect"), text_column("at"), text_column("class"),
@@ -184,16 +187,16 @@ void step_3(HtmlReport& report, const Diagnosis& d) {
                  });
 }
 
-void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
+void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot, const DiagnosisText& text) {
   report.heading("4. What is it, and how large?");
   if (d.named.empty()) {
-    report.paragraph(d.headline);
+    report.paragraph(text.headline);
     return;
   }
   for (const NamedEffect& one : d.named) {
     const EffectKind& kind = effect_kind(one.effect.id);
     report.subheading(one.at_joint());
-    report.paragraph(fmt::format("In words: {}. It acts at {}.", kind.meaning, one.region));
+    report.paragraph(fmt::format("In words: {}. It acts at {}.", kind.meaning, region_text(robot, one)));
     Table table({text_column("parameter"), "value ± standard deviation", "95 % interval"});
     const auto add = [&](const auto& traits, double value, double std) {
       const std::string unit = pretty_unit(effect_unit(traits.unit, one.effect.joint, robot.description()));
@@ -219,13 +222,14 @@ void step_4(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
         "load, 15 % for the spring in a drive.");
     report.note(fmt::format("Chance of this on logs that miss nothing: {}. It explains {} of the structure.",
                             p_text(one.p_value), format_percent(one.explained_share)));
-    if (!one.why.empty()) {
-      report.paragraph("Not added to the model: " + one.why + ".");
+    if (one.objection != Objection::none) {
+      report.paragraph("Not added to the model: " + objection_text(one) + ".");
     } else if (one.confusable.empty()) {
       report.paragraph("Nothing else in the catalogue explains it as well.");
     } else {
       std::vector<std::string> items;
-      for (const EffectCandidate& other : one.confusable) items.push_back(other.at_joint() + ": " + other.why);
+      for (const EffectCandidate& other : one.confusable)
+        items.push_back(other.at_joint() + ": " + set_text(one, other));
       report.paragraph("It could also be:");
       report.list(items);
     }
@@ -291,9 +295,10 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
 
 std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const ReportContext& context) {
   HtmlReport report("What is the model missing?", context.robot_file);
-  std::vector<std::string> lines = d.lines;
-  for (const std::string& next : d.next) lines.push_back("Next: " + next);
-  report.verdict(verdict_of(d), d.headline, lines);
+  const DiagnosisText text = diagnosis_text(robot, d);
+  std::vector<std::string> lines = text.lines;
+  for (const std::string& next : text.next) lines.push_back("Next: " + next);
+  report.verdict(verdict_of(d), text.headline, lines);
   add_log_check(report, context.findings);
   std::vector<KeyFigure> figures = {{"verdict", verdict_name(d.verdict)}};
   if (!d.named.empty()) {
@@ -309,12 +314,12 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
     step_1(report, d, robot);
     step_2(report, d, robot);
     step_3(report, d);
-    step_4(report, d, robot);
+    step_4(report, d, robot, text);
     step_5(report, d, robot);
   }
   report.heading("6. What to do next");
-  report.list(d.next);
-  if (!d.notes.empty()) report.list(d.notes);
+  report.list(text.next);
+  if (!text.notes.empty()) report.list(text.notes);
   report.heading("How this was done");
   Facts facts = {{"robot", context.robot_file}, {"model", context.parameter_file}};
   for (const std::string& file : context.log_files) facts.emplace_back("training log", file);

@@ -68,7 +68,7 @@ TEST_F(DirtyAxis, MissesNothingThatTheModelKnows) {
   diagnose_logs(0, 0);
   ASSERT_GT(given_.presliding(0), 0);
   ASSERT_EQ(given_.ripples.size(), 1U);
-  EXPECT_EQ(result_.verdict, DiagnosisVerdict::nothing_missing) << result_.headline;
+  EXPECT_EQ(result_.verdict, DiagnosisVerdict::nothing_missing) << verdict_name(result_.verdict);
   EXPECT_TRUE(result_.named.empty());
   // Rows near reversals take part.
   ASSERT_EQ(result_.drives.size(), 1U);
@@ -79,9 +79,9 @@ TEST_F(DirtyAxis, MissesNothingThatTheModelKnows) {
 
 TEST_F(DirtyAxis, NamesWhatCameBesideItAndProvesWhatIsWritten) {
   diagnose_logs(kStribeck, kStribeck);
-  ASSERT_FALSE(result_.named.empty()) << result_.headline;
+  ASSERT_FALSE(result_.named.empty()) << verdict_name(result_.verdict);
   const NamedEffect& first = result_.named.front();
-  EXPECT_EQ(first.name, "stribeck") << result_.headline;
+  EXPECT_EQ(first.name, "stribeck") << verdict_name(result_.verdict);
   // The improved model keeps what it knew.
   ASSERT_TRUE(result_.improved.has_value());
   const ProcessingOptions& own = result_.improved->processing;

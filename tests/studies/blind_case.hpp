@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/diagnosis/diagnose.hpp"
+#include "deltadyn/report/diagnosis_text.hpp"
 #include "deltadyn/runtime/nominal_parameters.hpp"
 
 #include "studies/blind_effects.hpp"
@@ -102,8 +102,9 @@ inline Outcome run_case(const std::string& part, int index, int null_runs) {
   out.gap_shrink = result.gap_shrink;
   out.time_s = result.total_time_s;
   if (std::getenv("BLIND_VERBOSE") != nullptr) {
-    fmt::print("# {} (cut-off {:.3g} Hz)\n", result.headline, result.cutoff_hz);
-    for (const auto* texts : {&result.lines, &result.notes}) {
+    const DiagnosisText words = diagnosis_text(*robot, result);
+    fmt::print("# {} (cut-off {:.3g} Hz)\n", words.headline, result.cutoff_hz);
+    for (const auto* texts : {&words.lines, &words.notes}) {
       for (const std::string& text : *texts) fmt::print("#   {}\n", text);
     }
   }
