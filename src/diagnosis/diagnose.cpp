@@ -48,6 +48,7 @@ namespace {
 constexpr int kMostPasses = 3;        // of the search with parameters that are better each time ...
 constexpr double kLeastKnown = 0.5;   // of a drive's rows beside reversals: with less, the low pass is too narrow
 constexpr double kSameSize = 0.003;   // ... until no amplitude changes by more than this share
+constexpr int kMostDenied = 3;        // names that the hold-out log may speak against
 constexpr double kSameBristle = 0.1;  // of a displacement: a change that moves no row
 
 /// Positions and torques of every sample, to be compared as they are.
@@ -170,19 +171,36 @@ class DiagnosisRun {
     report(0.9);
   }
 
+  /// A trace that the hold-out log speaks against may cover what is missing: it is allowed for, and the search goes on
+  /// beside it.
   void name() {
-    const detail::SearchContext now = context();
-    out_.encoder_share = found_.null.encoder_share;
-    detail::describe_drives(now, found_, in_.p, known_, out_);
-    detail::list_considered(now, found_, out_);
-    for (const int joint : masked_) out_.remarks.push_back({.kind = Remark::Kind::bristle_left_out, .drive = joint});
-    const detail::VerdictFacts facts = detail::facts_of(now, found_, known_, out_);
-    detail::decide(facts, in_.options.policy, out_);
-    detail::improve_and_prove(input(), facts, out_);
-    detail::settle_rulings(out_);
+    Diagnosis first = named();
+    Diagnosis last = first;
+    for (int k = 0; k < kMostDenied && last.verdict == DiagnosisVerdict::nothing_missing && !last.denied.empty(); ++k) {
+      denied_.push_back(last.denied.front());
+      const detail::SearchResult before = std::move(found_);
+      found_ = detail::search_effects(context(), &before);
+      last = named();
+    }
+    out_ = gives_a_name(last.verdict) ? std::move(last) : std::move(first);
   }
 
  private:
+  /// What follows from the search.
+  [[nodiscard]] Diagnosis named() const {
+    Diagnosis out = out_;
+    const detail::SearchContext now = context();
+    out.encoder_share = found_.null.encoder_share;
+    detail::describe_drives(now, found_, in_.p, known_, out);
+    detail::list_considered(now, found_, out);
+    for (const int joint : masked_) out.remarks.push_back({.kind = Remark::Kind::bristle_left_out, .drive = joint});
+    const detail::VerdictFacts facts = detail::facts_of(now, found_, known_, out);
+    detail::decide(facts, in_.options.policy, out);
+    detail::improve_and_prove(input(), facts, out);
+    detail::settle_rulings(out);
+    return out;
+  }
+
   void report(double share) const {
     if (in_.options.progress) in_.options.progress(share);
   }
@@ -246,6 +264,7 @@ class DiagnosisRun {
                                   in_.options, rows_.processing, p_fit_};
     context.holdout = rows_.held.empty() ? nullptr : &rows_.held.front();
     context.position_noise = position_noises_;
+    context.denied = denied_;
     return context;
   }
 
@@ -256,8 +275,11 @@ class DiagnosisRun {
     for (const Fit& fit : found_.fits) effects.push_back(fit.effect);
     const ProcessingOptions before = wanted_;
     const std::vector<int> masked_before = masked_;
-    const Identification beside = detail::identify_beside(input(), in_.logs, effects, false);
-    detail::take_extras(beside.processing, wanted_);
+    try {
+      detail::take_extras(detail::identify_beside(input(), in_.logs, effects, false).processing, wanted_);
+    } catch (const Error&) {
+      return false;  // a provisional model that cannot be fitted says nothing about bristles: they stay
+    }
     effects.erase(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(in_.known.size() - known_.size()));
     judge_bristles(effects);
     return masked_ != masked_before || extras_differ(before, wanted_, masked_);
@@ -280,6 +302,7 @@ class DiagnosisRun {
   GenericBasis basis_;
   std::unique_ptr<EffectSearch> search_;
   detail::SearchResult found_;
+  std::vector<Effect> denied_;  ///< names that the hold-out log has spoken against
 };
 
 }  // namespace

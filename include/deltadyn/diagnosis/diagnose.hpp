@@ -189,6 +189,7 @@ struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   VerdictReason reason = VerdictReason::nothing_counts;
   std::vector<NamedEffect> named;  ///< the first one decides the verdict
+  std::vector<Effect> denied;      ///< by the hold-out log, the one that fits best first
   std::vector<Remark> remarks;
   std::vector<ConsideredEffect> considered;
   std::vector<DriveFit> drives;

@@ -68,6 +68,7 @@ bool near_rest(const SearchContext& context, const Fit& fit) {
 
 bool hygienic(const SearchContext& context, const Fit& fit) {
   if (near_rest(context, fit)) return true;
+  if (context.is_denied(fit.effect)) return true;
   const EffectKind& kind = effect_kind(fit.effect.id);
   return kind.effect_class == EffectClass::phase && kind.tied &&
          std::abs(fit.effect.shape(0)) * context.logs.front().log.rate_hz <= context.policy().hygiene_samples;

@@ -25,9 +25,14 @@ struct SearchContext {
   const ProcessingOptions& processing;
   const VectorXd& p;
   PerLogAndDrive<double> position_noise = {};
+  std::vector<Effect> denied = {};   ///< names that the hold-out log has spoken against: allowed for, not named
   const LogRows* holdout = nullptr;  ///< evaluated in `basis` behind the logs
 
   [[nodiscard]] const DiagnosisPolicy& policy() const { return options.policy; }
+  [[nodiscard]] bool is_denied(const Effect& effect) const {
+    const auto same = [&](const Effect& one) { return one.id == effect.id && one.joint == effect.joint; };
+    return std::ranges::any_of(denied, same);
+  }
 };
 
 struct SearchResult {

@@ -18,34 +18,63 @@ constexpr double kProofBlock_s = 0.25;
 constexpr int kProofResamples = 1000;
 constexpr double kShows = 0.005;  // of the noise variance: less of an effect cannot be seen in the hold-out log
 
+/// The hold-out log without the torque of effects whose shape is their amplitude, and columns of the others.
+struct HeldModel {
+  LogRows rows;
+  std::vector<MatrixXd> columns;  ///< one a drive
+
+  HeldModel(const SearchContext& context, const LogRows& held, const std::vector<Effect>& effects) {
+    std::vector<LogRows> alone = {held};
+    PerLogAndDrive<MatrixXd> extra = no_columns(alone);
+    for (const Effect& effect : effects) {
+      const PerLogAndDrive<MatrixXd> of_effect = hypothesis_rows(context.model, alone, hypothesis_of(effect));
+      if (effect_kind(effect.id).tied) {
+        take_off(of_effect, effect.amplitude, alone);
+      } else {
+        append_columns(extra, of_effect, effect.amplitude.size());
+      }
+    }
+    rows = std::move(alone.front());
+    columns = std::move(extra.front());
+  }
+
+  [[nodiscard]] VectorXd residual(Index drive, const VectorXd& beta) const {
+    const auto j = static_cast<std::size_t>(drive);
+    return without_model(rows.tau.col(drive), rows.Y[j], columns[j], beta);
+  }
+};
+
 }  // namespace
 
 HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
                    const std::vector<Effect>& known) {
   const Index n = context.robot.drives(), b = context.base.count();
-  std::vector<Effect> effects = known;
-  for (const Fit& fit : found.fits) effects.push_back(fit.effect);
-  std::vector<LogRows> alone = {held};  // without the effects whose shape is their amplitude
-  PerLogAndDrive<MatrixXd> extra = no_columns(alone);
-  for (const Effect& effect : effects) {
-    const PerLogAndDrive<MatrixXd> rows = hypothesis_rows(context.model, alone, hypothesis_of(effect));
-    if (effect_kind(effect.id).tied) {
-      take_off(rows, effect.amplitude, alone);
-    } else {
-      append_columns(extra, rows, effect.amplitude.size());
-    }
+  // What the hold-out log has denied is allowed for in both models, so that the names alone are compared.
+  std::vector<Effect> effects = known, allowed = known;
+  std::vector<Fit> denied;
+  for (const Fit& fit : found.fits) {
+    effects.push_back(fit.effect);
+    if (!context.is_denied(fit.effect)) continue;
+    allowed.push_back(fit.effect);
+    denied.push_back(fit);
   }
+  const HeldModel with(context, held, effects), without(context, held, allowed);
+  const VectorXd &beta1 = found.after.problem->beta,
+                 beta0 = denied.empty()
+                             ? found.before.problem->beta
+                             : WhiteProblem(context.search.corrected(denied), found.noise, context.search.extra(denied))
+                                   .beta;
   HoldoutProof out;
   for (MatrixXd* residual : {&out.before, &out.after}) residual->resize(held.rows(), n);
   for (VectorXd* figure : {&out.rms_before, &out.rms_after, &out.floor, &out.unsure}) figure->resize(n);
   const WhiteProblem& training = *found.before.problem;
   const MatrixXd covariance = dense::pseudo_inverse(training.X.transpose() * training.X).topLeftCorner(b, b);
-  const VectorXd &beta0 = found.before.problem->beta, &beta1 = found.after.problem->beta;
-  const PerLogAndDrive<double> floor = estimate_noise(alone, make_generic_basis(alone), extra).floor_rms;
+  const std::vector<LogRows> alone = {with.rows};
+  const PerLogAndDrive<double> floor = estimate_noise(alone, make_generic_basis(alone), {with.columns}).floor_rms;
   for (Index j = 0; j < n; ++j) {
     const auto drive = static_cast<std::size_t>(j);
-    out.before.col(j) = without_model(held.tau.col(j), held.Y[drive], extra[0][drive], beta0);
-    out.after.col(j) = without_model(alone.front().tau.col(j), held.Y[drive], extra[0][drive], beta1);
+    out.before.col(j) = without.residual(j, beta0);
+    out.after.col(j) = with.residual(j, beta1);
     const MatrixXd Y_cov = held.Y[drive] * covariance;
     out.unsure(j) = root_mean_square(Y_cov.cwiseProduct(held.Y[drive]).rowwise().sum().cwiseMax(0.0).cwiseSqrt(),
                                      held.usable[drive]);
@@ -54,7 +83,7 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
     // The same log fitted by everything: a model from other logs cannot be expected to do better.
     out.floor(j) = std::min({floor[0][drive], out.rms_before(j), out.rms_after(j)});
   }
-  out.effects = std::move(extra[0]);
+  out.effects = with.columns;
   return out;
 }
 

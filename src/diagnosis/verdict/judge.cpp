@@ -138,7 +138,9 @@ std::vector<EffectCandidate> possible_ones(const SearchContext& context, const S
   return all;
 }
 
-Remark hygiene_remark(const SearchContext& context, const Fit& fit) {
+Remark hygiene_remark(const SearchContext& context, const SearchResult& found, const Fit& fit) {
+  if (context.is_denied(fit.effect))
+    return {.kind = Remark::Kind::not_on_holdout, .who = candidate_of(context, found, fit).at_joint()};
   return {.kind = near_rest(context, fit) ? Remark::Kind::rest_is_not_coulomb : Remark::Kind::about_a_sample,
           .who = context.search.hypotheses()[fit.hypothesis].joint_name(),
           .value = fit.effect.shape(0)};
@@ -154,7 +156,7 @@ double name_effects(const SearchContext& context, const SearchResult& found, con
   }
   for (const Fit& fit : found.fits) {
     if (fit.hygiene) {
-      out.remarks.push_back(hygiene_remark(context, fit));
+      out.remarks.push_back(hygiene_remark(context, found, fit));
       continue;
     }
     if (proof != nullptr && fit.gain < largest_gain && !carries_over(context, found, *proof, fit)) {
@@ -207,6 +209,12 @@ int drive_with_slow_residual(const SearchContext& context, const Diagnosis& out)
   return slow ? static_cast<int>(worst) : -1;
 }
 
+/// Of a drive on the hold-out log, if the model holds there as in training: what noise has left open in the parameters
+/// shows in every other log.
+double expected_rms(const HoldoutProof& proof, double rms_training, Index drive) {
+  return std::hypot(std::max({rms_training, proof.floor(drive), 1e-300}), proof.unsure(drive));
+}
+
 /// The drive that misses the hold-out log although it fits the training logs; -1: none.
 int missed_on_holdout(const SearchContext& context, const HoldoutProof& proof, const std::vector<DriveFit>& drives) {
   int out = -1;
@@ -214,9 +222,8 @@ int missed_on_holdout(const SearchContext& context, const HoldoutProof& proof, c
     const auto j = static_cast<Index>(drive);
     const DriveFit& training = drives[drive];
     const double floor = std::max(proof.floor(j), 1e-300), here = proof.rms_before(j) / floor;
-    // What noise has left open in the parameters shows in every other log. And slow noise makes the floor of one log
-    // look low: the residual itself must be larger than in training, too.
-    const double expected = std::hypot(std::max(training.rms, proof.floor(j)), proof.unsure(j));
+    // Slow noise makes the floor of one log look low: the residual itself must be larger than in training, too.
+    const double expected = expected_rms(proof, training.rms, j);
     const double there = std::hypot(training.rms / std::max(training.floor, 1e-300), proof.unsure(j) / floor);
     const double gap = context.policy().holdout_gap;
     if (proof.rms_before(j) > gap * expected && here > gap * std::max(1.0, there)) out = static_cast<int>(drive);
@@ -244,9 +251,12 @@ void take_holdout(const SearchContext& context, const HoldoutProof& proof, Diagn
   if (touched.empty()) return;
   shrink_of(proof, *context.holdout, touched, context.options.seed, out);
   facts.gap_closed = out.gap_shrink;
-  facts.holdout_gap = 0;
-  for (const int j : touched)
+  facts.holdout_gap = facts.holdout_left = 0;
+  for (const int j : touched) {
     facts.holdout_gap = std::max(facts.holdout_gap, proof.rms_before(j) / std::max(proof.floor(j), 1e-300));
+    const double training = out.drives[static_cast<std::size_t>(j)].rms_after;
+    facts.holdout_left = std::max(facts.holdout_left, proof.rms_after(j) / expected_rms(proof, training, j));
+  }
 }
 
 /// Without a hold-out log, before and after are those of the training logs.
@@ -356,6 +366,10 @@ void decide(const VerdictFacts& facts, const DiagnosisPolicy& policy, Diagnosis&
     default: out.place = -1;
   }
   const bool objected = !out.named.empty() && out.named.front().objection != Objection::none;
+  const bool denied = !hold_on_holdout(facts, policy) || facts.written == WrittenModelIs::no_better;
+  if (denied) {
+    for (const NamedEffect& one : out.named) out.denied.push_back(one.effect);
+  }
   if (gives_a_name(out.verdict) || objected || out.named.empty()) return;
   if (!hold_on_holdout(facts, policy)) {
     out.remarks.push_back(

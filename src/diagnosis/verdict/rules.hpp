@@ -22,6 +22,7 @@ struct VerdictFacts {
   double structure_left = 0;      ///< beside the names, clear of noise, over the noise variance of the worst drive
   bool structure_counts = false;  ///< that is as large as the noise, or material and found again on the hold-out log
   double holdout_gap = 1;         ///< rms over floor on the hold-out log, of the worst drive that the names reach
+  double holdout_left = 1;        ///< rms with the names over what training makes one expect, of the worst of these
   double gap_closed = 1;          ///< share of that gap that the names close; 1 without hold-out log
   bool overt = false;             ///< without the names a drive stands plainly above its floor
   int slow_drive = -1;            ///< that bears a slow torque which nothing explains; -1: none

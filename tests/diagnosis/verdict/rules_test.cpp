@@ -90,6 +90,16 @@ TEST(VerdictRules, NamesThatDoNotHelpTheHoldOutLogAreNone) {
   EXPECT_EQ(reason(facts), VerdictReason::nothing_counts);
 }
 
+TEST(VerdictRules, NamesThatLeaveMoreThereThanInTrainingMustCloseMostOfTheGap) {
+  VerdictFacts facts = one_name();
+  facts.gap_closed = 0.7;
+  EXPECT_EQ(reason(facts), VerdictReason::one_name_fits);
+  facts.holdout_left = 1.1 * kPolicy.holdout_gap;
+  EXPECT_EQ(reason(facts), VerdictReason::holdout_contradicts_names);
+  facts.gap_closed = 0.9;
+  EXPECT_EQ(reason(facts), VerdictReason::one_name_fits);
+}
+
 TEST(VerdictRules, ASlowTorqueIsUnknownUnlessItIsNamed) {
   VerdictFacts facts;
   facts.slow_drive = 1;
