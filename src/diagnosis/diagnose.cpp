@@ -229,7 +229,7 @@ class DiagnosisRun {
   /// Known effects whose shape is their amplitude are taken off at once, the others are fitted along.
   void take_fixed_effects_off() {
     std::vector<Effect> fixed;
-    for (const Effect& effect : in_.known) (effect_kind(effect.id).tied ? fixed : known_).push_back(effect);
+    for (const Effect& effect : in_.known) (effect_kind(effect.id).tied || !effect.logs.empty() ? fixed : known_).push_back(effect);
     logs_ = without_effects(in_.robot, in_.logs, in_.p, fixed, motion_hz());
     if (in_.holdout != nullptr)
       held_log_ = without_effects(in_.robot, {*in_.holdout}, in_.p, fixed, motion_hz()).front();

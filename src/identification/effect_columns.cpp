@@ -422,7 +422,7 @@ std::vector<MatrixXd> effect_rows(const EffectModel& model, const PreparedLog& l
   if (effects.empty()) return out;
   const EffectSignals signals = model.signals(log, p, needs_differences(effects));
   Index at = 0;
-  for (const Effect& effect : effects) {
+  for (const Effect& effect : effects_in_log(effects, log.file, log_number)) {
     for (const EffectColumn& column : model.columns(signals, effect.id, effect.joint, effect.shape, log_number)) {
       const MatrixXd rows = low_passed_rows(log, column.values);
       for (Index j = 0; j < n; ++j) {

@@ -125,7 +125,8 @@ std::vector<Log> without_effects(const Robot& robot, const std::vector<Log>& log
   int number = 0;
   for (Log& log : out) {
     const PreparedLog motion = motion_of(robot, log, options);
-    log.tau -= effect_torque(model, model.signals(motion, p, needs_differences(effects)), effects, ++number);
+    const std::vector<Effect> here = effects_in_log(effects, log.file, ++number);
+    log.tau -= effect_torque(model, model.signals(motion, p, needs_differences(effects)), here, number);
   }
   return out;
 }

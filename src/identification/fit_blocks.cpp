@@ -18,6 +18,7 @@ using Vector10 = InertialVector<double>;
 
 constexpr double kRounding = 1e-9;  // relative slack for priors written with a few digits on the boundary
 constexpr double kInside = 1e-4;    // how far a prior on the boundary is moved inside, relative
+constexpr double kThin = 1e-6;      // least second moment of a body along an axis, relative: a step has digits left
 constexpr double kLength = 0.1;     // size [m] of a body of which the prior says a mass and nothing else
 // A prior below this part of its natural scale says "about 0", not "to this precision"
 constexpr double kTiny = 1e-3;
@@ -73,9 +74,13 @@ bool make_spatial_anchor(const std::string& body, Vector10& p) {
   check_mass_and_triangle(body, p);
   check_has_mass(body, p(kM), p.segment<3>(kMcx).cwiseAbs().maxCoeff());
   if (p.isZero(0)) refuse_prior(body, "every value is 0", "give at least its mass, or leave the body out");
-  if (is_physically_consistent(p, kRounding)) return false;
   PseudoInertia<double> M = to_pseudo_inertia(p);
   const double size = std::max(M.topLeftCorner<3, 3>().trace(), p(kM) * kLength * kLength);
+  if (is_physically_consistent(p, kRounding)) {
+    for (int j = 0; j < 3; ++j) M(j, j) = std::max(M(j, j), kThin * size);  // as an earlier fit can have left it
+    p = from_pseudo_inertia<double>(M);
+    return false;
+  }
   if (M(3, 3) <= 0) M(3, 3) = kInside * M.topLeftCorner<3, 3>().trace() / (kLength * kLength);
   // a matrix on the boundary becomes positive definite by any lift, one that is truly outside does not by so small a
   // one

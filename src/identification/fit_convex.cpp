@@ -13,7 +13,8 @@ namespace deltadyn::fit {
 namespace {
 
 constexpr double kFinalBarrier = 1e-5;  // chi^2 an eigenvalue of a cone; far below what any statistic can see
-constexpr double kFirstBarrier = 1.0;
+constexpr double kFirstBarrier = 1.0;   // at least, and ...
+constexpr double kFirstOfStart = 0.01;  // ... of the cost at the start: a damped step gains about a barrier's worth
 constexpr double kBarrierCut = 0.03;
 constexpr double kObjectiveRounding = 1e-10;
 constexpr int kMaxNewton = 400;
@@ -144,7 +145,7 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
   Eigen::VectorXd x = start.cwiseQuotient(scale_);  // scaled from here on
   auto unscaled = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return v.cwiseProduct(scale_); };
   Eigen::VectorXd residual = residual_at(x);
-  double barrier = kFirstBarrier;
+  double barrier = std::max(kFirstBarrier, kFirstOfStart * residual.squaredNorm());
   Terms terms;
   while (result.iterations < kMaxNewton) {
     ++result.iterations;

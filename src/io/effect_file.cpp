@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <functional>
 #include <limits>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "deltadyn/io/csv.hpp"
@@ -36,6 +38,7 @@ struct Slot {
   bool amplitude;
   Index index;
   std::string unit;
+  bool of_logs = false;  ///< names of logs may stand for the number of one
 };
 
 const Slot* find_slot(const std::vector<std::pair<std::string, Slot>>& slots, std::string_view name) {
@@ -50,11 +53,12 @@ std::vector<std::pair<std::string, Slot>> slots_of(const EffectKind& kind, int j
   std::vector<std::pair<std::string, Slot>> slots;
   for (std::size_t k = 0; k < kind.amplitudes.size(); ++k) {
     slots.emplace_back(kind.amplitudes[k].name,
-                       Slot{true, static_cast<Index>(k), effect_unit(kind.amplitudes[k].unit, joint, robot)});
+                       Slot{true, static_cast<Index>(k), effect_unit(kind.amplitudes[k].unit, joint, robot), false});
   }
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size(); ++k) {
     slots.emplace_back(kind.shapes[k].name,
-                       Slot{false, static_cast<Index>(k), effect_unit(kind.shapes[k].unit, joint, robot)});
+                       Slot{false, static_cast<Index>(k), effect_unit(kind.shapes[k].unit, joint, robot),
+                            kind.shapes[k].scale == ShapeScale::logs});
   }
   return slots;
 }
@@ -128,7 +132,14 @@ void read_parameter(const EffectTable& table, const EffectKind& kind, const Robo
     throw Error(fmt::format("the unit '{}' is not that of the parameter", table.text(table.unit)), table.here("unit"),
                 "give the value in '" + slot->unit + "'");
   }
-  into.value(*slot) = table.rows.number(table.value);
+  const std::string value(table.text(table.value));
+  if (slot->of_logs && !value.empty() && value.find_first_not_of("0123456789.eE+-") != std::string::npos) {
+    into.value(*slot) = 1;  // no log's number counts where names stand
+    std::istringstream names(value);
+    for (std::string log; std::getline(names, log, ';');) into.effect.logs.push_back(bare_name(log));
+  } else {
+    into.value(*slot) = table.rows.number(table.value);
+  }
   if (table.deviation && !table.text(*table.deviation).empty())
     (slot->amplitude ? into.effect.amplitude_std : into.effect.shape_std)(slot->index) =
         table.rows.number(*table.deviation);
@@ -185,8 +196,10 @@ void write_effects(const std::string& path, const std::vector<Effect>& effects, 
     for (const auto& [name, slot] : slots_of(kind, effect.joint, robot)) {
       const Eigen::VectorXd& std = slot.amplitude ? effect.amplitude_std : effect.shape_std;
       const bool has_std = std.size() > slot.index && std::isfinite(std(slot.index));
+      const double number = (slot.amplitude ? effect.amplitude : effect.shape)(slot.index);
+      const bool names = slot.of_logs && !effect.logs.empty();
       file.print("{},{},{},{},{},{}\n", kind.name, effect_joint_name(effect.id, effect.joint), name,
-                 (slot.amplitude ? effect.amplitude : effect.shape)(slot.index), slot.unit,
+                 names ? fmt::format("{}", fmt::join(effect.logs, ";")) : fmt::format("{}", number), slot.unit,
                  has_std ? fmt::format("{}", std(slot.index)) : std::string());
     }
   }

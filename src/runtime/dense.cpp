@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 Spectrum spectrum(const MatrixXd& symmetric) {
+  if (symmetric.size() == 0) return {};  // Eigen's solver needs a row
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }

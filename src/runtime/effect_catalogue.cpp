@@ -61,6 +61,23 @@ bool of_one_log(EffectId id) {
                      [](const ShapeTraits& one) { return one.scale == ShapeScale::logs; });
 }
 
+std::string bare_name(const std::string& file) {
+  return file.substr(file.find_last_of("/\\") + 1);
+}
+
+std::vector<Effect> effects_in_log(std::vector<Effect> effects, const std::string& file, int number) {
+  const std::string name = bare_name(file);
+  for (Effect& effect : effects) {
+    if (effect.logs.empty()) continue;
+    const bool here = std::find(effect.logs.begin(), effect.logs.end(), name) != effect.logs.end();
+    const auto& shapes = effect_kind(effect.id).shapes;
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      if (shapes[k].scale == ShapeScale::logs) effect.shape(static_cast<Eigen::Index>(k)) = here ? number : -1;
+    }
+  }
+  return effects;
+}
+
 std::vector<double> start_values(const ShapeTraits& shape) {
   const std::size_t count = static_cast<std::size_t>(shape.count);
   if (shape.grid == ShapeTraits::Grid::listed) return {shape.start, shape.start + count};
@@ -208,6 +225,10 @@ std::string effect_shape_text(const Effect& effect, const RobotDescription& robo
   for (std::size_t k = kind.tied ? 1 : 0; k < kind.shapes.size() && static_cast<Eigen::Index>(k) < effect.shape.size();
        ++k) {
     const std::string unit = effect_unit(kind.shapes[k].unit, effect.joint, robot);
+    if (kind.shapes[k].scale == ShapeScale::logs && !effect.logs.empty()) {
+      for (const std::string& log : effect.logs) text += (text.empty() ? "in " : ", ") + log;
+      continue;
+    }
     text += fmt::format("{}{}={:.4g}{}", text.empty() ? "" : "; ", kind.shapes[k].name,
                         effect.shape(static_cast<Eigen::Index>(k)), unit.empty() ? "" : " " + unit);
   }

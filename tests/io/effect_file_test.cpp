@@ -49,6 +49,20 @@ TEST_F(EffectFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(read[1].shape, lag.shape);
 }
 
+// Logs come in another order, or alone, in the next command: names hold where numbers would be wrong.
+TEST_F(EffectFile, KeepsTheNamesOfTheLogsThatHaveALoad) {
+  const auto effects = read_effects(write("effect,joint,parameter,value,unit\npayload,platform,mass,0.3,kg\npayload,"
+                                          "platform,log,a/slow.csv;check.csv,\n"),
+                                    robot_);
+  ASSERT_EQ(effects.size(), 1u);
+  EXPECT_EQ(effects[0].logs, (std::vector<std::string>{"slow.csv", "check.csv"}));
+  write_effects(folder_.path("again.csv"), effects, robot_);
+  EXPECT_EQ(read_effects(folder_.path("again.csv"), robot_)[0].logs, effects[0].logs);
+  EXPECT_EQ(effects_in_log(effects, "here/check.csv", 1)[0].shape(0), 1);
+  EXPECT_EQ(effects_in_log(effects, "slow.csv", 3)[0].shape(0), 3);
+  EXPECT_EQ(effects_in_log(effects, "fast.csv", 1)[0].shape(0), -1);
+}
+
 TEST_F(EffectFile, TakesTheAliasAndTheBareNumberOfADrive) {
   const auto effects =
       read_effects(write("effect,joint,parameter,value,unit\ntorque_offset,3,offset,0.5,N*m\n"), robot_);

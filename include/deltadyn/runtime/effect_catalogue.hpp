@@ -25,6 +25,8 @@ struct Effect {
   EffectId id = EffectId{0};
   int joint = -1;  ///< drive from 0; -1: not on one drive (telescope, platform, robot)
   Eigen::VectorXd shape, amplitude, shape_std, amplitude_std;
+  /// Of an effect that only some logs have: their file names without folders; empty: the log of the shape's number
+  std::vector<std::string> logs = {};
 };
 
 /// Shape parameters in the fixed size that the laws take; those that are missing are as the traits say, else 0.
@@ -42,6 +44,12 @@ struct Effect {
 [[nodiscard]] EffectId effect_with(Role role);
 /// Does the effect act in one of several logs only?
 [[nodiscard]] bool of_one_log(EffectId id);
+/// The effects as they act in a log: those that name their logs get its number if it is one of them, else that of none.
+/// \param file    of the log; folders do not matter
+/// \param number  of the log, from 1
+[[nodiscard]] std::vector<Effect> effects_in_log(std::vector<Effect> effects, const std::string& file, int number);
+/// File name without folders.
+[[nodiscard]] std::string bare_name(const std::string& file);
 /// Start values of a shape parameter, in its scale.
 [[nodiscard]] std::vector<double> start_values(const ShapeTraits& shape);
 /// Throws deltadyn::Error for amplitudes of the wrong sign or beyond their largest size, and shapes that must be

@@ -28,7 +28,7 @@ Omnibus::Omnibus(const WhiteProblem& problem, const GenericBasis& basis) : coord
     const VectorXd& values = spectrum.values;
     std::vector<Index> kept;
     for (Index k = 0; k < values.size(); ++k) {
-      if (values(k) > 1e-4 * values.maxCoeff()) kept.push_back(k);
+      if (values(k) > 1e-4 * values(values.size() - 1)) kept.push_back(k);
     }
     MatrixXd root(values.size(), static_cast<Index>(kept.size()));
     for (std::size_t k = 0; k < kept.size(); ++k) {

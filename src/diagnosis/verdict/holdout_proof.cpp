@@ -23,10 +23,13 @@ struct HeldModel {
   LogRows rows;
   std::vector<MatrixXd> columns;  ///< one a drive
 
-  HeldModel(const SearchContext& context, const LogRows& held, const std::vector<Effect>& effects) {
+  /// \param loaded  the log has what only some logs have
+  HeldModel(const SearchContext& context, const LogRows& held, const std::vector<Effect>& effects, bool loaded) {
     std::vector<LogRows> alone = {held};
     PerLogAndDrive<MatrixXd> extra = no_columns(alone);
     for (const Effect& effect : effects) {
+      const bool here = loaded && of_one_log(effect.id);
+      alone.front().number = here ? static_cast<int>(std::lround(effect.shape(0))) : held.number;
       const PerLogAndDrive<MatrixXd> of_effect = hypothesis_rows(context.model, alone, hypothesis_of(effect));
       if (effect_kind(effect.id).tied) {
         take_off(of_effect, effect.amplitude, alone);
@@ -38,6 +41,15 @@ struct HeldModel {
     columns = std::move(extra.front());
   }
 
+  [[nodiscard]] double squares(const VectorXd& beta) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const VectorXd e = residual(static_cast<Index>(j), beta);
+      const double scale = std::max(root_mean_square(rows.tau.col(static_cast<Index>(j)), rows.usable[j]), 1e-300);
+      sum += rows.usable[j].select(e.array() / scale, 0.0).square().sum();
+    }
+    return sum;
+  }
   [[nodiscard]] VectorXd residual(Index drive, const VectorXd& beta) const {
     const auto j = static_cast<std::size_t>(drive);
     return without_model(rows.tau.col(drive), rows.Y[j], columns[j], beta);
@@ -58,13 +70,19 @@ HoldoutProof prove(const SearchContext& context, const SearchResult& found, cons
     allowed.push_back(fit.effect);
     denied.push_back(fit);
   }
-  const HeldModel with(context, held, effects), without(context, held, allowed);
   const VectorXd &beta1 = found.after.problem->beta,
                  beta0 = denied.empty()
                              ? found.before.problem->beta
                              : WhiteProblem(context.search.corrected(denied), found.noise, context.search.extra(denied))
                                    .beta;
   HoldoutProof out;
+  HeldModel with(context, held, effects, false);
+  if (std::ranges::any_of(effects, [](const Effect& one) { return of_one_log(one.id); })) {
+    HeldModel loaded(context, held, effects, true);
+    out.has_load = loaded.squares(beta1) < with.squares(beta1);
+    if (out.has_load) with = std::move(loaded);
+  }
+  const HeldModel without(context, held, allowed, false);
   for (MatrixXd* residual : {&out.before, &out.after}) residual->resize(held.rows(), n);
   for (VectorXd* figure : {&out.rms_before, &out.rms_after, &out.floor, &out.unsure}) figure->resize(n);
   const WhiteProblem& training = *found.before.problem;
@@ -126,7 +144,8 @@ void shrink_of(const HoldoutProof& proof, const LogRows& held, const std::vector
 }
 
 bool carries_over(const SearchContext& context, const SearchResult& found, const HoldoutProof& proof, const Fit& fit) {
-  const LogRows& held = *context.holdout;
+  LogRows held = *context.holdout;
+  if (proof.has_load && of_one_log(fit.effect.id)) held.number = static_cast<int>(std::lround(fit.effect.shape(0)));
   const std::vector<MatrixXd> rows = hypothesis_rows(context.model, held, held.signals, hypothesis_of(fit.effect));
   const VectorXd beta = remainder_of(context, *found.before.problem, fit.rows, fit.effect.amplitude).beta;
   double inner = 0, square = 0, count = 0;

@@ -16,7 +16,8 @@ struct HoldoutProof {
   /// By drive: columns of the effects that the model held and of those found, as in SearchResult::after
   std::vector<MatrixXd> effects;
   VectorXd rms_before, rms_after, floor;
-  VectorXd unsure;  ///< rms of the base model's torque that the noise of the training logs leaves open
+  bool has_load = false;  ///< what some training logs have, the hold-out log has, too
+  VectorXd unsure;        ///< rms of the base model's torque that the noise of the training logs leaves open
 };
 
 /// \param known  effects that the model held before

@@ -146,6 +146,20 @@ Remark hygiene_remark(const SearchContext& context, const SearchResult& found, c
           .value = fit.effect.shape(0)};
 }
 
+/// What only some logs have belongs to them by their names: another command may give them in another order.
+void name_logs(const SearchContext& context, const HoldoutProof* proof, Effect& effect) {
+  if (!of_one_log(effect.id)) return;
+  std::vector<std::string> all, loaded;
+  for (const LogRows& log : context.logs) {
+    all.push_back(bare_name(log.log.file));
+    if (log.number == std::lround(effect.shape(0))) loaded.push_back(all.back());
+  }
+  if (context.holdout != nullptr) all.push_back(bare_name(context.holdout->log.file));
+  if (proof != nullptr && proof->has_load) loaded.push_back(all.back());
+  std::ranges::sort(all);
+  if (std::ranges::adjacent_find(all) == all.end()) effect.logs = std::move(loaded);  // else names tell nothing
+}
+
 /// Accepted effects that a machine can have and the hold-out log asks for, too, into `out`.
 /// \returns the largest share of a drive's noise variance that one of them explains
 double name_effects(const SearchContext& context, const SearchResult& found, const HoldoutProof* proof, double all_gain,
@@ -164,8 +178,9 @@ double name_effects(const SearchContext& context, const SearchResult& found, con
           {.kind = Remark::Kind::not_on_holdout, .who = candidate_of(context, found, fit).at_joint()});
       continue;
     }
-    const std::vector<EffectCandidate> possible = possible_ones(context, found, fit, out);
+    std::vector<EffectCandidate> possible = possible_ones(context, found, fit, out);
     if (possible.empty()) continue;
+    for (EffectCandidate& candidate : possible) name_logs(context, proof, candidate.effect);
     NamedEffect one;
     static_cast<EffectCandidate&>(one) = possible.front();
     one.gain_share = one.alike = 0;

@@ -88,10 +88,9 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
   return out;
 }
 
-/// The effects that a log which is none of the training logs can have: a payload belongs to the log that its number
-/// names.
+/// The effects that a log which is none of the training logs can have: what acts in the log of a number is of training.
 WrittenModel of_another_log(WrittenModel model) {
-  std::erase_if(model.effects, [](const Effect& effect) { return of_one_log(effect.id); });
+  std::erase_if(model.effects, [](const Effect& effect) { return of_one_log(effect.id) && effect.logs.empty(); });
   return model;
 }
 
