@@ -170,8 +170,8 @@ inline void draw_friction(Machine& m, Random& random) {
   const auto robot = make_robot(m.robot, m.layout);
   const int drives = m.robot.drives();
   for (int j = 0; j < drives; ++j) {
-    m.scale[static_cast<std::size_t>(j)].friction = m.scale[static_cast<std::size_t>(j)].torque *
-                                                    (j == 3 ? between(random, 1.0, 4.0) : between(random, 0.12, 0.4));
+    m.scale[static_cast<std::size_t>(j)].friction =
+        m.scale[static_cast<std::size_t>(j)].torque * (j == 3 ? between(random, 1.0, 4.0) : between(random, 0.12, 0.4));
   }
   for (int k = 0; k < robot->parameters(); ++k) {
     const ParameterId& id = robot->parameter_ids()[static_cast<std::size_t>(k)];

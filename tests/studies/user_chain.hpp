@@ -100,6 +100,15 @@ inline ParameterFile run_identify(const Robot& robot, const std::vector<Log>& re
   return file;
 }
 
+/// Trust in the parameters, as delta-diagnose has it in its prior.
+inline Eigen::VectorXd trust_in(const Robot& robot, const Eigen::VectorXd& p) {
+  Eigen::VectorXd std = nominal_parameters(robot, PartShapes(robot.description())).std;
+  for (Eigen::Index k = 0; k < std.size(); ++k) {
+    if (p(k) != 0) std(k) = std::max(std(k), 0.5 * std::abs(p(k)));
+  }
+  return std;
+}
+
 /// delta-diagnose ROBOT --params params.csv fast.csv slow.csv --holdout holdout.csv -o diagnosis.csv
 inline Diagnosis run_diagnose(const Robot& robot, const LogFiles& files, const ParameterFile& file, int null_runs) {
   GateOptions gate_options;
@@ -120,7 +129,7 @@ inline Diagnosis run_diagnose(const Robot& robot, const LogFiles& files, const P
   options.processing.presliding = file.known.presliding;
   options.processing.presliding_damping_s = file.known.presliding_damping_s;
   options.processing.ripples = file.known.ripples;
-  return diagnose(robot, logs, &*holdout, file.p, {}, {}, options);
+  return diagnose(robot, logs, &*holdout, file.p, trust_in(robot, file.p), {}, options);
 }
 
 }  // namespace deltadyn::blind
