@@ -7,6 +7,7 @@
 ///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside, or any-effects any-clean
 ///                                                           any-pairs any-outside dirty-effects dirty-clean
 ///     blind_study summary OUT.csv
+///     blind_study list PART FIRST COUNT                     what drawn cases hold, without running them
 ///     blind_study write PART INDEX FOLDER                   the robot and the three logs of one case, to look at
 ///
 /// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken
@@ -64,6 +65,14 @@ void run_drawn(int first, const std::string& path, int null_runs, double share) 
   blind::print_summary(blind::read_outcomes(path));
 }
 
+void list_cases(const std::string& part, int first, int count) {
+  for (int k = first; k < first + count; ++k) {
+    const blind::DrawnCase one = blind::make_drawn_case(part, k);
+    fmt::print("{}-{} {} {} {} {:g} Hz strength {:.2g}{}\n", part, k, one.type, blind::truth_of(one.hidden),
+               blind::motion_name(one.motion), one.rate_hz, one.strength, one.strong ? "" : " weak");
+  }
+}
+
 void write_files(const std::string& folder, const RobotDescription& robot, const ParameterOptions& layout,
                  const Eigen::VectorXd& p, const std::vector<Log>& logs) {
   std::filesystem::create_directories(folder);
@@ -103,6 +112,10 @@ int main(int argc, char** argv) {
     write_case(words[1], std::stoi(words[2]), words[3]);
     return 0;
   }
+  if (words.size() == 4 && words[0] == "list" && blind::is_drawn(words[1])) {
+    list_cases(words[1], std::stoi(words[2]), std::stoi(words[3]));
+    return 0;
+  }
   if (words.size() >= 3 && words[0] == "drawn") {
     run_drawn(std::stoi(words[1]), words[2], words.size() > 3 ? std::stoi(words[3]) : 200,
               words.size() > 4 ? std::stod(words[4]) : 1.0);
@@ -119,7 +132,7 @@ int main(int argc, char** argv) {
   }
   if (words.size() < 4) {
     std::cerr << "usage: blind_study all OUT.csv [NULL_RUNS] | drawn FIRST OUT.csv [NULL_RUNS] [SHARE] | PART FIRST "
-                 "COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | write PART INDEX FOLDER\n";
+                 "COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | list PART FIRST COUNT | write PART INDEX FOLDER\n";
     return 2;
   }
   run_cases(words[0], std::stoi(words[1]), std::stoi(words[2]), words[3], words.size() > 4 ? std::stoi(words[4]) : 200);
