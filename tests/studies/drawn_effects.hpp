@@ -26,7 +26,7 @@ struct Site {
     return std::min(most, gain * (low + (high - low) * size));
   }
   /// Of a friction or a torque on a drive [N m | N]
-  [[nodiscard]] double torque(int j) const { return at(j).friction * amplitude(0.06, 0.5, 2.5); }
+  [[nodiscard]] double torque(int j) const { return at(j).friction * amplitude(0.06, 0.5, 1.5); }
   /// Rates of the forms are those of a drive that reaches 2.5 rad/s.
   [[nodiscard]] double rate(int j) const { return at(j).speed / 2.5; }
   /// Force on the plate that its drives feel as their own torque [N]

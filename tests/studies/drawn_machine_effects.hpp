@@ -55,7 +55,7 @@ inline std::optional<Hidden> hidden_body(const std::string& name, const Site& si
   }
   if (name == "base_tilt") {
     Hidden out{name, "robot", {}, 0, {}, {}, {}, 0};
-    const double angle = site.amplitude(0.006, 0.056, 0.2), about = between(random, 0, 6.28);
+    const double angle = site.amplitude(0.006, 0.056, 0.12), about = between(random, 0, 6.28);
     out.robot = [=](RobotDescription& robot) {
       robot.gravity = 9.81 * Eigen::Vector3d(std::sin(angle) * std::cos(about), std::sin(angle) * std::sin(about),
                                              -std::cos(angle));
@@ -80,13 +80,13 @@ inline std::optional<Hidden> hidden_record(const std::string& name, const Site& 
   const std::string all = site.machine.robot.drives() > 1 ? "robot" : "drive1";
   if (name == "torque_constant_error") {
     Hidden out{name, joint, {}, 0, {}, {}, {}, 0};
-    const double eps = (u > 0.5 ? 1 : -1) * site.amplitude(0.01, 0.09, 0.3);
+    const double eps = (u > 0.5 ? 1 : -1) * site.amplitude(0.01, 0.09, 0.25);
     out.record = [=](int, Eigen::MatrixXd& tau, Eigen::MatrixXd&, double) { tau.col(limb) *= 1 + eps; };
     return sized(out, std::abs(eps));
   }
   if (name == "time_skew") {
     Hidden out{name, all, {}, 0, {}, {}, {}, 0};
-    const double delay = site.amplitude(0.0016, 0.0066, 0.02);
+    const double delay = site.amplitude(0.0016, 0.0066, 0.01);
     out.record = [=](int, Eigen::MatrixXd& tau, Eigen::MatrixXd&, double dt) {
       const Eigen::MatrixXd x = tau;
       for (Eigen::Index k = 0; k < x.rows(); ++k) {
@@ -98,13 +98,13 @@ inline std::optional<Hidden> hidden_record(const std::string& name, const Site& 
     return sized(out, delay);
   }
   if (name == "current_lag") {
-    const double lag = site.amplitude(0.0015, 0.0055, 0.02);
+    const double lag = site.amplitude(0.0015, 0.0055, 0.01);
     Hidden out{name, all, {}, 0, {}, {}, {}, lag};
     return sized(out, lag);
   }
   if (name == "kinematic_offset") {  // a home position that is off
     Hidden out{name, joint, {}, 0, {}, {}, {}, 0};
-    const double off = site.amplitude(0.004, 0.034, 0.12) * (site.machine.turns(limb) ? 1.0 : site.machine.length);
+    const double off = site.amplitude(0.004, 0.034, 0.06) * (site.machine.turns(limb) ? 1.0 : site.machine.length);
     out.record = [=](int, Eigen::MatrixXd&, Eigen::MatrixXd& q, double) { q.col(limb).array() += off; };
     return sized(out, off);
   }

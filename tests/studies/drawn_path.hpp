@@ -3,7 +3,6 @@
 /// \file
 /// Reference motions of the drawn robots: random Fourier paths, and pick and place.
 
-#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <functional>
 #include <memory>
