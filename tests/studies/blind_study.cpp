@@ -8,7 +8,8 @@
 ///                                                           any-pairs any-outside dirty-effects dirty-clean
 ///     blind_study summary OUT.csv
 ///     blind_study list PART FIRST COUNT                     what drawn cases hold, without running them
-///     blind_study write PART INDEX FOLDER                   the robot and the three logs of one case, to look at
+///     blind_study write PART INDEX FOLDER                   robot, parameters and three logs of one case as
+///                                                           files, to look at and to try the tools on
 ///
 /// Every case is one line of OUT.csv; cases that are there already are left out, so that a run can be stopped and taken
 /// up again. A case is a function of its part and its index. Of the drawn parts, indices below 10000 are tuning seeds,
@@ -28,6 +29,7 @@
 #include <vector>
 
 #include "deltadyn/io/log_file.hpp"
+#include "deltadyn/io/parameter_file.hpp"
 #include "deltadyn/io/robot_file.hpp"
 
 #include "studies/blind_case.hpp"
@@ -73,6 +75,19 @@ void list_cases(const std::string& part, int first, int count) {
   }
 }
 
+/// What a user of a clean machine has: a few per cent off.
+ParameterTable user_table(const Robot& model, const Eigen::VectorXd& p) {
+  ParameterTable table;
+  for (int k = 0; k < model.parameters(); ++k) {
+    ParameterEntry entry;
+    entry.name = model.parameter_names()[static_cast<std::size_t>(k)];
+    entry.value = 1.03 * p(k);
+    entry.unit = model.parameter_units()[static_cast<std::size_t>(k)];
+    table.entries.push_back(entry);
+  }
+  return table;
+}
+
 void write_files(const std::string& folder, const RobotDescription& robot, const ParameterOptions& layout,
                  const Eigen::VectorXd& p, const std::vector<Log>& logs) {
   std::filesystem::create_directories(folder);
@@ -81,6 +96,7 @@ void write_files(const std::string& folder, const RobotDescription& robot, const
   for (int k = 0; k < model->parameters(); ++k)
     parameters[model->parameter_names()[static_cast<std::size_t>(k)]] = p(k);
   write_robot_file(folder + "/robot.urdf", robot, parameters);
+  write_parameters(folder + "/params.csv", user_table(*model, p));
   for (const Log& log : logs) write_log(folder + "/" + log.file + ".csv", log, robot);
 }
 

@@ -190,9 +190,9 @@ class Signature {
 
   /// What is recorded in place of torque and position, as torque.
   [[nodiscard]] Eigen::MatrixXd of_record(const Hidden& one, int l, const ReferenceLog& log) const {
-    Eigen::MatrixXd tau = log.whole, q = log.q;
+    Eigen::MatrixXd tau = log.rigid, q = log.q;  // jumps of friction are no evidence: those rows are hardly used
     one.record(l, tau, q, ReferenceLog::kStep);
-    Eigen::MatrixXd out = tau - log.whole;
+    Eigen::MatrixXd out = tau - log.rigid;
     if (q == log.q) return out;
     ReferenceLog shifted = log;
     shifted.q = q;
