@@ -116,10 +116,7 @@ void write_case(const std::string& part, int index, const std::string& folder) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
+int run(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "summary") {
     blind::print_summary(blind::read_outcomes(words[1]));
     return 0;
@@ -153,4 +150,15 @@ int main(int argc, char** argv) {
   }
   run_cases(words[0], std::stoi(words[1]), std::stoi(words[2]), words[3], words.size() > 4 ? std::stoi(words[4]) : 200);
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(std::vector<std::string>(argv + 1, argv + argc));
+  } catch (const Error& e) {
+    std::cerr << e.what() << "\n";
+    return static_cast<int>(e.code());
+  }
 }
