@@ -4,8 +4,8 @@
 ///
 ///     blind_study all OUT.csv [NULL_RUNS]                   the fixed robots, 460 cases
 ///     blind_study drawn FIRST OUT.csv [NULL_RUNS] [SHARE]   robots drawn at random, 480 cases (or a share of them)
-///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside, or any-effects any-clean
-///                                                           any-pairs any-outside dirty-effects dirty-clean
+///     blind_study PART FIRST COUNT OUT.csv [NULL_RUNS]      PART: effects clean pairs outside, or any-effects
+///                                                           any-clean any-pairs any-outside dirty-effects dirty-clean
 ///     blind_study summary OUT.csv
 ///     blind_study list PART FIRST COUNT                     what drawn cases hold, without running them
 ///     blind_study write PART INDEX FOLDER                   robot, parameters and three logs of one case as
@@ -44,6 +44,10 @@ std::set<std::string> done_cases(const std::string& path) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) done.insert(line.substr(0, line.find(',')));
   return done;
+}
+
+bool is_part(const std::string& word) {
+  return word == "effects" || word == "clean" || word == "pairs" || word == "outside" || blind::is_drawn(word);
 }
 
 /// Runs cases of one part that are not in the file yet.
@@ -143,7 +147,7 @@ int run(const std::vector<std::string>& words) {
     blind::print_summary(blind::read_outcomes(words[1]));
     return 0;
   }
-  if (words.size() < 4) {
+  if (words.size() < 4 || !is_part(words[0])) {
     std::cerr << "usage: blind_study all OUT.csv [NULL_RUNS] | drawn FIRST OUT.csv [NULL_RUNS] [SHARE] | PART FIRST "
                  "COUNT OUT.csv [NULL_RUNS] | summary OUT.csv | list PART FIRST COUNT | write PART INDEX FOLDER\n";
     return 2;

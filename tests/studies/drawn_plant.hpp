@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The plant of the drawn machines: what blind_plant.hpp is for the two fixed robots, with bristles, cogging, limbs that
-/// differ and lengths that are off. Nothing of effects/, diagnosis/ or simulation/ is used, only the rigid robot.
+/// The plant of the drawn machines: what blind_plant.hpp is for the two fixed robots, with bristles, cogging, limbs
+/// that differ and lengths that are off. Nothing of effects/, diagnosis/ or simulation/ is used, only the rigid robot.
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 ///
 /// On the reference motion of the two training logs, each drive's torque beside the rigid model is made for the hidden
 /// effects and for the dirt, and fitted by the model's own columns; the strength is what an effect leaves over what the
-/// dirt leaves (clean machines: over the noise), in the drive where that is largest. Of the dirt, the bristles' build-up
-/// does not count: it is large but near reversals only, where delta-identify finds it.
+/// dirt leaves (clean machines: over the noise), in the drive where that is largest. Of the dirt, the bristles do not
+/// count: their build-up is large, but near reversals only, where delta-identify finds it.
 
 #include <Eigen/QR>
 #include <cmath>
