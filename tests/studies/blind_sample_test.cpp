@@ -1,9 +1,11 @@
 // A seeded sample of the blind study; the whole of it runs by blind_study.
 
 #include <algorithm>
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "studies/blind_case.hpp"
+#include "studies/blind_summary.hpp"
 
 namespace deltadyn::blind {
 namespace {
@@ -48,6 +50,33 @@ TEST(BlindStudy, NamesBothOfTwoEffectsInOneDrive) {
   std::sort(named.begin(), named.end());
   std::sort(truth.begin(), truth.end());
   EXPECT_EQ(named, truth) << to_line("pairs-51", outcome);
+}
+
+TEST(DrawnStudy, MakesTheSameLogsOfTheSameCase) {
+  const std::vector<Log> one = record_drawn(make_drawn_case("dirty-effects", 2)),
+                         again = record_drawn(make_drawn_case("dirty-effects", 2));  // an axis
+  ASSERT_EQ(one.size(), 3u);
+  ASSERT_EQ(again.size(), 3u);
+  for (std::size_t l = 0; l < 3; ++l) {
+    EXPECT_EQ(one[l].q, again[l].q);
+    EXPECT_EQ(one[l].tau, again[l].tau);
+  }
+}
+
+TEST(DrawnStudy, FindsNothingMissingOnACleanAxis) {
+  const Outcome outcome = run_case("any-clean", 2, kNullRuns);
+  EXPECT_EQ(outcome.verdict, "nothing-missing") << to_line("any-clean-2", outcome);
+}
+
+TEST(DrawnStudy, ReadsLinesOfTheFixedRobotsAndRefusesOthers) {
+  const std::string path = testing::TempDir() + "blind_lines.csv";
+  std::ofstream(path) << "effects-3,payload@platform,1,rho 0,named,payload@platform,,1,1,2,0.1,0.1,0.01\n";
+  const Outcomes old = read_outcomes(path);
+  ASSERT_EQ(old.size(), 1u);
+  EXPECT_EQ(old[0].second.type, "delta3");
+  EXPECT_FALSE(old[0].second.dirty);
+  std::ofstream(path, std::ios::app) << "effects-4,payload@platform,1,rho 0\n";
+  EXPECT_THROW((void)read_outcomes(path), Error);
 }
 
 }  // namespace

@@ -12,8 +12,6 @@ namespace deltadyn::detail {
 
 namespace {
 
-constexpr int kFewer = 2;  // parameters less, from which an effect that does as well is preferred
-
 /// Sum of squared differences a block of a quarter of a second: how robust is a gain?
 double block_std(const SearchContext& context, const WhiteProblem& problem, const VectorXd& difference) {
   std::vector<double> blocks;

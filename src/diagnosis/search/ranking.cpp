@@ -26,8 +26,8 @@ bool holds(EffectId rich, EffectId simple) {
   return std::find(cases.begin(), cases.end(), effect_kind(simple).name) != cases.end();
 }
 
-std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits, const std::vector<double>& gains,
-                        std::size_t best) {
+std::size_t simpler_one(const EffectSearch& search, const DiagnosisPolicy& policy, const std::vector<Fit>& fits,
+                        const std::vector<double>& gains, std::size_t best) {
   const Hypothesis& winner = search.hypotheses()[fits[best].hypothesis];
   const double enough = nearly_special(fits[best]) ? 0.0 : winner.kind().simpler_gain * gains[best];
   std::optional<std::size_t> simpler;
@@ -36,11 +36,19 @@ std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits
     if (other.joint != winner.joint || !holds(winner.id, other.id) || gains[k] < enough) continue;
     if (!simpler || gains[k] > gains[*simpler]) simpler = k;
   }
+  if (simpler) return *simpler;
+  const auto freedom = [&](std::size_t k) { return search.hypotheses()[fits[k].hypothesis].freedom(); };
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (freedom(k) + kFewer > freedom(best) || gains[k] < (1 - policy.set_form) * gains[best]) continue;
+    if (!simpler || freedom(k) < freedom(*simpler) || (freedom(k) == freedom(*simpler) && gains[k] > gains[*simpler]))
+      simpler = k;
+  }
   return simpler.value_or(best);
 }
 
-std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
+std::optional<Fit> best_fit(const SearchContext& context, const EffectSearch::State& state,
                             const std::function<bool(const Fit&)>& counts) {
+  const EffectSearch& search = context.search;
   std::vector<Fit> fits;
   std::vector<double> gains, worths;
   const auto order = best_of(search, state, kRefined);
@@ -54,7 +62,7 @@ std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::Stat
   }
   if (fits.empty()) return std::nullopt;
   const auto best = static_cast<std::size_t>(std::ranges::max_element(worths) - worths.begin());
-  return std::move(fits[simpler_one(search, fits, gains, best)]);
+  return std::move(fits[simpler_one(search, context.policy(), fits, gains, best)]);
 }
 
 bool near_rest(const SearchContext& context, const Fit& fit) {

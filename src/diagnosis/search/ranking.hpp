@@ -20,15 +20,19 @@ inline constexpr std::size_t kRefined = 8;  ///< hypotheses whose shapes are ref
 /// Is the second effect the first one with fewer parameters?
 [[nodiscard]] bool holds(EffectId rich, EffectId simple);
 
-/// The special case of the best fit that gains nearly as much, else the best: the forms of the catalogue are not exact,
-/// and a richer one must not win by following what is wrong with a simpler one.
+/// Parameters by which an effect is clearly simpler than another one.
+inline constexpr int kFewer = 2;
+
+/// The simpler fit that gains nearly as much as the best one, else the best: its special case, or any effect with
+/// clearly fewer parameters. The forms of the catalogue are not exact, and a richer one must not win by following what
+/// is wrong with a simpler one.
 /// \param gains  one a fit
-[[nodiscard]] std::size_t simpler_one(const EffectSearch& search, const std::vector<Fit>& fits,
-                                      const std::vector<double>& gains, std::size_t best);
+[[nodiscard]] std::size_t simpler_one(const EffectSearch& search, const DiagnosisPolicy& policy,
+                                      const std::vector<Fit>& fits, const std::vector<double>& gains, std::size_t best);
 
 /// The hypothesis that is worth most once shapes are refined, among those that `counts` lets pass: the best one may be
 /// noise that the null knows, and must not stand in the way of the next.
-[[nodiscard]] std::optional<Fit> best_fit(const EffectSearch& search, const EffectSearch::State& state,
+[[nodiscard]] std::optional<Fit> best_fit(const SearchContext& context, const EffectSearch::State& state,
                                           const std::function<bool(const Fit&)>& counts);
 
 /// Friction that bends near rest only: not Coulomb's, and no effect.

@@ -47,7 +47,7 @@ std::optional<Fit> most_likely(const SearchContext& context, const EncoderPilots
   });
   const auto best = static_cast<std::size_t>(std::max_element(gain.begin(), gain.end()) - gain.begin());
   if (gain.empty() || gain[best] <= context.policy().provisional_gain) return std::nullopt;
-  return std::move(candidates[simpler_one(search, candidates, gain, best)]);
+  return std::move(candidates[simpler_one(search, context.policy(), candidates, gain, best)]);
 }
 
 /// \param material  smallest share of the noise variance
@@ -86,7 +86,7 @@ Fit best_in_place(const SearchContext& context, const SearchResult& found, const
   const auto may_follow = [&](const Fit& one) {
     return !hygienic(context, one) && counts(context, found, others, one, material) && !form_errors.explain(one);
   };
-  const std::optional<Fit> best = best_fit(context.search, others, may_follow);
+  const std::optional<Fit> best = best_fit(context, others, may_follow);
   const bool better =
       best && context.search.worth(best->hypothesis, best->gain, others) >
                   context.search.worth(fit.hypothesis, fit.gain, others) + context.policy().exchange_worth;
@@ -132,7 +132,7 @@ void take_in_forward(const SearchContext& context, SearchResult& found) {
          static_cast<int>(found.fits.size()) < context.options.max_effects + kHygienic) {
     const EffectSearch::State& state = beside ? *beside : found.before;
     const FormErrors form_errors(context, found, state);
-    std::optional<Fit> fit = best_fit(search, state, [&](const Fit& one) {
+    std::optional<Fit> fit = best_fit(context, state, [&](const Fit& one) {
       return counts(context, found, state, one,
                     named > 0 ? context.policy().material_further : context.policy().material) &&
              !form_errors.explain(one);
