@@ -65,14 +65,14 @@ class Case:
             self.base = draw(0.22, 0.38)
             self.plate = draw(0.04, 0.08)
             self.strut = self.base * draw(2.2, 3.0)
-            self.size = 0.4 * self.base
+            self.size = self.base * draw(0.6, 1.0)  # of the workspace
             self.height = -(0.45 + math.sqrt(self.strut**2 - (self.base - self.plate) ** 2))
         else:
             self.arm = draw(0.22, 0.55)
             self.base = self.arm * draw(0.35, 0.6)
             self.plate = self.base * draw(0.2, 0.4)
             self.strut = self.arm * draw(1.9, 2.5)
-            self.size = 0.3 * self.arm
+            self.size = self.arm * draw(0.45, 0.8)
             q = draw(0.25, 0.5)
             across = self.base + self.arm * math.cos(q) - self.plate
             self.height = -(self.arm * math.sin(q) + math.sqrt(self.strut**2 - across**2))

@@ -27,7 +27,7 @@ class Dirt:
         self.displacement = draw(1.2e-3, 2.5e-3, n) * np.array([1.0 if case.turns(j) else 0.08 for j in range(n)])
         if n == 4:
             self.displacement[3] = draw(1e-2, 2e-2)
-        # Cogging, waves a rad or m.
+        # Cogging; waves a turn, on rails over 2 pi m.
         self.cogging = draw(0.004, 0.006, n) * case.peak
         self.waves = draw(25, 40, n) * np.array([1.0 if case.turns(j) else 12.0 for j in range(n)])
         if n == 4:

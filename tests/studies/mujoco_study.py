@@ -2,7 +2,8 @@
 
     mujoco_study.py --tools DIR verify
     mujoco_study.py --tools DIR run FIRST COUNT OUT.csv [--null-runs 40] [--keep FOLDER]
-    mujoco_study.py summary OUT.csv
+    mujoco_study.py --tools DIR write INDEX FOLDER      robot, prior, truth and the three logs of a case, to look at
+    mujoco_study.py [--tools DIR] summary OUT.csv
 
 Every case is a function of its index alone: a robot, its motion, half of them dirty machines, one hidden effect or
 none. Three logs are simulated in closed loop; then the tools do what a user does: delta-identify on two logs,
@@ -188,6 +189,9 @@ def main():
     one.add_argument("output")
     one.add_argument("--null-runs", type=int, default=40)
     one.add_argument("--keep", help="folder that keeps the files of every case")
+    one = commands.add_parser("write")
+    one.add_argument("index", type=int)
+    one.add_argument("folder")
     commands.add_parser("summary").add_argument("output")
     words = parser.parse_args()
     if words.command != "summary" and not words.tools:
@@ -197,6 +201,12 @@ def main():
         verify(tools)
     elif words.command == "run":
         run(tools, words.first, words.count, words.output, words.null_runs, words.keep)
+    elif words.command == "write":
+        folder = Path(words.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        case, dirt, hidden, references = make_machine(words.index, tools, folder)
+        record_logs(case, dirt, hidden, references, folder)
+        print(f"{case.kind}, {'dirty' if dirt else 'clean'}, {hidden.name} {hidden.joint}, size {hidden.size:.2f}")
     else:
         print_summary(words.output, tools)
 

@@ -55,8 +55,10 @@ class Verdict:
         self.ratio = None
         if row["rms_written"]:
             given, written = ([float(x) for x in row[key].split(";")] for key in ("rms_given", "rms_written"))
-            shares = [w / g for w, g in zip(written, given)]
-            self.ratio, self.worst_drive = (sum(x * x for x in shares) / len(shares)) ** 0.5, max(shares)
+            # A drive of which all rows are near reversals has none to be compared.
+            shares = [w / g for w, g in zip(written, given) if g > 0]
+            if shares:
+                self.ratio, self.worst_drive = (sum(x * x for x in shares) / len(shares)) ** 0.5, max(shares)
 
     def dirt_first(self):
         """Only names of what is really there stand before the truth."""
