@@ -146,6 +146,28 @@ std::optional<FourierSeries> fitted(FourierSeries series, const Separation& sepa
   return std::nullopt;
 }
 
+/// Random steps of shrinking size that keep what gains. Returns the separation that `best` then has.
+double improve(FourierSeries& best, const VectorXd& half, const Separation& separation, const Envelope& envelope,
+               double value_of_best, std::mt19937_64& random) {
+  NormalDistribution normal;
+  double step = 0.2;
+  for (int k = 0; k < kImprovements; ++k) {
+    FourierSeries trial = best;
+    for (Index c = 1; c < trial.coefficients.rows(); ++c) {
+      for (Index j = 0; j < trial.coefficients.cols(); ++j)
+        trial.coefficients(c, j) += step * 0.3 * half(j) * normal(random);
+    }
+    const double value = separation.of(trial, envelope);
+    if (value > value_of_best) {
+      value_of_best = value;
+      best = trial;
+    } else {
+      step = std::max(0.01, 0.98 * step);
+    }
+  }
+  return value_of_best;
+}
+
 }  // namespace
 
 std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Diagnosis& diagnosis, const VectorXd& p,
@@ -185,22 +207,7 @@ std::optional<NextExperiment> plan_next_experiment(const Robot& robot, const Dia
     throw Error("no motion within the recorded speeds was found that separates the effects", "--plan-next",
                 "record a log with larger motion", ExitCode::no_convergence);
   }
-  // Random steps of shrinking size that keep what gains.
-  double step = 0.2;
-  for (int k = 0; k < kImprovements; ++k) {
-    FourierSeries trial = *best;
-    for (Index c = 1; c < trial.coefficients.rows(); ++c) {
-      for (Index j = 0; j < trial.coefficients.cols(); ++j)
-        trial.coefficients(c, j) += step * 0.3 * half(j) * normal(random);
-    }
-    const double value = separation.of(trial, envelope);
-    if (value > best_value) {
-      best_value = value;
-      best = trial;
-    } else {
-      step = std::max(0.01, 0.98 * step);
-    }
-  }
+  best_value = improve(*best, half, separation, envelope, best_value, random);
   MotionLimits limits(robot.description());
   limits.qd = limits.qd.cwiseMin(envelope.qd / kRoom * 1.02);
   limits.qdd = limits.qdd.cwiseMin(envelope.qdd / kRoom * 1.05);

@@ -88,53 +88,47 @@ std::string percent(double share) {
   return fmt::format("{:.0f} %", 100 * share);
 }
 
+/// Of a remark that is a note.
+std::string note_text(const Remark& r) {
+  using Kind = Remark::Kind;
+  switch (r.kind) {
+    case Kind::periods_not_averaged: return "periods are not averaged here: every log is used as it is";
+    case Kind::bristle_left_out:
+      return fmt::format("rows near reversals of drive {} do not follow the known build-up of its friction: left out",
+                         r.drive + 1);
+    case Kind::rest_is_not_coulomb:
+      return fmt::format(
+          "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
+          r.who, r.value);
+    case Kind::about_a_sample:
+      return fmt::format(
+          "torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the "
+          "search, not counted as an effect",
+          r.who, 1e3 * r.value);
+    case Kind::not_on_holdout: return r.who + " fits the training logs, but not the hold-out log: a trace, not named";
+    case Kind::may_be_nothing: return r.who + " fits, but its size may be zero within its 95 % interval: not named";
+    case Kind::resonance_in_band:
+      return fmt::format(
+          "{} fits, but its resonance of {:.2g} Hz would show as such in logs that are "
+          "used up to {:.3g} Hz: not named",
+          r.who, r.value, r.other);
+    case Kind::no_holdout:
+      return "no hold-out log: before and after are those of the training logs, which prove less (--holdout)";
+    case Kind::not_identified: return "the consistent parameters of the improved model could not be fitted: " + r.who;
+    default: return "";
+  }
+}
+
 void say_remark(const Robot& robot, const Diagnosis& d, const Remark& r, DiagnosisText& out) {
   using Kind = Remark::Kind;
   const char* torque = r.drive >= 0 ? units_of(robot, r.drive).torque : "";
   switch (r.kind) {
-    case Kind::periods_not_averaged:
-      out.notes.emplace_back("periods are not averaged here: every log is used as it is");
-      break;
-    case Kind::bristle_left_out:
-      out.notes.push_back(fmt::format(
-          "rows near reversals of drive {} do not follow the known build-up of its friction: left out", r.drive + 1));
-      break;
-    case Kind::rest_is_not_coulomb:
-      out.notes.push_back(fmt::format(
-          "{}: friction near rest (below {:.2g} of its rate) is not Coulomb's; allowed for, not counted as an effect",
-          r.who, r.value));
-      break;
-    case Kind::about_a_sample:
-      out.notes.push_back(
-          fmt::format("torque and positions of {} are {:.2g} ms apart, at most about one sample: allowed for in the "
-                      "search, not counted as an effect",
-                      r.who, 1e3 * r.value));
-      break;
-    case Kind::not_on_holdout:
-      out.notes.push_back(r.who + " fits the training logs, but not the hold-out log: a trace, not named");
-      break;
-    case Kind::may_be_nothing:
-      out.notes.push_back(r.who + " fits, but its size may be zero within its 95 % interval: not named");
-      break;
-    case Kind::resonance_in_band:
-      out.notes.push_back(
-          fmt::format("{} fits, but its resonance of {:.2g} Hz would show as such in logs that are "
-                      "used up to {:.3g} Hz: not named",
-                      r.who, r.value, r.other));
-      break;
     case Kind::trace_makes_worse:
     case Kind::contradicted:
       (r.kind == Kind::contradicted ? out.lines : out.notes)
           .push_back(
               fmt::format("{} fits the training logs, but {} on the hold-out log: it is not what is missing.", r.who,
                           r.value < 0 ? "makes the model worse" : "closes " + percent(r.value) + " of the gap only"));
-      break;
-    case Kind::no_holdout:
-      out.notes.emplace_back(
-          "no hold-out log: before and after are those of the training logs, which prove less (--holdout)");
-      break;
-    case Kind::not_identified:
-      out.notes.push_back("the consistent parameters of the improved model could not be fitted: " + r.who);
       break;
     case Kind::explains_a_part:
       out.lines.push_back(fmt::format(
@@ -164,6 +158,7 @@ void say_remark(const Robot& robot, const Diagnosis& d, const Remark& r, Diagnos
                       "reversals, too few to bear it out.",
                       r.who, d.holdout_rows, d.place + 1));
       break;
+    default: out.notes.push_back(note_text(r));
   }
 }
 

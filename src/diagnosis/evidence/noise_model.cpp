@@ -33,6 +33,23 @@ VectorXd extended(const VectorXd& ar, double reflection) {
   return next;
 }
 
+/// Draws every pole inwards by a factor, and sets the size of what is then left.
+void damp(double damping, const Eigen::Ref<const VectorXd>& residual, const RowMask& usable, NoiseModel& noise) {
+  double factor = 1;
+  for (double& coefficient : noise.ar) coefficient *= factor *= damping;
+  double sum = 0, innovations = 0;
+  for (Index t = noise.order(); t < residual.size(); ++t) {
+    // `run` usable rows stand right before row t.
+    Index run = 0;
+    while (run < noise.order() && usable(t - 1 - run)) ++run;
+    if (run < noise.order() || !usable(t)) continue;
+    const double innovation = residual(t) - noise.ar.dot(residual.segment(t - noise.order(), noise.order()).reverse());
+    sum += innovation * innovation;
+    ++innovations;
+  }
+  if (innovations > 0) noise.std = std::max(std::sqrt(sum / innovations), 1e-300);
+}
+
 }  // namespace
 
 double NoiseModel::total_std() const {
@@ -134,20 +151,7 @@ NoiseModel fit_noise_model(const Eigen::Ref<const VectorXd>& residual, const Row
       best.std = std::sqrt(power);
     }
   }
-  if (!(damping < 1) || best.order() == 0) return best;
-  double factor = 1;
-  for (double& coefficient : best.ar) coefficient *= factor *= damping;
-  double sum = 0, innovations = 0;
-  for (Index t = best.order(); t < residual.size(); ++t) {
-    // `run` usable rows stand right before row t.
-    Index run = 0;
-    while (run < best.order() && usable(t - 1 - run)) ++run;
-    if (run < best.order() || !usable(t)) continue;
-    const double innovation = residual(t) - best.ar.dot(residual.segment(t - best.order(), best.order()).reverse());
-    sum += innovation * innovation;
-    ++innovations;
-  }
-  if (innovations > 0) best.std = std::max(std::sqrt(sum / innovations), 1e-300);
+  if (damping < 1 && best.order() > 0) damp(damping, residual, usable, best);
   return best;
 }
 
