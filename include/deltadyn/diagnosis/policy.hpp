@@ -2,7 +2,7 @@
 
 /// \file
 /// Every threshold by which the diagnosis decides. The numbers were set on the tuning cases of the blind study
-/// (tests/studies) and on data/measured; README lists what moves when one of them is halved or doubled.
+/// (tests/studies) and on measured drives; a study can vary them one by one (DiagnosisOptions::policy).
 
 namespace deltadyn {
 
