@@ -279,6 +279,25 @@ class Diagnose {
     }
   }
 
+  /// The rule that decided, and what it looked at.
+  static void tell_reason(const Diagnosis& result, Summary& out) {
+    const VerdictFacts& facts = result.facts;
+    out.add("reason", reason_name(result.reason));
+    if (result.reason == VerdictReason::logs_too_short) return;
+    out.add("fact_names", static_cast<int>(facts.names));
+    out.add("fact_open_courses", static_cast<int>(facts.open_courses));
+    out.add("fact_explained_share", facts.explained_share);
+    out.add("fact_structure_left", facts.structure_left);
+    out.add("fact_structure_counts", facts.structure_counts ? 1 : 0);
+    out.add("fact_holdout_gap", facts.holdout_gap);
+    out.add("fact_holdout_left", facts.holdout_left);
+    out.add("fact_gap_closed", facts.gap_closed);
+    out.add("fact_overt", facts.overt ? 1 : 0);
+    out.add("fact_slow_drive", facts.slow_drive + 1);
+    out.add("fact_missed_drive", facts.missed_drive + 1);
+    out.add("fact_base_hidden", facts.base_hidden ? 1 : 0);
+  }
+
   void tell(const Diagnosis& result, const Robot& robot, ToolRun& run) const {
     const DiagnosisText text = diagnosis_text(robot, result);
     fmt::print("{}\n", text.headline);
@@ -307,6 +326,7 @@ class Diagnose {
                  drive.rms, drive.rms_after, drive.floor, 100 * drive.structure);
     }
     out.add("verdict", verdict_name(result.verdict));
+    tell_reason(result, out);
     const bool name = gives_a_name(result.verdict);
     out.add("effect", name ? result.named.front().name : "");
     out.add("class", name ? result.named.front().effect_class : "");

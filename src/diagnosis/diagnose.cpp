@@ -27,6 +27,26 @@ const char* verdict_name(DiagnosisVerdict verdict) {
   return "";
 }
 
+const char* reason_name(VerdictReason reason) {
+  switch (reason) {
+    case VerdictReason::logs_too_short: return "logs-too-short";
+    case VerdictReason::names_explain_too_little: return "names-explain-too-little";
+    case VerdictReason::structure_without_name: return "structure-without-name";
+    case VerdictReason::holdout_contradicts_names: return "holdout-contradicts-names";
+    case VerdictReason::slow_torque: return "slow-torque";
+    case VerdictReason::course_open: return "course-open";
+    case VerdictReason::holdout_moves_elsewhere: return "holdout-moves-elsewhere";
+    case VerdictReason::base_parameters_hidden: return "base-parameters-hidden";
+    case VerdictReason::nothing_counts: return "nothing-counts";
+    case VerdictReason::holdout_too_short: return "holdout-too-short";
+    case VerdictReason::written_model_refused: return "written-model-refused";
+    case VerdictReason::not_borne_out: return "not-borne-out";
+    case VerdictReason::several_names_fit: return "several-names-fit";
+    case VerdictReason::one_name_fits: return "one-name-fits";
+  }
+  return "";
+}
+
 void DiagnosisOptions::validate() const {
   const auto refuse = [](const char* field, const char* range) {
     throw Error(std::string("the option is out of range; ") + range, field, "choose a value in the range",
@@ -194,7 +214,7 @@ class DiagnosisRun {
     detail::describe_drives(now, found_, in_.p, known_, out);
     detail::list_considered(now, found_, out);
     for (const int joint : masked_) out.remarks.push_back({.kind = Remark::Kind::bristle_left_out, .drive = joint});
-    const detail::VerdictFacts facts = detail::facts_of(now, found_, known_, out);
+    const VerdictFacts facts = detail::facts_of(now, found_, known_, out);
     detail::decide(facts, in_.options.policy, out);
     detail::improve_and_prove(input(), facts, out);
     detail::settle_rulings(out);
@@ -229,7 +249,8 @@ class DiagnosisRun {
   /// Known effects whose shape is their amplitude are taken off at once, the others are fitted along.
   void take_fixed_effects_off() {
     std::vector<Effect> fixed;
-    for (const Effect& effect : in_.known) (effect_kind(effect.id).tied || !effect.logs.empty() ? fixed : known_).push_back(effect);
+    for (const Effect& effect : in_.known)
+      (effect_kind(effect.id).tied || !effect.logs.empty() ? fixed : known_).push_back(effect);
     logs_ = without_effects(in_.robot, in_.logs, in_.p, fixed, motion_hz());
     if (in_.holdout != nullptr)
       held_log_ = without_effects(in_.robot, {*in_.holdout}, in_.p, fixed, motion_hz()).front();
@@ -280,8 +301,9 @@ class DiagnosisRun {
     } catch (const Error&) {
       return false;  // a provisional model that cannot be fitted says nothing about bristles: they stay
     }
-    effects.erase(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(in_.known.size() - known_.size()));
-    judge_bristles(effects);
+    std::vector<Effect> fitted = known_;  // the others are off these logs already
+    for (const Fit& fit : found_.fits) fitted.push_back(fit.effect);
+    judge_bristles(fitted);
     return masked_ != masked_before || extras_differ(before, wanted_, masked_);
   }
 

@@ -26,7 +26,8 @@ enum class DiagnosisVerdict { nothing_missing, named, confusable, unknown_struct
   return verdict == DiagnosisVerdict::named || verdict == DiagnosisVerdict::confusable;
 }
 
-/// The rule that decided the verdict, in the order in which the rules are tried (src/diagnosis/verdict/rules.cpp).
+/// The rule that decided the verdict. All but the first stand in one table, in the order in which they are tried
+/// (src/diagnosis/verdict/rules.cpp).
 enum class VerdictReason {
   logs_too_short,             ///< not_testable: too few rows beside velocity reversals
   names_explain_too_little,   ///< unknown_structure: of what is there, the best of the catalogue explains a part
@@ -42,6 +43,30 @@ enum class VerdictReason {
   not_borne_out,              ///< nothing_missing: the same of a trace
   several_names_fit,          ///< confusable
   one_name_fits               ///< named
+};
+
+/// "one-name-fits", ...
+[[nodiscard]] const char* reason_name(VerdictReason reason);
+
+/// What the proof of the model that would be written said.
+enum class WrittenModelIs { not_tried, better, no_better, not_testable };
+
+/// All that the rules look at.
+struct VerdictFacts {
+  std::size_t names = 0;          ///< effects that count, that a machine can have and the hold-out log asks for, too
+  std::size_t open_courses = 0;   ///< of these, friction whose course beyond the logs' speeds is open
+  bool sets = false;              ///< one of them has others that cannot be told from it
+  double explained_share = 0;     ///< of all structure, by the names
+  double structure_left = 0;      ///< beside the names, clear of noise, over the noise variance of the worst drive
+  bool structure_counts = false;  ///< that is as large as the noise, or material and found again on the hold-out log
+  double holdout_gap = 1;         ///< rms over floor on the hold-out log, of the worst drive that the names reach
+  double holdout_left = 1;        ///< rms with the names over what training makes one expect, of the worst of these
+  double gap_closed = 1;          ///< share of that gap that the names close; 1 without names or hold-out log
+  bool overt = false;             ///< without the names a drive stands plainly above its floor
+  int slow_drive = -1;            ///< that bears a slow torque which nothing explains; -1: none
+  int missed_drive = -1;          ///< whose hold-out log is missed where training shows nothing; -1: none
+  bool base_hidden = false;       ///< the motion does not show all base parameters
+  WrittenModelIs written = WrittenModelIs::not_tried;
 };
 
 struct DiagnosisOptions {
@@ -188,7 +213,8 @@ struct DiagnosisTrace {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   VerdictReason reason = VerdictReason::nothing_counts;
-  std::vector<NamedEffect> named;  ///< the first one decides the verdict
+  VerdictFacts facts;              ///< that the rule looked at
+  std::vector<NamedEffect> named;  ///< the one that explains most first
   std::vector<Effect> denied;      ///< by the hold-out log, the one that fits best first
   std::vector<Remark> remarks;
   std::vector<ConsideredEffect> considered;

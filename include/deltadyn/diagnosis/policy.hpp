@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Every threshold by which the diagnosis decides. The numbers were set on the tuning cases of the blind study
+/// The thresholds by which the diagnosis decides. The numbers were set on the tuning cases of the blind study
 /// (tests/studies) and on measured drives; a study can vary them one by one (DiagnosisOptions::policy).
 
 namespace deltadyn {
@@ -49,7 +49,7 @@ struct DiagnosisPolicy {
   double closed_of_little = 0.25;    ///< the same where the gap is hardly larger than the floor
   double holdout_gap = 1.4;          ///< rms over floor from which a hold-out log contradicts a model without a name
   double overt_floor = 1.1;          ///< rms over floor of a drive, from which something is plainly missing
-  double slow_torque = 175;          ///< residual over record noise, times the same over the other drives'
+  double slow_torque = 175;          ///< residual over record noise, times residual over torque against other drives
   double resonance = 0.8;            ///< of the cut-off: the law of a spring holds below its resonance
 
   // --- friction that bends, from slow logs ---

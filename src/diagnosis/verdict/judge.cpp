@@ -365,6 +365,7 @@ void decide(const VerdictFacts& facts, const DiagnosisPolicy& policy, Diagnosis&
   const VerdictRule& rule = deciding_rule(facts, policy);
   out.reason = rule.reason;
   out.verdict = rule.verdict;
+  out.facts = facts;
   const std::vector<int> touched = reached_drives(out.named);
   switch (rule.reason) {
     case VerdictReason::names_explain_too_little:

@@ -17,7 +17,7 @@ namespace deltadyn::detail {
 /// The deciding rule, and what follows from it for the names. To be called again when facts have changed.
 void decide(const VerdictFacts& facts, const DiagnosisPolicy& policy, Diagnosis& out);
 
-/// Takes the names back: nothing is added to the model.
+/// Nothing is added to the model as it was given.
 void withdraw_names(const std::vector<Effect>& known, Diagnosis& out);
 
 /// Drives that the effects reach.

@@ -41,7 +41,7 @@ void take_extras(const ProcessingOptions& from, ProcessingOptions& to);
 
 /// Fits the model with `out.named`, and takes back what the hold-out log does not bear out through the path of
 /// delta-validate.
-/// \param facts  what decided so far; takes what the proof says
+/// \param facts  what decided so far; the proof is added, and the rules are tried again
 void improve_and_prove(const TrialInput& input, VerdictFacts facts, Diagnosis& out);
 
 }  // namespace deltadyn::detail
