@@ -30,8 +30,8 @@ bool course_is_open(const Facts& f, const Policy& p) {
 }  // namespace
 
 bool hold_on_holdout(const Facts& f, const Policy& p) {
-  // Names that leave more there than in training fit the training logs by chance, unless they close most of the gap.
-  if (f.holdout_left > p.holdout_gap) return f.gap_closed >= p.explained;
+  // Names that leave about twice as much there as in training fit these by chance, unless they close most of the gap.
+  if (f.holdout_left > p.holdout_gap * p.holdout_gap) return f.gap_closed >= p.explained;
   return f.gap_closed >= (f.holdout_gap > p.worse ? p.closed : p.closed_of_little);
 }
 

@@ -90,11 +90,11 @@ TEST(VerdictRules, NamesThatDoNotHelpTheHoldOutLogAreNone) {
   EXPECT_EQ(reason(facts), VerdictReason::nothing_counts);
 }
 
-TEST(VerdictRules, NamesThatLeaveMoreThereThanInTrainingMustCloseMostOfTheGap) {
+TEST(VerdictRules, NamesThatLeaveTwiceAsMuchThereAsInTrainingMustCloseMostOfTheGap) {
   VerdictFacts facts = one_name();
   facts.gap_closed = 0.7;
   EXPECT_EQ(reason(facts), VerdictReason::one_name_fits);
-  facts.holdout_left = 1.1 * kPolicy.holdout_gap;
+  facts.holdout_left = 1.1 * kPolicy.holdout_gap * kPolicy.holdout_gap;
   EXPECT_EQ(reason(facts), VerdictReason::holdout_contradicts_names);
   facts.gap_closed = 0.9;
   EXPECT_EQ(reason(facts), VerdictReason::one_name_fits);
