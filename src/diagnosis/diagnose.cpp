@@ -66,8 +66,8 @@ void DiagnosisOptions::validate() const {
 namespace {
 
 constexpr int kMostPasses = 3;        // of the search with parameters that are better each time ...
-constexpr double kLeastKnown = 0.5;   // of a drive's rows beside reversals: with less, the low pass is too narrow
 constexpr double kSameSize = 0.003;   // ... until no amplitude changes by more than this share
+constexpr double kLeastKnown = 0.5;   // of a drive's rows beside reversals: with less, the low pass is too narrow
 constexpr int kMostDenied = 3;        // names that the hold-out log may speak against
 constexpr double kSameBristle = 0.1;  // of a displacement: a change that moves no row
 

@@ -39,7 +39,7 @@ enum class VerdictReason {
   base_parameters_hidden,     ///< not_testable: the motion does not show all base parameters
   nothing_counts,             ///< nothing_missing
   holdout_too_short,          ///< not_testable: the hold-out log has too few rows to bear the names out
-  written_model_refused,      ///< unknown_structure: plain in training, but what would be written is no better
+  written_model_refused,      ///< unknown_structure: plain in training, but what would be written fails or is no better
   not_borne_out,              ///< nothing_missing: the same of a trace
   several_names_fit,          ///< confusable
   one_name_fits               ///< named

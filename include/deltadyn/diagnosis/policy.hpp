@@ -26,7 +26,7 @@ struct DiagnosisPolicy {
   double hygiene_samples = 1.0;    ///< a delay up to this is a matter of who samples when
 
   // --- which effects cannot be told apart ---
-  double set_likelihood = 3.0;  ///< standard deviations of the likelihood ratio: beyond, an alternative is out
+  double set_likelihood = 3.0;  ///< standard deviations of the likelihood ratio within which two are one set
   double set_bootstrap = 2.0;   ///< the same by blocks of the log
   double set_form = 0.02;       ///< share of a gain by which the forms of the catalogue tell nothing
   double as_good = 0.9;         ///< share of a gain from which a simpler effect does as well
@@ -56,11 +56,11 @@ struct DiagnosisPolicy {
   double unsure_course = 0.15;  ///< standard deviation of the size, from which its course is open
   double slow_logs = 0.25;      ///< of a drive's velocity limit: logs below are slow
   double course_ends = 3.5;     ///< times the rate of the bend: logs that reach it show where it ends
-  double other_speed = 1.5;     ///< ratio of largest rates from which one log tries what another one shows
+  double other_speed = 1.5;     ///< ratio of two logs' largest rates from which they show different courses
 
   // --- the proof on the hold-out log, through the path of delta-validate ---
   double clearly_better = 0.98;  ///< rms as written over as given, at most
-  double worse = 1.05;           ///< the same of a named drive, from which the model is worse
+  double worse = 1.05;       ///< from which a named drive is worse; also the least gap that counts as one
   double worse_elsewhere = 1.2;  ///< of any other drive, whose parameters are fitted along
 };
 

@@ -17,9 +17,8 @@ namespace deltadyn {
 /// What one stretch of unknown samples can add to the rows from `first` on.
 struct UnknownTorque {
   Index first = 0;
-  MatrixXd
-      /// Rows x directions, orthogonal, each as large [N m or N] as an error of the drive's torque can make it
-      directions;
+  /// Rows x directions, orthogonal, each as large [N m or N] as an error of the drive's torque can make it
+  MatrixXd directions;
 };
 
 /// The stretches of samples that PreparedLog::reversal marks for a drive.

@@ -12,7 +12,7 @@ namespace deltadyn::detail {
 
 namespace {
 
-/// Sum of squared differences a block of a quarter of a second: how robust is a gain?
+/// Spread of a sum over the blocks of a quarter of a second that it is made of: how robust is a gain?
 double block_std(const SearchContext& context, const WhiteProblem& problem, const VectorXd& difference) {
   std::vector<double> blocks;
   for (const WhiteSegment& segment : problem.segments) {

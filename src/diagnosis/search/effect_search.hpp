@@ -1,8 +1,7 @@
 #pragma once
 
 /// \file
-/// The search for missing effects: scores of all hypotheses beside the effects accepted so far, forward, in pairs,
-/// backward.
+/// Scores of all hypotheses beside the effects accepted so far; the order of steps is that of search_effects.cpp.
 
 #include <map>
 #include <memory>

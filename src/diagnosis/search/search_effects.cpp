@@ -148,8 +148,8 @@ void take_in_forward(const SearchContext& context, SearchResult& found) {
   }
 }
 
-/// The first of two may have been a mixture of both: the best pair, if it is worth more than the best single and its
-/// follower.
+/// The first of two may have been a mixture of both: the best pair, if it gains clearly more than the best single and
+/// its follower.
 void prefer_the_best_pair(const SearchContext& context, SearchResult& found) {
   const EffectSearch& search = context.search;
   if (found.fits.size() != 2 || found.fits[0].hygiene || found.fits[1].hygiene) return;

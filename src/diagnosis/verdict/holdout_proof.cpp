@@ -61,7 +61,7 @@ struct HeldModel {
 HoldoutProof prove(const SearchContext& context, const SearchResult& found, const LogRows& held,
                    const std::vector<Effect>& known) {
   const Index n = context.robot.drives(), b = context.base.count();
-  // What the hold-out log has denied is allowed for in both models, so that the names alone are compared.
+  // What the hold-out log has denied is allowed for in both models: it is no part of what is to be proved.
   std::vector<Effect> effects = known, allowed = known;
   std::vector<Fit> denied;
   for (const Fit& fit : found.fits) {
