@@ -239,7 +239,8 @@ class Diagnose {
       if (!(known.presliding(joint) > 0)) continue;
       const auto at = static_cast<int>(joint);
       parts.push_back(fmt::format("friction of {} builds up over {:.3g} {}",
-                                  at < robot.drives() ? fmt::format("drive {}", at + 1) : "the telescope",
+                                  at < robot.drives() ? fmt::format("drive {}", at + 1)
+                                                      : fmt::format("the {}", robot.inner_joint()),
                                   known.presliding(joint), tools::joint_turns(robot, at) ? "rad" : "m"));
     }
     for (const Ripple& ripple : known.ripples) {

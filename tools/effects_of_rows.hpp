@@ -14,7 +14,7 @@
 namespace deltadyn::tools {
 
 /// One effect for each drive whose friction builds up over a displacement (rows driveK.presliding), of the size of its
-/// Coulomb friction. The telescope's is told to be left out. Throws as presliding_of does.
+/// Coulomb friction. The inner joint's is told to be left out. Throws as presliding_of does.
 inline std::vector<Effect> presliding_effects(const ParameterTable& table, const RobotDescription& robot) {
   const Eigen::VectorXd displacement = presliding_of(table, robot);
   const Eigen::VectorXd damping = presliding_damping_of(table, robot);

@@ -257,7 +257,6 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
   const Index n = space_.regressor->drives(), count = settings_.samples;
   const auto first = static_cast<Index>(list_.size()) * settings_.windows;
   const RobotDescription& robot = space_.robot->description();
-  const auto limbs = static_cast<Index>(robot.limbs.size());
   const double reach = settings_.reversal_reach_s;
   constexpr double kLeastRate = 0.003;  // of the joint's scale, as the mask's floor
   const double bar_rate =               // of d . v, typical
@@ -269,6 +268,7 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
   for (Index i = 0; i < count; ++i) {
     // The bar's length L turns where L dL/dt = d . v does, d from its upper to its lower joint and v the plate's
     // velocity.
+    // The joints of an articulated plate turn back where the yaw does.
     SmoothDistance bar;
     Eigen::Vector3d d = Eigen::Vector3d::Zero(), v = d, a = d;
     if (robot.telescope) {
@@ -277,8 +277,11 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
       a = samples.x.col(i).segment<3>(2 * n);
       bar = distance_from_reversal(d.dot(v), v.dot(v) + d.dot(a), reach, kLeastRate * bar_rate);
     }
+    if (robot.plate)
+      bar = distance_from_reversal(samples.x(n + 3, i), samples.x(2 * n + 3, i), reach,
+                                   kLeastRate * space_.rate_scale(3));
     for (Index j = 0; j < n; ++j) {
-      const bool with_bar = robot.telescope && j < limbs;
+      const bool with_bar = robot.feels_inner_joint(static_cast<int>(j));
       const SmoothDistance own = distance_from_reversal(samples.drives(n + j, i), samples.drives(2 * n + j, i), reach,
                                                         kLeastRate * rate_unit_(j));
       const double of_bar = with_bar ? bar.value : 1.0;
@@ -286,7 +289,10 @@ void DesignProblem::add_reversals(const Samples& samples, bool derivatives, Eval
       if (!derivatives) continue;
       const MatrixXd& J = samples.drive_jacobian[static_cast<std::size_t>(i)];
       g = of_bar * (own.by_rate * J.row(n + j) + own.by_acceleration * J.row(2 * n + j)).transpose();
-      if (with_bar) {
+      if (with_bar && robot.plate) {
+        g(n + 3) += own.value * bar.by_rate;
+        g(2 * n + 3) += own.value * bar.by_acceleration;
+      } else if (with_bar) {
         g.head<3>() += own.value * (bar.by_rate * v + bar.by_acceleration * a);
         g.segment<3>(n) += own.value * (bar.by_rate * d + 2 * bar.by_acceleration * v);
         g.segment<3>(2 * n) += own.value * bar.by_acceleration * d;

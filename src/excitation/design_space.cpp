@@ -63,10 +63,14 @@ class StateDraw {
   [[nodiscard]] bool has_plate() const { return !robot_.description().parts.empty(); }
   void draw_state(VectorXd& zd, VectorXd& zdd) {
     for (int i = 0; i < n_; ++i) {
-      // Beyond the plate's place a task coordinate is that of its drive.
-      const bool of_plate = has_plate() && i < 3;
-      const double lower = std::max(limits_.z_lower(i), of_plate ? limits_.region->lower()(i) : limits_.q_lower(i));
-      const double upper = std::min(limits_.z_upper(i), of_plate ? limits_.region->upper()(i) : limits_.q_upper(i));
+      double lower = limits_.z_lower(i), upper = limits_.z_upper(i);
+      if (has_plate() && i < 3) {
+        lower = std::max(lower, limits_.region->lower()(i));
+        upper = std::min(upper, limits_.region->upper()(i));
+      } else if (!robot_.description().plate) {  // else the yaw is no drive's
+        lower = std::max(lower, limits_.q_lower(i));
+        upper = std::min(upper, limits_.q_upper(i));
+      }
       z_(i) = uniform(lower, upper);
     }
     for (int i = 0; i < n_; ++i) {

@@ -33,14 +33,13 @@ VectorXd share_away_from_reversals(const Robot& robot, const TrajectorySamples& 
   std::vector<std::vector<char>> near;
   for (int j = 0; j < joints; ++j)
     near.push_back(reversal_mask(rates.col(j), floor * rates.col(j).cwiseAbs().maxCoeff(), grow));
-  const auto limbs = static_cast<int>(robot.description().limbs.size());
   VectorXd share(n);
   for (int j = 0; j < n; ++j) {
-    const bool with_bar = robot.description().telescope && j < limbs;
+    const bool with_inner = robot.description().feels_inner_joint(j);
     Index away = 0;
     for (Index i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      away += near[static_cast<std::size_t>(j)][at] == 0 && !(with_bar && near.back()[at] != 0) ? 1 : 0;
+      away += near[static_cast<std::size_t>(j)][at] == 0 && !(with_inner && near.back()[at] != 0) ? 1 : 0;
     }
     share(j) = static_cast<double>(away) / static_cast<double>(count);
   }

@@ -169,10 +169,4 @@ std::unique_ptr<TaskRegressor> make_task_regressor_of(const Robot& robot) {
   if (robot.parameter_options().individual_limbs) return std::make_unique<TaskRegressorOf<R, Limbs::individual>>(robot);
   return std::make_unique<TaskRegressorOf<R, Limbs::shared>>(robot);
 }
-extern template std::unique_ptr<TaskRegressor> make_task_regressor_of<Delta3>(const Robot&);
-extern template std::unique_ptr<TaskRegressor> make_task_regressor_of<LinearDelta3>(const Robot&);
-extern template std::unique_ptr<TaskRegressor> make_task_regressor_of<Delta4>(const Robot&);
-extern template std::unique_ptr<TaskRegressor> make_task_regressor_of<Axis>(const Robot&);
-extern template std::unique_ptr<TaskRegressor> make_task_regressor_of<LinearAxis>(const Robot&);
-
 }  // namespace deltadyn::detail

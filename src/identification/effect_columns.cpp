@@ -52,7 +52,7 @@ JointInput<double> input_of_drive(const EffectSignals& s, const MatrixXd& gravit
 }
 
 JointInput<double> input_of_bar(const EffectSignals& s, const Eigen::Vector3d& gravity, Index k) {
-  JointInput<double> in = input_at_rate(s, s.bar_rate(k), k);
+  JointInput<double> in = input_at_rate(s, s.inner_rate(k), k);
   in.side_load = side_load<double>(s.bar.row(k).transpose(), s.acceleration.row(k).transpose(), gravity);
   return in;
 }
@@ -146,9 +146,8 @@ std::vector<EffectColumn> columns_of_spring(const EffectSignals& s, int joint, c
 MatrixXd gravity_of_limbs(const RobotDescription& robot) {
   MatrixXd gravity = MatrixXd::Zero(2, robot.drives());
   for (std::size_t i = 0; i < robot.limbs.size() && static_cast<int>(i) < robot.drives(); ++i) {
-    const double azimuth = robot.limbs[i].azimuth;
-    gravity.col(static_cast<Index>(i)) << std::cos(azimuth) * robot.gravity.x() + std::sin(azimuth) * robot.gravity.y(),
-        robot.gravity.z();
+    const Eigen::Matrix3d R_WL = limb_frame(robot.limbs[i]);
+    gravity.col(static_cast<Index>(i)) << R_WL.col(0).dot(robot.gravity), R_WL.col(2).dot(robot.gravity);
   }
   return gravity;
 }
@@ -226,7 +225,7 @@ std::vector<EffectColumn> columns_of_joint_law(const EffectSignals& s, const Rob
   if constexpr (E::traits().place == EffectPlace::telescope) {
     spread(
         columns_of_law<E>(0, shape, N, [&](Index k) { return input_of_bar(s, robot.gravity, k); }),
-        [&](Index k) { return s.J_bar.row(k); }, out);
+        [&](Index k) { return s.J_inner.row(k); }, out);
   } else if constexpr (E::traits().place == EffectPlace::passive_joints) {
     for (Index m = 0; m < s.passive_rate.cols(); ++m) {
       spread(
@@ -260,10 +259,10 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
   out.qd = log.qd;
   out.qdd = log.qdd;
   out.sample_time_s = 1.0 / log.rate_hz;
-  for (MatrixXd* m : {&out.torque, &out.load, &out.J_bar}) m->resize(N, n);
+  for (MatrixXd* m : {&out.torque, &out.load, &out.J_inner}) m->resize(N, n);
   for (MatrixXd* m : {&out.position, &out.velocity, &out.acceleration, &out.bar}) m->resize(N, 3);
   out.J.resize(N, 3 * n);
-  out.bar_rate.resize(N);
+  out.inner_rate.resize(N);
   VectorXd whole = p, without = p;
   const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot_) : std::vector<Index>{};
   EffectState state;
@@ -285,8 +284,8 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
     out.acceleration.row(k) = state.acceleration.transpose();
     out.bar.row(k) = state.bar.transpose();
     for (Index j = 0; j < n; ++j) out.J.row(k).segment<3>(3 * j) = state.J.col(j).transpose();
-    out.bar_rate(k) = state.bar_rate;
-    out.J_bar.row(k) = state.J_bar;
+    out.inner_rate(k) = state.inner_rate;
+    out.J_inner.row(k) = state.J_inner;
     if (k == 0) {
       out.passive_rate.resize(N, state.passive_rate.size());
       out.J_passive.resize(N, state.J_passive.size());

@@ -118,12 +118,11 @@ std::vector<char> unknown_start(const Eigen::Ref<const Eigen::VectorXd>& rate, d
 }
 
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the
-/// telescope in the drives of the limbs (the bar's length does not depend on psi). A joint whose friction builds up
+/// inner joint in the drives that feel it (a telescope's length does not depend on psi). A joint whose friction builds up
 /// over a displacement needs no sign: there only rest is uncertain.
 void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd,
                     PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);
-  const auto limbs = static_cast<Index>(robot.description().limbs.size());
   std::vector<std::vector<char>> mask, rest;
   for (Index j = 0; j < rates.cols(); ++j) {
     // The bar's rate has no sensor of its own: the floor serves, its noise being that of the plate.
@@ -139,11 +138,11 @@ void mark_reversals(const Robot& robot, const ProcessingOptions& options, const 
   log.reversal.resize(log.t_s.size(), robot.drives());
   log.rest.resize(log.t_s.size(), robot.drives());
   for (int j = 0; j < robot.drives(); ++j) {
-    const bool with_bar = robot.description().telescope && j < limbs;
+    const bool inner = robot.description().feels_inner_joint(j);
     for (Index k = 0; k < log.t_s.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      log.reversal(k, j) = mask[static_cast<std::size_t>(j)][at] != 0 || (with_bar && mask.back()[at] != 0);
-      log.rest(k, j) = rest[static_cast<std::size_t>(j)][at] != 0 || (with_bar && rest.back()[at] != 0);
+      log.reversal(k, j) = mask[static_cast<std::size_t>(j)][at] != 0 || (inner && mask.back()[at] != 0);
+      log.rest(k, j) = rest[static_cast<std::size_t>(j)][at] != 0 || (inner && rest.back()[at] != 0);
     }
   }
 }

@@ -17,12 +17,13 @@ bool turns_the_telescope(const Joint& drive, std::size_t drives) {
   return drives > 1 && !drive.prismatic && std::abs(drive.axis.z()) > 0.5;
 }
 
-/// True if every limb's frame is turned about z of `X_RW` only, and the telescope's not at all: the rules of a base
-/// frame.
-bool is_base_frame(const Pose& X_RW, const std::vector<const Joint*>& drives) {
+/// True if every limb's frame is turned about z of `X_RW` only (and then about its own x, if `may_tilt`), and the
+/// telescope's not at all: the rules of a base frame.
+bool is_base_frame(const Pose& X_RW, const std::vector<const Joint*>& drives, bool may_tilt = false) {
   return std::ranges::all_of(drives, [&](const Joint* drive) {
     const Eigen::Matrix3d R = X_RW.linear().transpose() * drive->X_PJ.linear();
     if (turns_the_telescope(*drive, drives.size())) return (R - Eigen::Matrix3d::Identity()).norm() < kTolerance;
+    if (may_tilt) return std::abs(R(2, 0)) < kTolerance && R(2, 2) > 0;
     return (R.col(2) - Vec::UnitZ()).norm() < kTolerance;
   });
 }
@@ -77,7 +78,15 @@ void place_base(UrdfTree& tree) {
   }
   if (!found) {
     const Pose made = frame_of_drives(drives);
-    if (is_base_frame(made, drives)) X_RW = made;  // else the reader names the joint that is turned wrongly
+    if (is_base_frame(made, drives)) {
+      X_RW = made;
+    } else if (drives.size() > 1) {  // else the reader names the joint that is turned wrongly
+      for (const std::string& link : carriers(tree, drives)) {
+        if (!is_base_frame(tree.links.at(link).X_BL, drives, true)) continue;
+        X_RW = tree.links.at(link).X_BL;
+        break;
+      }
+    }
   }
   if (X_RW.matrix() == Pose::Identity().matrix()) return;
   const Pose X_WR = X_RW.inverse();

@@ -58,23 +58,6 @@ void refuse_effects(const RobotDescription& robot, model_export::Parts& parts) {
   parts.effects = std::move(accepted);
 }
 
-/// The name of a robot's type in the core.
-const char* type_name(Delta3 /*type*/) {
-  return "Delta3";
-}
-const char* type_name(LinearDelta3 /*type*/) {
-  return "LinearDelta3";
-}
-const char* type_name(Delta4 /*type*/) {
-  return "Delta4";
-}
-const char* type_name(Axis /*type*/) {
-  return "Axis";
-}
-const char* type_name(LinearAxis /*type*/) {
-  return "LinearAxis";
-}
-
 /// A motion and its torque, so that the firmware can prove on its own machine that it computes what was identified.
 struct Check {
   Eigen::VectorXd q, qd, qdd, tau;
@@ -159,6 +142,21 @@ std::string model_text(const RobotDescription& robot, const std::vector<Effect>&
       rows, effects.size(), names, model);
 }
 
+/// The parts of the plate: pose as a function of the turn theta, see PlatePart.
+std::string parts_text(const RobotDescription& description) {
+  std::string rows;
+  std::vector<PlatePart<double>> parts = description.parts;
+  if (parts.empty()) parts.emplace_back();  // an array needs an entry
+  for (const PlatePart<double>& part : parts)
+    rows += fmt::format("    {{{}, {}, {}, {}, {}}},\n", list(part.c), list(part.a), list(part.b),
+                        model_export::text(part.kappa), model_export::text(part.turn));
+  return fmt::format(
+      "struct Part {{\n  double c[3], a[3], b[3], kappa, turn;\n}};\ninline constexpr Part kParts[] = {{\n{}}};\n"
+      "inline constexpr double kYawRatio = {}, kThetaRange = {};\n",
+      rows, model_export::text(description.plate ? description.plate->ratio : 1),
+      model_export::text(description.plate ? description.plate->range : 1));
+}
+
 constexpr const char* kFunctions = R"(
 /// Lengths and places in scalar T (float or double).
 template <class T>
@@ -169,14 +167,23 @@ deltadyn::Geometry<T, Robot> geometry() {
   deltadyn::Geometry<T, Robot> g;
   for (int i = 0; i < Robot::kLimbs; ++i) {
     g.limbs[i].azimuth = static_cast<T>(kLimbs[i].azimuth);
+    g.limbs[i].tilt = static_cast<T>(kLimbs[i].tilt);
     g.limbs[i].p_WD = vector(kLimbs[i].p_WD);
     g.limbs[i].axis_L = vector(kLimbs[i].axis_L);
     g.limbs[i].p_DE_0 = vector(kLimbs[i].p_DE_0);
     g.limbs[i].strut = static_cast<T>(kLimbs[i].strut);
     g.limbs[i].strut_spacing = static_cast<T>(kLimbs[i].strut_spacing);
     g.limbs[i].p_BA = vector(kLimbs[i].p_BA);
+    g.limbs[i].part = kLimbs[i].part;
     g.limbs[i].elbow = static_cast<T>(kLimbs[i].elbow);
   }
+  for (int k = 0; k < Robot::kPlateParts; ++k) {
+    g.parts[k] = {vector(kParts[k].c), vector(kParts[k].a), vector(kParts[k].b), static_cast<T>(kParts[k].kappa),
+                  static_cast<T>(kParts[k].turn)};
+  }
+  g.yaw_ratio = static_cast<T>(kYawRatio);
+  g.theta_range = static_cast<T>(kThetaRange);
+  if constexpr (Robot::kPlateTurns) g.mode = deltadyn::plate_mode(g);
   g.telescope.p_WU = vector(kTelescopeUpper);
   g.telescope.p_BV = vector(kTelescopeLower);
   g.gravity = vector(kGravity);
@@ -226,7 +233,7 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
   const RobotDescription& description = robot.description();
   std::string type;
   with_robot_type(description, [&](auto robot_type) {
-    type = type_name(robot_type);
+    type = decltype(robot_type)::kClass;
     refuse_effects<decltype(robot_type)>(description, parts);
   });
   // The firmware's layout has every column; those that were not identified are zero there.
@@ -254,16 +261,18 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       "inline constexpr deltadyn::Limbs kSharing = deltadyn::Limbs::{2};\n"
       "using Layout = deltadyn::ParameterLayout<Robot, kSharing>;\n\n",
       space, type, options.individual_limbs ? "individual" : "shared", parts.effects.empty() ? "" : "effect_");
-  text += "struct Limb {\n  double azimuth, p_WD[3], axis_L[3], p_DE_0[3], strut, strut_spacing, p_BA[3], elbow;\n};\n";
+  text += "struct Limb {\n  double azimuth, tilt, p_WD[3], axis_L[3], p_DE_0[3], strut, strut_spacing, p_BA[3], elbow;\n  int part;\n};\n";
   text += "inline constexpr Limb kLimbs[] = {\n";
   for (const auto& limb : description.limbs) {
-    text += fmt::format("    {{{}, {}, {}, {}, {}, {}, {}, {}}},\n", model_export::text(limb.azimuth), list(limb.p_WD),
+    text += fmt::format("    {{{}, {}, {}, {}, {}, {}, {}, {}, {}, {}}},\n", model_export::text(limb.azimuth),
+                        model_export::text(limb.tilt), list(limb.p_WD),
                         list(limb.axis_L), list(limb.p_DE_0), model_export::text(limb.strut),
-                        model_export::text(limb.strut_spacing), list(limb.p_BA), model_export::text(limb.elbow));
+                        model_export::text(limb.strut_spacing), list(limb.p_BA), model_export::text(limb.elbow), limb.part);
   }
+  text += "};\n" + parts_text(description);
   const TelescopeGeometry<double> bar = description.telescope.value_or(TelescopeGeometry<double>());
   text += fmt::format(
-      "}};\ninline constexpr double kTelescopeUpper[3] = {};\ninline constexpr double kTelescopeLower[3] = {};\n"
+      "inline constexpr double kTelescopeUpper[3] = {};\ninline constexpr double kTelescopeLower[3] = {};\n"
       "inline constexpr double kGravity[3] = {};\n\n",
       list(bar.p_WU), list(bar.p_BV), list(description.gravity));
   text += "inline constexpr double kParameters[] = {\n";

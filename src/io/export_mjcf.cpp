@@ -10,6 +10,7 @@
 #include "deltadyn/runtime/workspace.hpp"
 
 #include "export_parts.hpp"
+#include "plate_tree.hpp"
 #include "xml_elements.hpp"
 
 namespace deltadyn {
@@ -50,7 +51,7 @@ Home home_of(const RobotDescription& description, const Eigen::VectorXd& q) {
     throw Error("the home pose is singular", description.name, "check the lengths in the robot file");
   Home home;
   home.q = q;
-  home.plate = posture.z.template head<3>();
+  if constexpr (kHasPlate<R>) home.plate = posture.z.template head<3>();
   for (const auto& limb : posture.limbs)
     home.strut.emplace_back(std::atan2(limb.beta.sin, limb.beta.cos), std::atan2(limb.gamma.sin, limb.gamma.cos), 0);
   if (R::kTelescope) {
@@ -71,10 +72,7 @@ Home find_home(const Robot& robot) {
   z.head<3>() = sampler.ball().centre;
   if (robot.inverse_kinematics(z, home.q) != Status::ok)
     throw Error("no home pose was found", description.name, "check the lengths in the robot file");
-  if (description.type == Delta3::kName) return home_of<Delta3>(description, home.q);
-  if (description.type == LinearDelta3::kName) return home_of<LinearDelta3>(description, home.q);
-  if (description.type == Delta4::kName) return home_of<Delta4>(description, home.q);
-  throw Error(fmt::format("robots of type {} cannot be written as MJCF", description.type), description.name, "");
+  return with_robot_type(description, [&](auto type) { return home_of<decltype(type)>(description, home.q); });
 }
 
 Rotation about(const Vec& axis, double angle) {
@@ -101,6 +99,8 @@ class Mjcf {
     for (std::size_t i = 0; i < robot_.limbs.size(); ++i) limb(i);
     if (robot_.telescope) {
       telescope();
+    } else if (robot_.plate) {
+      articulated_plate();
     } else if (!robot_.parts.empty()) {
       XMLElement* plate = body(world_, "platform", home_.plate, Rotation::Identity());
       child(plate, "freejoint", {{"name", "platform"}});
@@ -211,7 +211,7 @@ class Mjcf {
     const std::string arm = fmt::format("upper_arm{}", i + 1);
     const bool revolute = robot_.drive_kind == DriveKind::revolute;
     const double q = home_.q(static_cast<Eigen::Index>(i));
-    const Rotation R_WL = about(Vec::UnitZ(), limb.azimuth);
+    const Rotation R_WL = limb_frame(limb);
     XMLElement* upper = revolute ? body(world_, arm, limb.p_WD, R_WL * about(Vec::UnitY(), q))
                                  : body(world_, arm, limb.p_WD + R_WL * (q * limb.axis_L), R_WL);
     drive(joint(upper, robot_file::drive_name(i), revolute ? "hinge" : "slide", limb.axis_L, q), i);
@@ -229,7 +229,7 @@ class Mjcf {
       const Vec end(limb.strut, 0, 0);
       capsule(strut, Vec::Zero(), end, 0.008);
       site(strut, name + "_end", end);
-      child(equality_, "connect", {{"name", name}, {"site1", name + "_end"}, {"site2", "platform_" + name}});
+      child(equality_, "connect", {{"name", name}, {"site1", name + "_end"}, {"site2", plate_site(i, first)}});
     }
   }
 
@@ -241,7 +241,65 @@ class Mjcf {
     child(plate, "geom", {{"type", "cylinder"}, {"size", text(std::max(0.02, radius)) + " 0.01"}});
     for (std::size_t i = 0; i < robot_.limbs.size(); ++i)
       for (const bool first : {true, false})
-        site(plate, "platform_" + robot_file::strut_name(i, first), robot_file::strut_end(robot_.limbs[i], first));
+        site(plate, plate_site(i, first), robot_file::strut_end(robot_.limbs[i], first));
+  }
+
+  [[nodiscard]] std::string plate_site(std::size_t limb, bool first) const {
+    return (robot_.plate ? "plate_" : "platform_") + robot_file::strut_name(limb, first);
+  }
+
+  /// Half plate 1 floats, held by its struts; the other parts hang on it by joints that move with theta.
+  void articulated_plate() {
+    const std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
+    const std::string theta = robot_file::theta_joint(bodies);
+    XMLElement* root = nullptr;
+    for (const robot_file::PlateBody& one : bodies) {
+      const PlatePart<double>& part = robot_.parts[static_cast<std::size_t>(one.part)];
+      XMLElement* element = root == nullptr ? body(world_, one.name, home_.plate + part.c + part.a, about(Vec::UnitZ(), part.turn))
+                                            : body(root, one.name, one.origin, about(Vec::UnitZ(), one.turn));
+      if (root == nullptr) {
+        root = element;
+        child(element, "freejoint", {{"name", one.name}});
+      }
+      const Rotation R_B1 = about(Vec::UnitZ(), -one.turn);
+      plate_joint(element, one.swing, theta, R_B1 * one.swing.along,
+                  one.swing.slides ? Vec(Vec::Zero()) : Vec(R_B1 * (one.first - one.origin)));
+      plate_joint(element, one.level, theta, Vec::UnitZ(), Vec::Zero());
+      const std::string own = one.name == one.shared ? std::string() : one.name;
+      inertial(element, parts_.body(one.shared, own), one.name, 0.02);
+      draw_part(element, one);
+      for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
+        const LimbGeometry<double>& limb = robot_.limbs[i];
+        for (const bool first : {true, false})
+          if (limb.part == one.part)
+            site(element, plate_site(i, first),
+                 robot_file::on_plate_link(robot_, limb, robot_file::strut_end(limb, first)));
+      }
+    }
+  }
+
+  void plate_joint(XMLElement* element, const robot_file::PlateJoint& one, const std::string& theta, const Vec& axis,
+                   const Vec& place) {
+    if (!one.moves()) return;
+    XMLElement* made = joint(element, one.name, one.slides ? "slide" : "hinge", axis, 0, place);
+    if (one.name == theta) {
+      friction(made, "plate");
+    } else {
+      child(equality_, "joint",
+            {{"name", one.name}, {"joint1", one.name}, {"joint2", theta}, {"polycoef", "0 " + text(one.gain) + " 0 0 0"}});
+    }
+  }
+
+  void draw_part(XMLElement* element, const robot_file::PlateBody& one) const {
+    const double half = 0.5 * robot_.plate->spacing;
+    if (one.shared == name(Body::crossbar)) {
+      capsule(element, Vec(-half, 0, 0), Vec(half, 0, 0), 0.008);
+    } else if (one.shared == name(Body::tool)) {
+      capsule(element, Vec(0, 0, -0.06), Vec::Zero(), 0.015);
+    }
+    for (const auto& limb : robot_.limbs)
+      if (limb.part == one.part && one.shared == name(Body::half_plate))
+        capsule(element, Vec::Zero(), robot_file::on_plate_link(robot_, limb, limb.p_BA), 0.01);
   }
 
   /// A robot without a tool still has a body that turns at the bar's end: a tenth of the plate's mass, which moves

@@ -27,7 +27,7 @@ void add_rotor_inertias(const RobotDescription& robot, model_export::Parts& part
       p(inertial::kIzz) += rotor / 2;
     } else {
       const LimbGeometry<double>& limb = robot.limbs[i];
-      const Vector3<double> axis = Eigen::AngleAxisd(limb.azimuth, Vector3<double>::UnitZ()) * limb.axis_L;
+      const Vector3<double> axis = limb_frame(limb) * limb.axis_L;
       if (std::abs(axis.dot(robot.gravity)) > 1e-9 * robot.gravity.norm()) {
         parts.left_out.push_back(fmt::format("{} = {} kg: on a carriage it would weigh", drive, rotor));
         continue;

@@ -23,12 +23,12 @@ constexpr JointRow kDamping{".presliding_damping", "of a joint", "damping",
                             "give the time by which the friction is ahead of its bristles after a reversal, or 0"};
 
 std::string name_of(const RobotDescription& robot, int joint, const JointRow& row) {
-  return (joint < robot.drives() ? fmt::format("drive{}", joint + 1) : "telescope") + row.name;
+  return (joint < robot.drives() ? fmt::format("drive{}", joint + 1) : robot.inner_joint()) + row.name;
 }
 
-/// Its values, drives first, then the telescope; 0 where the file has no such row.
+/// Its values, drives first, then the inner joint; 0 where the file has no such row.
 Eigen::VectorXd of_joints(const ParameterTable& table, const RobotDescription& robot, const JointRow& row) {
-  const int joints = robot.drives() + (robot.telescope ? 1 : 0);
+  const int joints = robot.drives() + (*robot.inner_joint() != 0 ? 1 : 0);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(joints);
   for (const ParameterEntry& entry : table.entries) {
     if (!entry.name.ends_with(row.name)) continue;

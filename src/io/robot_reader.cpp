@@ -12,6 +12,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 
+#include "plate_tree.hpp"
 #include "robot_file_format.hpp"
 #include "urdf_tree.hpp"
 
@@ -39,6 +40,7 @@ struct Strut {
   std::string name;
   Vec elbow = Vec::Zero();  ///< in the arm's frame
   bool closed = false;      ///< its other end is known
+  int part = 0;             ///< of the plate
   Vec end = Vec::Zero();    ///< in the strut's frame
   Vec p_BE = Vec::Zero();   ///< the same point from the plate's centre
 };
@@ -59,6 +61,7 @@ class Reader {
     for (const Joint* drive : drives_) robot_.limits.push_back(drive->limits);
     extension();
     robot_.validate(tree_.where);
+    if (robot_.plate) compare_plate();
     inertials();
     return robot_;
   }
@@ -124,18 +127,19 @@ class Reader {
   }
 
   /// Azimuth in [0, 2 pi).
-  double azimuth(const Joint& drive) const {
-    const Eigen::Matrix3d& R = drive.X_PJ.linear();
-    if (std::abs(R(2, 2) - 1) > kTolerance * kTolerance && std::hypot(R(0, 2), R(1, 2)) > kTolerance)
-      refuse("the limb frame must be turned about z of the base only", tree_.at(drive),
-             "write the azimuth as the third number of rpy");
+  static double azimuth(const Eigen::Matrix3d& R) {
     const double angle = std::atan2(R(1, 0), R(0, 0));
     return angle < -1e-9 ? angle + 2 * std::numbers::pi : angle;
   }
 
   LimbGeometry<double> limb_of(const Joint& drive) const {
     LimbGeometry<double> limb;
-    limb.azimuth = azimuth(drive);
+    const Eigen::Matrix3d& R = drive.X_PJ.linear();
+    if (std::abs(R(2, 0)) > kTolerance || R(2, 2) < kTolerance)
+      refuse("the limb frame must be turned about z of the base, and then tilted about its own x, by less than 90 deg",
+             tree_.at(drive), "write the azimuth as the third number of rpy, the tilt as the first");
+    if (std::abs(R(2, 1)) > kTolerance) limb.tilt = std::atan2(R(2, 1), R(2, 2));
+    limb.azimuth = azimuth(R);
     limb.p_WD = drive.X_PJ.translation();
     if (!drive.prismatic) require_axis(drive, Vec::UnitY(), false, "a limb's revolute drive");
     limb.axis_L = drive.prismatic ? drive.axis : Vec(Vec::UnitY());
@@ -166,14 +170,16 @@ class Reader {
     if (drives_.size() - limbs > 1)
       refuse("the telescope's drive must be the last one", tree_.at(*drives_[limbs]),
              "call the limbs' drives drive1 to drive3");
-    if (limbs != 3)
-      refuse(fmt::format("three limbs expected, but {} found", limbs), tree_.where,
-             limbs == 4
-                 ? "robots with four limbs (h4, i4, par4) are not supported yet"
-                 : "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
     const bool telescope = limbs < drives_.size();
+    if (limbs != 3 && !(limbs == 4 && !telescope))
+      refuse(fmt::format("three limbs expected, or four with an articulated plate, but {} found{}", limbs,
+                         telescope ? " and a telescope bar" : ""),
+             tree_.where,
+             "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
-    robot_.type = telescope ? "delta4" : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
+    robot_.type = limbs == 4   ? type_of_four_limbs()
+                  : telescope ? "delta4"
+                              : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
     for (std::size_t i = 0; i < limbs; ++i) {
       if (drives_[i]->prismatic != drives_[0]->prismatic)
         refuse("the drives of the limbs are of different kinds", tree_.at(*drives_[i]),
@@ -184,16 +190,92 @@ class Reader {
     if (telescope && drives_[0]->prismatic)
       refuse("a telescope bar with prismatic drives is not a known type", tree_.at(*drives_[limbs]),
              "use revolute drives (delta4)");
+    if (limbs == 4) {
+      robot_.set_plate(plate_shape());
+    } else {
+      robot_.parts.emplace_back();
+    }
     find_plate();
     for (const Loop& loop : tree_.loops) close(loop);
     for (std::size_t i = 0; i < limbs; ++i) parallelogram(i);
-    robot_.parts.emplace_back();
     if (telescope) {
       find_telescope(*drives_[limbs]);
     } else if (!tool_loops_.empty()) {
       refuse(fmt::format("link {} is not a strut", tool_loops_[0].other->link), tree_.at(*tool_loops_[0].loop),
              "the loops of a Delta without telescope bar join struts and plate");
     }
+  }
+
+  // --- articulated plate --------------------------------------------------------------------------
+  /// What joins the parts of the plate is not told by the limbs.
+  [[nodiscard]] std::string type_of_four_limbs() const {
+    const bool known = visit_robot_type(
+        tree_.declared_type, robot_.drive_kind, [](auto type) { return decltype(type)::kPlateTurns; },
+        [] { return false; });
+    if (!known)
+      refuse("a robot with four limbs, but no word on how its plate is made", tree_.where,
+             "write <deltadyn type=\"h4\"> (or i4, par4) with a <plate> as delta-model create h4 does");
+    return tree_.declared_type;
+  }
+
+  [[nodiscard]] PlateShape plate_shape() const {
+    const std::string where = fmt::format("{}, line {}, <plate> of <deltadyn>", tree_.where,
+                                          std::max(tree_.plate.line, tree_.extension_line));
+    if (tree_.plate.line == 0)
+      refuse("the lengths of the plate are missing", where, "write <plate> as delta-model create does");
+    PlateShape shape;
+    for (const auto& [key, value] : tree_.plate.attributes) {
+      const auto* const number = std::ranges::find(robot_file::kPlateNumbers, key, &robot_file::PlateNumber::key);
+      if (number != std::end(robot_file::kPlateNumbers)) {
+        shape.*number->member = robot_file::parse_number(value, where, key);
+      } else if (key == "tool" && (value == "centre" || value == "half_plate")) {
+        shape.tool = value == "centre" ? ToolPlace::centre : ToolPlace::half_plate;
+      } else {
+        std::string known;
+        for (const auto& one : robot_file::kPlateNumbers) known += fmt::format("{}, ", one.key);
+        refuse(fmt::format("attribute '{}' of value '{}' is not known", key, value), where,
+               fmt::format("known are {}and tool, which is centre or half_plate", known));
+      }
+    }
+    return shape;
+  }
+
+  /// The plate's joints must be those that its lengths make: the file holds both, and one of them alone may be edited.
+  void compare_plate() const {
+    const UrdfTree made = robot_file::parse_urdf_tree(robot_to_urdf(robot_), tree_.where);
+    const auto find = [](const UrdfTree& tree, const std::string& name) {
+      return std::ranges::find(tree.joints, name, &Joint::name);
+    };
+    for (const robot_file::PlateBody& body : robot_file::plate_bodies(robot_)) {
+      for (const robot_file::PlateJoint* one : {&body.swing, &body.level}) {
+        if (!one->moves()) continue;
+        const auto wanted = find(made, one->name), found = find(tree_, one->name);
+        if (found == tree_.joints.end())
+          refuse(fmt::format("joint {} of the plate is missing", one->name), tree_.where,
+                 "write the plate's joints as delta-model create does");
+        if (found->prismatic != wanted->prismatic || (found->axis - wanted->axis).norm() > kTolerance ||
+            (found->X_PJ.matrix() - wanted->X_PJ.matrix()).norm() > kTolerance)
+          refuse(fmt::format("this joint of the plate stands at {}, but the lengths in <plate> put it at {}",
+                             words(found->X_PJ.translation()), words(wanted->X_PJ.translation())),
+                 tree_.at(*found), "mend the joint's origin and axis, or the numbers of <plate>");
+      }
+    }
+  }
+
+  /// The part of the plate that a limb may end on, by body.
+  struct PlateEnd {
+    int body = -1, part = 0;
+    Pose X_BP = Pose::Identity();  ///< frame parallel to W in the plate's middle, at the part's origin
+  };
+
+  void add_plate_end(const std::string& link, int part) {
+    const auto place = tree_.links.find(link);
+    if (place == tree_.links.end())
+      refuse(fmt::format("the plate has no link {}", link), tree_.where,
+             "name the links of the plate as delta-model create does");
+    PlateEnd end{.body = place->second.body, .part = part, .X_BP = place->second.X_BL};
+    end.X_BP.rotate(Eigen::AngleAxisd(-robot_.parts[static_cast<std::size_t>(part)].turn, Vec::UnitZ()));
+    plate_ends_.push_back(end);
   }
 
   void find_struts(const Joint& drive) {
@@ -240,6 +322,26 @@ class Reader {
     require_passive(about_y, Vec::UnitY(), "the plate's second joint");
     require_no_offset(about_y, "the plate's second joint");
     plate_ = about_y.child;
+    strut.closed = true;
+    strut.end = about_z.X_PJ.translation();
+    if (robot_.plate) {
+      const std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
+      for (int half : {0, 1}) add_plate_end(bodies[static_cast<std::size_t>(half)].name, half);
+    } else {
+      find_centre();
+    }
+    const auto end = std::ranges::find(plate_ends_, plate_, &PlateEnd::body);
+    if (end == plate_ends_.end() || end->part != 0 || carrier != 0)
+      refuse("the plate must hang on the first strut of limb 1 by its first half", tree_.at(about_z),
+             "write the file as delta-model create does");
+    require_parallel(limb_frame(robot_.limbs[carrier / 2]) * end->X_BP.linear(), tree_.at(tree_.body(plate_).name),
+                     "the plate's frame");
+    strut.part = end->part;
+    strut.p_BE = end->X_BP.inverse().translation();
+  }
+
+  /// The one part of a Delta's plate.
+  void find_centre() {
     if (!tree_.body(plate_).joints.empty())
       refuse("a Delta's plate carries no moving joint", tree_.at(tree_.joint(tree_.body(plate_).joints[0])),
              "the tool hangs on the telescope bar");
@@ -257,22 +359,23 @@ class Reader {
     if (frame.empty())
       refuse(fmt::format("missing loop: no loop ends on the plate ({})", tree_.body(plate_).name), tree_.where,
              "add a spherical <loop> for each other strut");
-    X_MB_ = tree_.links.at(frame).X_BL;
-    const double angle = robot_.limbs[carrier / 2].azimuth;
-    require_parallel(Eigen::AngleAxisd(angle, Vec::UnitZ()).toRotationMatrix() * X_MB_.linear(), tree_.at(frame),
-                     "the plate's frame");
-    strut.closed = true;
-    strut.end = about_z.X_PJ.translation();
-    strut.p_BE = X_MB_.inverse().translation();
+    add_plate_end(frame, 0);
   }
 
   void close(const Loop& loop) {
     const robot_file::LoopEnd* on_plate = &loop.predecessor;
     const robot_file::LoopEnd* other = &loop.successor;
-    if (tree_.links.at(on_plate->link).body != plate_) std::swap(on_plate, other);
-    if (tree_.links.at(on_plate->link).body != plate_)
-      refuse(fmt::format("neither {} nor {} is the plate", on_plate->link, other->link), tree_.at(loop),
-             "a Delta's loops end on the plate");
+    const auto part_of = [this](const robot_file::LoopEnd* end) {
+      return std::ranges::find(plate_ends_, tree_.links.at(end->link).body, &PlateEnd::body);
+    };
+    if (part_of(on_plate) == plate_ends_.end()) std::swap(on_plate, other);
+    const auto part = part_of(on_plate);
+    if (part == plate_ends_.end())
+      refuse(fmt::format("neither {} nor {} is the plate{}", on_plate->link, other->link,
+                         robot_.plate ? ", or not a part of it that may hold a limb" : ""),
+             tree_.at(loop),
+             robot_.plate ? "a limb ends on half_plate1 or half_plate2, which only translate"
+                          : "a Delta's loops end on the plate");
     const robot_file::LinkPlace& place = tree_.links.at(other->link);
     const auto strut = std::ranges::find_if(struts_, [&](const Strut& s) { return s.body == place.body; });
     if (strut == struts_.end()) {
@@ -286,7 +389,8 @@ class Reader {
       refuse(fmt::format("the end of {} is closed already", strut->name), tree_.at(loop), "remove one of the two");
     strut->closed = true;
     strut->end = (place.X_BL * other->X_LO).translation();
-    strut->p_BE = on_plate->X_LO.translation();
+    strut->part = part->part;
+    strut->p_BE = part->X_BP.inverse() * (tree_.links.at(on_plate->link).X_BL * on_plate->X_LO.translation());
   }
 
   void parallelogram(std::size_t index) {
@@ -306,7 +410,11 @@ class Reader {
                          b.name, b.end.x()),
              tree_.at(b.name), "mend the origin in its <loop>, or of the joint that carries the plate");
     const Vec at_elbow = a.elbow - b.elbow;
-    const Vec y_L(-std::sin(limb.azimuth), std::cos(limb.azimuth), 0);
+    const Vec y_L = limb_frame(limb).col(1);
+    if (a.part != b.part)
+      refuse(fmt::format("the two struts of limb {} end on different parts of the plate", index + 1), tree_.at(b.name),
+             "let both end on the same half plate");
+    limb.part = a.part;
     const Vec at_plate = a.p_BE - b.p_BE;
     if ((at_plate - at_elbow.y() * y_L).norm() > kTolerance)
       refuse(fmt::format("limb {} is no parallelogram: its struts are {} apart at the elbow, but {} at the plate (both "
@@ -403,6 +511,8 @@ class Reader {
     for (std::size_t i = 0; i < robot_.limbs.size(); ++i)
       if (drives_[i]->child == index) return Body::upper_arm;
     if (index == plate_) return Body::platform;
+    if (robot_.plate && std::ranges::none_of(struts_, [index](const Strut& s) { return s.body == index; }))
+      return Body::platform;
     for (const Strut& strut : struts_)
       if (strut.body == index) return Body::strut;
     return Body::telescope_upper;
@@ -446,7 +556,7 @@ class Reader {
   std::vector<const Joint*> drives_;
   std::vector<Strut> struts_;  ///< two a limb, the one at +y first
   int plate_ = -1;
-  Pose X_MB_ = Pose::Identity();  ///< plate frame in the frame of the body that carries it
+  std::vector<PlateEnd> plate_ends_;
   std::vector<ToolLoop> tool_loops_;
 };
 

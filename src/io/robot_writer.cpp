@@ -8,6 +8,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/error.hpp"
 
+#include "plate_tree.hpp"
 #include "robot_file_format.hpp"
 #include "urdf_tree.hpp"
 #include "xml_elements.hpp"
@@ -43,7 +44,7 @@ class Writer {
       axis();
     } else {
       for (std::size_t i = 0; i < robot_.limbs.size(); ++i) limb(i);
-      platform();
+      robot_.plate ? articulated_plate() : platform();
       if (robot_.telescope) telescope();
       loops();
     }
@@ -112,8 +113,8 @@ class Writer {
     child(element, "dynamics", {{"damping", text(viscous)}, {"friction", text(coulomb)}});
   }
 
-  static void mimic(XMLElement* element, const std::string& other) {
-    child(element, "mimic", {{"joint", other}, {"multiplier", "-1"}});
+  static void mimic(XMLElement* element, const std::string& other, double multiplier = -1) {
+    child(element, "mimic", {{"joint", other}, {"multiplier", text(multiplier)}});
   }
 
   // --- bodies ---------------------------------------------------------------------------------
@@ -179,7 +180,7 @@ class Writer {
   XMLElement* upper_arm(std::size_t index) {
     const LimbGeometry<double>& limb = robot_.limbs[index];
     const std::string name = fmt::format("upper_arm{}", index + 1);
-    drive(index, name, robot_.drive_kind, limb.axis_L, limb.p_WD, Vec(0, 0, limb.azimuth));
+    drive(index, name, robot_.drive_kind, limb.axis_L, limb.p_WD, robot_file::limb_rpy(limb));
     XMLElement* body = link(name);
     if (robot_.drive_kind == DriveKind::prismatic) visual(body, -0.03 * limb.axis_L, 0.03 * limb.axis_L, 0.03);
     visual(body, Vec::Zero(), limb.p_DE_0, 0.025);
@@ -210,21 +211,83 @@ class Writer {
     }
   }
 
-  void platform() {
+  /// Hangs the part of the plate that limb 1 holds on its first strut.
+  void plate_on_strut() {
     const LimbGeometry<double>& limb = robot_.limbs[0];
     // z then y undo the strut's y then z, so the plate stays parallel to the base.
     mimic(passive("platform_z", "strut1a", "platform_knuckle", Vec::UnitZ(), Vec(limb.strut, 0, 0)), "strut1a_z");
     link("platform_knuckle");
     passive("platform_y", "platform_knuckle", "platform_mount", Vec::UnitY(), Vec::Zero());
     link("platform_mount");
-    const Eigen::Matrix3d R_LW = Eigen::AngleAxisd(-limb.azimuth, Vec::UnitZ()).toRotationMatrix();
-    joint("platform_fixed", "fixed", "platform_mount", "platform", -(R_LW * robot_file::strut_end(limb, true)),
-          Vec(0, 0, -limb.azimuth));
+    joint("platform_fixed", "fixed", "platform_mount", "platform",
+          -(limb_frame(limb).transpose() * robot_file::strut_end(limb, true)), robot_file::inverse_limb_rpy(limb));
+  }
+
+  void platform() {
+    plate_on_strut();
     XMLElement* body = link("platform");
     double radius = 0.02;
     for (const auto& other : robot_.limbs) radius = std::max(radius, other.p_BA.head<2>().norm());
     visual(body, Vec(0, 0, -0.01), Vec(0, 0, 0.01), radius);
     inertial(body, "platform");
+  }
+
+  /// Half plate 1 on the first strut, the other parts on it.
+  void articulated_plate() {
+    plate_on_strut();
+    link("platform");
+    const std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
+    const std::string theta = robot_file::theta_joint(bodies), root = bodies.front().name;
+    joint(root + "_fixed", "fixed", "platform", root, Vec::Zero(), Vec(0, 0, robot_.parts.front().turn));
+    for (const robot_file::PlateBody& body : bodies) {
+      std::string parent = root;
+      Vec place = body.first;
+      if (body.swing.moves()) {
+        plate_joint(body.swing, theta, parent, body.name + "_mount", place, 0);
+        link(body.name + "_mount");
+        parent = body.name + "_mount";
+        place = body.origin - body.first;
+      }
+      if (body.level.moves()) {
+        plate_joint(body.level, theta, parent, body.name, place, body.turn);
+      } else if (body.name != root) {
+        joint(body.name + "_fixed", "fixed", parent, body.name, place, Vec(0, 0, body.turn));
+      }
+      fill_part(body);
+    }
+  }
+
+  /// A joint whose position is that of `theta` times its gain.
+  void plate_joint(const robot_file::PlateJoint& one, const std::string& theta, const std::string& parent,
+                   const std::string& to, const Vec& place, double turn) {
+    XMLElement* element = joint(one.name, one.slides ? "prismatic" : "revolute", parent, to, place, Vec(0, 0, turn));
+    element->SetAttribute("independent", false);
+    axis_of(element, one.slides ? one.along : Vec(Vec::UnitZ()));
+    DriveLimits range;
+    range.upper = robot_.plate->range * std::abs(one.gain);
+    range.lower = -range.upper;
+    range.effort = 0;
+    limit_of(element, range, true);
+    if (one.name == theta) {
+      dynamics_of(element, "plate");
+    } else {
+      mimic(element, theta, one.gain);
+    }
+  }
+
+  void fill_part(const robot_file::PlateBody& body) {
+    XMLElement* element = link(body.name);
+    const double half = 0.5 * robot_.plate->spacing;
+    if (body.shared == name(Body::crossbar)) {
+      visual(element, Vec(-half, 0, 0), Vec(half, 0, 0), 0.008);
+    } else if (body.shared == name(Body::tool)) {
+      visual(element, Vec(0, 0, -0.05), Vec::Zero(), 0.015);
+    } else {
+      for (const auto& limb : robot_.limbs)
+        if (limb.part == body.part)
+          visual(element, Vec::Zero(), robot_file::on_plate_link(robot_, limb, limb.p_BA), 0.01);
+    }
+    inertial(element, body.shared, body.name == body.shared ? std::string() : body.name);
   }
 
   void telescope() {
@@ -283,8 +346,9 @@ class Writer {
       for (const bool first : {true, false}) {
         if (i == 0 && first) continue;  // this strut carries the plate in the tree
         const std::string name = robot_file::strut_name(i, first);
-        loop(name + "_end", "spherical", name, Vec(robot_.limbs[i].strut, 0, 0), "platform",
-             robot_file::strut_end(robot_.limbs[i], first));
+        const LimbGeometry<double>& limb = robot_.limbs[i];
+        loop(name + "_end", "spherical", name, Vec(limb.strut, 0, 0), robot_file::plate_link(robot_, limb),
+             robot_file::on_plate_link(robot_, limb, robot_file::strut_end(limb, first)));
       }
     if (robot_.telescope) {
       // The bar's lower joint sits on the tool's axis; where that axis meets the plate is the loop's place on the
@@ -297,6 +361,12 @@ class Writer {
   void extension() {
     XMLElement* element = child(root_, "deltadyn", {{"version", "1"}, {"type", robot_.type}});
     child(element, "gravity", {{"xyz_m_s2", text(robot_.gravity)}});
+    if (robot_.plate) {
+      XMLElement* entry = child(element, "plate");
+      for (const auto& [key, member] : robot_file::kPlateNumbers)
+        entry->SetAttribute(key, text((*robot_.plate).*member).c_str());
+      entry->SetAttribute("tool", robot_file::tool_place_name(robot_.plate->tool));
+    }
     for (std::size_t i = 0; i < robot_.limits.size(); ++i) {
       XMLElement* entry = child(element, "drive", {{"joint", robot_file::drive_name(i)}});
       if (i < robot_.limbs.size() && !robot_.parts.empty())

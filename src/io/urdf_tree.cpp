@@ -286,6 +286,11 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
     const std::string there = at(tree.where, gravity);
     tree.gravity = parse_vector(attribute(gravity, "xyz_m_s2", there), there, "xyz_m_s2");
   }
+  if (const XMLElement* plate = extension->FirstChildElement("plate")) {
+    tree.plate.line = plate->GetLineNum();
+    for (auto* entry = plate->FirstAttribute(); entry != nullptr; entry = entry->Next())
+      tree.plate.attributes[entry->Name()] = entry->Value();
+  }
   for (auto* drive = extension->FirstChildElement("drive"); drive != nullptr;
        drive = drive->NextSiblingElement("drive")) {
     DriveNote& note = tree.drives.emplace_back();

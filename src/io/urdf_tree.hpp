@@ -86,6 +86,7 @@ struct UrdfTree {
   int extension_line = 0;
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);  ///< in the frame of the root link
   std::vector<DriveNote> drives;
+  DriveNote plate;  ///< the `<plate>` of the `<deltadyn>` element; line 0 if there is none
 
   [[nodiscard]] const Body& body(int index) const { return bodies[static_cast<std::size_t>(index)]; }
   [[nodiscard]] const Joint& joint(int index) const { return joints[static_cast<std::size_t>(index)]; }

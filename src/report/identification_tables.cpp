@@ -108,8 +108,8 @@ void add_extras_table(HtmlReport& report, const Robot& robot, const Identificati
     const PreslidingJoint& found = identification.presliding[joint];
     if (!(found.displacement > 0)) continue;
     const auto at = static_cast<int>(joint);
-    const std::string name = at < robot.drives() ? drive_name(at) : "telescope";
-    const char* unit = at < robot.drives() ? units_of(robot, at).position : "m";
+    const std::string name = at < robot.drives() ? drive_name(at) : robot.description().inner_joint();
+    const char* unit = at < robot.drives() ? units_of(robot, at).position : (robot.description().plate ? "rad" : "m");
     table.row({name, "friction builds up after a reversal over",
                format_with_uncertainty(found.displacement, found.std, unit)});
     if (found.damping_s > 0)

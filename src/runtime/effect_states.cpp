@@ -1,6 +1,8 @@
 #include "deltadyn/runtime/effect_states.hpp"
 
+#include "deltadyn/kinematics/inner_joint.hpp"
 #include "deltadyn/kinematics/passive_joints.hpp"
+#include "deltadyn/kinematics/tool_point.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 
 namespace deltadyn {
@@ -17,19 +19,18 @@ class EffectStatesOf final : public EffectStates {
     Motion<double, R> motion;
     const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
     if (status != Status::ok) return status;
-    state.J.setZero(3, R::kDrives);
-    state.J_bar.setZero(R::kDrives);
-    if constexpr (kHasPlate<R>) {
-      state.position = motion.posture.z.template head<3>();
-      state.velocity = motion.zd.template head<3>();
-      state.acceleration = motion.zdd.template head<3>();
-      state.J = motion.posture.J_plate.template topRows<3>();
+    state.J_inner.setZero(R::kDrives);
+    const auto tool = tool_point(geometry_, motion);
+    state.position = tool.position;
+    state.velocity = tool.velocity;
+    state.acceleration = tool.acceleration;
+    state.J = tool.J;
+    if constexpr (kHasInnerJoint<R>) {
+      const InnerJoint<double, R> inner = inner_joint(motion);
+      state.inner_rate = inner.rate;
+      state.J_inner = inner.J;
     }
-    if constexpr (R::kTelescope) {
-      state.bar_rate = motion.telescope.length_d;
-      state.J_bar = motion.posture.telescope.J_length;
-      state.bar = motion.posture.telescope.e;
-    }
+    if constexpr (R::kTelescope) state.bar = motion.posture.telescope.e;
     state.passive_rate.resize(kPassiveJoints<R>);
     state.J_passive.resize(kPassiveJoints<R>, R::kDrives);
     for_each_passive_joint(motion, [&state](int index, const PassiveJoint<double, R>& joint) {

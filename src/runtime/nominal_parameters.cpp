@@ -1,7 +1,9 @@
 #include "deltadyn/runtime/nominal_parameters.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 
 #include "deltadyn/model/shapes.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -38,6 +40,13 @@ void require_not_negative(double value, const std::string& what) {
 double arm_length(const RobotDescription& robot) {
   const double length = robot.limbs.front().p_DE_0.norm();
   return length > 0 ? length : 0.1;  // an axis without an arm: a short stub
+}
+
+/// From the plate's centre to the attachment of limb 1, an articulated plate in its middle.
+double plate_radius(const RobotDescription& robot) {
+  const LimbGeometry<double>& limb = robot.limbs.front();
+  const Vec offset = robot.plate ? robot.parts[static_cast<std::size_t>(limb.part)].a : Vec(Vec::Zero());
+  return (limb.p_BA + offset).head<2>().norm();
 }
 
 /// A part that is thicker than it is long is a length in another unit: half its length, and 5 cm for parts that are
@@ -108,12 +117,25 @@ Ten strut(const RobotDescription& robot, const PartShapes& s) {
   return p;
 }
 
+/// From one limb's attachment to the other's.
+Ten half_plate(const RobotDescription& robot, const PartShapes& s) {
+  std::vector<Vec> ends;
+  for (const auto& limb : robot.limbs)
+    if (limb.part == 0) ends.push_back(Eigen::AngleAxisd(-robot.parts[0].turn, Vec::UnitZ()) * limb.p_BA);
+  return round(s.half_plate_mass, s.half_plate_diameter, 0, ends.front(), ends.back(), "half plate");
+}
+
 Ten body_of(Body body, const RobotDescription& robot, const PartShapes& s) {
   if (body == Body::upper_arm) return upper_arm(robot, s);
   if (body == Body::strut) return strut(robot, s);
   if (body == Body::platform) {
     const Vec half(0, 0, s.platform_thickness / 2);
     return round(s.platform_mass, s.platform_diameter, 0, -half, half, "platform");
+  }
+  if (body == Body::half_plate) return half_plate(robot, s);
+  if (body == Body::crossbar) {
+    const Vec half(robot.plate->spacing / 2, 0, 0);
+    return round(s.crossbar_mass, s.crossbar_diameter, 0, -half, half, "crossbar");
   }
   if (body == Body::tool) return round(s.tool_mass, s.tool_diameter, 0, Vec(0, 0, -s.tool_length), Vec::Zero(), "tool");
   if (!(s.telescope_upper_share > 0 && s.telescope_upper_share < 1))
@@ -127,6 +149,7 @@ Ten body_of(Body body, const RobotDescription& robot, const PartShapes& s) {
 }
 
 double friction_of(int drive, bool viscous, const RobotDescription& robot, const PartShapes& s) {
+  if (drive == 0 && robot.plate) return viscous ? s.plate_viscous : s.plate_coulomb;
   if (drive == 0) return viscous ? s.telescope_viscous : s.telescope_coulomb;
   if (robot.telescope && drive == robot.drives())
     return viscous ? s.telescope_drive_viscous : s.telescope_drive_coulomb;
@@ -140,7 +163,7 @@ PartShapes::PartShapes(const RobotDescription& robot) {
   const bool prismatic = robot.drive_kind == DriveKind::prismatic;
   const double arm = arm_length(robot) / kPaperArm;
   const double rod = limb.strut / kPaperStrut;
-  const double plate = std::max(limb.p_BA.head<2>().norm(), 0.2 * kPaperPlate) / kPaperPlate;
+  const double plate = std::max(plate_radius(robot), 0.2 * kPaperPlate) / kPaperPlate;
   const double bar = (arm_length(robot) + limb.strut) / (kPaperArm + kPaperStrut);
 
   upper_arm_outer_diameter = 0.056 * arm;
@@ -162,6 +185,10 @@ PartShapes::PartShapes(const RobotDescription& robot) {
   platform_mass = plate;  // 1 kg in the paper; a larger plate is wider and lighter built
   platform_diameter = 0.16 * plate;
   platform_thickness = 0.02;
+  half_plate_mass = 0.4 * plate;
+  half_plate_diameter = 0.025;
+  crossbar_mass = 0.15 * plate;
+  crossbar_diameter = 0.02;
   tool_mass = 0.3;
   tool_diameter = 0.06;
   tool_length = 0.1;
@@ -178,6 +205,8 @@ PartShapes::PartShapes(const RobotDescription& robot) {
   telescope_drive_coulomb = 0.5;
   telescope_viscous = 4;
   telescope_coulomb = 4;
+  plate_viscous = 0.02;
+  plate_coulomb = 0.1;
 }
 
 InertialVector<double> inertial_std(const InertialVector<double>& p, double share) {
@@ -194,7 +223,8 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
   for (const double share : {shapes.body_std, shapes.friction_std})
     plausibility::require(plausibility::kShare, share, "a standard deviation", "", ExitCode::usage);
   for (const double friction : {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous,
-                                shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb})
+                                shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb,
+                                shapes.plate_viscous, shapes.plate_coulomb})
     require_positive(friction, "a friction coefficient");
   NominalParameters nominal;
   nominal.value = Eigen::VectorXd::Zero(robot.parameters());

@@ -13,11 +13,12 @@ constexpr const char* kQuantities[] = {"", "viscous", "coulomb", "rotor_inertia"
 bool ParameterId::same_owner(const ParameterId& other) const {
   const bool inertial = kind == ParameterKind::inertial;
   return inertial == (other.kind == ParameterKind::inertial) && number == other.number &&
+         inner == other.inner &&
          (!inertial || body == other.body);
 }
 
 std::string owner_name(const ParameterId& id) {
-  const char* joint = id.number > 0 ? "drive" : "telescope";
+  const char* joint = id.number > 0 ? "drive" : (id.inner == InnerJointKind::telescope ? "telescope" : "plate");
   return (id.kind == ParameterKind::inertial ? name(id.body) : joint) +
          (id.number > 0 ? std::to_string(id.number) : "");
 }
@@ -46,7 +47,10 @@ std::optional<ParameterId> parameter_id(const std::string& name) {
   std::from_chars(owner.data() + owner.find_last_not_of("0123456789") + 1, end, id.number);
   for (int kind = 1; kind < static_cast<int>(std::size(kQuantities)); ++kind) {
     id.kind = static_cast<ParameterKind>(kind);
-    if (parameter_name(id) == name) return id;
+    for (const InnerJointKind inner : {InnerJointKind::plate, InnerJointKind::telescope}) {
+      id.inner = inner;
+      if (parameter_name(id) == name) return id;
+    }
   }
   id.kind = ParameterKind::inertial;
   for (std::size_t body = 0; body < std::size(kBodyNames); ++body) {

@@ -156,6 +156,8 @@ double heaviest(const RobotDescription& robot, Body body) {
       return arm > 0 ? std::min(300.0, 0.3 + 250 * arm * arm * arm) : std::min(300.0, 3 + 200 * strut * strut * strut);
     case Body::strut: return std::min(100.0, 0.1 + 20 * strut * strut * strut);  // diameter a twentieth
     case Body::platform:
+    case Body::half_plate:
+    case Body::crossbar:
     case Body::tool: return std::min(200.0, 0.5 + 30 * size * size);
     case Body::telescope_upper:
     case Body::telescope_lower: return std::min(200.0, 0.5 + 20 * size * size);
@@ -178,6 +180,7 @@ const Rule kPlateAcceleration{0, 1500, "m/s^2", kMillimetres, "the record of a D
 const Rule kYawVelocity{0, 150, "rad/s", kDegrees, "no Delta turns its tool faster than 1400 rpm"};
 const Rule kYawAcceleration{0, 3000, "rad/s^2", kDegrees, "no Delta turns its tool that suddenly"};
 const Rule kTilt{-kPi, kPi, "rad", kDegrees, "a tilt is half a turn at most"};
+const Rule kGearRatio{0.05, 100, "turns a turn", kNone, "no gear or belt of a plate does that"};
 const Rule kShare{1e-6, 10, "times the value", {"per cent", 0.01}, "that says nothing about the value"};
 const Rule kYaw{-100, 100, "rad", kDegrees,
                 "more than 16 turns are no range: leave the limit out if the tool turns without end"};

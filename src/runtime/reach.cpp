@@ -1,6 +1,5 @@
 #include "deltadyn/runtime/reach.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -20,10 +19,11 @@ class PoseCheck {
   explicit PoseCheck(const Robot& robot)
       : robot_(robot), z_(robot.drives()), q_(robot.drives()), J_(robot.drives(), robot.drives()) {}
 
-  double condition(const Eigen::Vector3d& r) {
+  double condition(const Eigen::Vector3d& r, double yaw = 0) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     z_.setZero();
     z_.head<3>() = r;
+    if (robot_.description().plate) z_(3) = yaw;
     if (robot_.inverse_kinematics(z_, q_) != Status::ok) return kNever;
     const RobotDescription& description = robot_.description();
     for (std::size_t i = 0; i < description.limbs.size(); ++i) {
@@ -31,9 +31,7 @@ class PoseCheck {
       if (q < description.limits[i].lower || q > description.limits[i].upper) return kNever;
     }
     if (robot_.jacobian(q_, J_) != Status::ok) return kNever;
-    const Eigen::Matrix3d block = J_.topLeftCorner<3, 3>();
-    const Eigen::Vector3d s = Eigen::JacobiSVD<Eigen::Matrix3d>(block).singularValues();
-    return s(2) > 0 ? s(0) / s(2) : kNever;
+    return plate_condition(description, J_);
   }
 
  private:
@@ -111,6 +109,15 @@ Reach find_reach(const Robot& robot, int cells) {
   reach.upper = reach.points.colwise().maxCoeff().transpose();
   reach.radius = reach.points.leftCols<2>().rowwise().norm().maxCoeff();
   reach.volume = static_cast<double>(count) * std::pow(reach.cell, 3);
+  if (const double range = description.plate_yaw_range(); range > 0) {
+    for (const double yaw : {-range, range}) {
+      Eigen::Index left = 0;
+      for (Eigen::Index k = 0; k < count; ++k)
+        left += check.condition(reach.points.row(k).transpose(), yaw) <= kLargestReachCondition ? 1 : 0;
+      reach.share_at_full_turn =
+          std::min(reach.share_at_full_turn, static_cast<double>(left) / static_cast<double>(count));
+    }
+  }
   reach.condition_best = reach.condition.minCoeff();
   reach.condition_median = quantile(conditions, 0.5);
   reach.condition_worst_of_95 = quantile(conditions, 0.95);

@@ -7,7 +7,7 @@ namespace deltadyn {
 
 namespace detail {
 
-/// In robot_of.hpp, with one translation unit for each type, so that they build side by side.
+/// In robot_of.hpp, compiled for each type in src/robots.
 template <class R>
 std::unique_ptr<Robot> make_robot_of(const RobotDescription& description, const ParameterOptions& options);
 

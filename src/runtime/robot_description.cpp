@@ -5,7 +5,10 @@
 #include <limits>
 
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
+
+#include "articulated_plate.hpp"
 
 namespace deltadyn {
 namespace {
@@ -13,28 +16,31 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnitTolerance = 1e-9;  // a unit vector read from text may be off in the last digits
 
+/// What the counts of a type are.
 struct TypeRule {
-  const char* name;
-  std::size_t limbs;
-  bool plate, telescope;
+  const char* name = nullptr;
+  std::size_t limbs = 0, parts = 0;
+  bool telescope = false, turns = false;
 };
-
-constexpr TypeRule kRules[] = {{"delta3", 3, true, false},
-                               {"linear-delta3", 3, true, false},
-                               {"delta4", 3, true, true},
-                               {"axis", 1, false, false}};
 
 [[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
   throw Error(what, where, mend);
 }
 
-const TypeRule& rule_of(const std::string& type, const std::string& where) {
-  for (const TypeRule& rule : kRules)
-    if (type == rule.name) return rule;
-  if (type == "h4" || type == "i4" || type == "par4")
-    refuse(fmt::format("robots of type '{}' are not supported yet", type), where,
-           "use one of delta3, linear-delta3, delta4, axis");
-  refuse(fmt::format("'{}' is not a robot type", type), where, "use one of delta3, linear-delta3, delta4, axis");
+TypeRule rule_of(const RobotDescription& robot, const std::string& where) {
+  const auto rule = [](auto type) {
+    using R = decltype(type);
+    return TypeRule{R::kName, R::kLimbs, R::kPlateParts, R::kTelescope, R::kPlateTurns};
+  };
+  return visit_robot_type(robot.type, robot.drive_kind, rule, [&]() -> TypeRule {
+    const DriveKind other = robot.drive_kind == DriveKind::revolute ? DriveKind::prismatic : DriveKind::revolute;
+    const TypeRule known = visit_robot_type(robot.type, other, rule, [] { return TypeRule(); });
+    if (known.name != nullptr)
+      refuse(fmt::format("the drives of a {} are {}", robot.type,
+                         other == DriveKind::prismatic ? "prismatic" : "revolute"),
+             where, "use type linear-delta3 for prismatic drives, delta3 or delta4 for revolute ones");
+    refuse(fmt::format("'{}' is not a robot type", robot.type), where, "use one of " + robot_type_names());
+  });
 }
 
 void require_finite(const Vector3<double>& v, const std::string& what, const std::string& where) {
@@ -49,7 +55,8 @@ void require_positive(double value, const std::string& what, const std::string& 
 void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool plate, DriveKind kind,
                    const std::string& where) {
   const std::string name = fmt::format("limb {}", number);
-  if (!std::isfinite(limb.azimuth)) refuse(name + ": the azimuth is not finite", where, "give an angle in radians");
+  if (!std::isfinite(limb.azimuth) || !std::isfinite(limb.tilt))
+    refuse(name + ": the azimuth or the tilt is not finite", where, "give angles in radians");
   require_finite(limb.p_WD, name + ": the place of the drive", where);
   require_finite(limb.p_DE_0, name + ": the place of the elbow", where);
   require_finite(limb.axis_L, name + ": the axis of the drive", where);
@@ -73,8 +80,6 @@ void validate_limb(const LimbGeometry<double>& limb, std::size_t number, bool pl
   if (limb.elbow != 1 && limb.elbow != -1)
     refuse(fmt::format("{}: the elbow posture is {}, but must be +1 or -1", name, limb.elbow), where,
            "+1 is the elbow outwards or the carriage behind the plate, -1 the other posture");
-  if (limb.part != 0)
-    refuse(fmt::format("{}: there is no plate part {}", name, limb.part), where, "a Delta's plate has one part, 0");
 }
 
 void validate_limits(const DriveLimits& limits, std::size_t number, const std::string& where) {
@@ -98,25 +103,42 @@ void validate_limits(const DriveLimits& limits, std::size_t number, const std::s
 DriveLimits::DriveLimits()
     : lower(-kInfinity), upper(kInfinity), velocity(kInfinity), acceleration(kInfinity), effort(kInfinity) {}
 
+std::string robot_type_names() {
+  std::string names;
+  for_each_robot_type([&names](auto type) {
+    const std::string name = decltype(type)::kName;
+    if ((", " + names + ",").find(", " + name + ",") == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+  });
+  return names;
+}
+
+void RobotDescription::set_plate(const PlateShape& shape) {
+  plate = shape;
+  parts = with_robot_type(*this, [&](auto robot_type) -> std::vector<PlatePart<double>> {
+    using R = decltype(robot_type);
+    if constexpr (R::kPlateTurns) {
+      PlatePart<double> placed[R::kPlateParts];
+      R::place_parts(shape, placed);
+      return {std::begin(placed), std::end(placed)};
+    } else {
+      refuse(fmt::format("the plate of a {} is one part", type), name, "use one of h4, i4, par4");
+    }
+  });
+}
+
 void RobotDescription::validate(const std::string& where) const {
-  const TypeRule& rule = rule_of(type, where);
+  const TypeRule rule = rule_of(*this, where);
   if (limbs.size() != rule.limbs)
     refuse(fmt::format("a robot of type {} has {} limb{}, but this one has {}", type, rule.limbs,
                        rule.limbs == 1 ? "" : "s", limbs.size()),
            where, "check the drives that hang on the base");
-  if (type != "axis" && (drive_kind == DriveKind::prismatic) != (type == "linear-delta3"))
-    refuse(fmt::format("the drives of a {} are {}", type, type == "linear-delta3" ? "prismatic" : "revolute"), where,
-           "use type linear-delta3 for prismatic drives, delta3 or delta4 for revolute ones");
-  if (parts.size() != (rule.plate ? 1U : 0U))
-    refuse(fmt::format("the plate of a {} has {} part, but this one has {}", type, rule.plate ? "one" : "no",
-                       parts.size()),
-           where, "the plate of a Delta is one part");
-  for (const PlatePart<double>& part : parts) {
-    // All coefficients at once: NaN fails the comparison, too.
-    if (!(part.c.norm() + part.a.norm() + part.b.norm() + std::abs(part.kappa) <= 0))
-      refuse(fmt::format("the plate of a {} neither turns nor has an offset of its own", type), where,
-             "put the offset into the attachments of the limbs");
-  }
+  if (parts.size() != rule.parts)
+    refuse(fmt::format("the plate of a {} has {} part{}, but this one has {}", type, rule.parts,
+                       rule.parts == 1 ? "" : "s", parts.size()),
+           where, "make the plate by set_plate()");
+  if (plate.has_value() != rule.turns)
+    refuse(fmt::format("the plate of a {} {}", type, rule.turns ? "is articulated, and its lengths are missing" : "is one part"),
+           where, rule.turns ? "give the lengths of the plate" : "leave out the lengths of an articulated plate");
   if (telescope.has_value() != rule.telescope)
     refuse(fmt::format("a {} has {} telescope bar", type, rule.telescope ? "a" : "no"), where,
            "delta4 is the type with a telescope bar");
@@ -128,14 +150,21 @@ void RobotDescription::validate(const std::string& where) const {
     refuse(fmt::format("{} drives, but limits for {}", limbs.size() + (telescope ? 1U : 0U), limits.size()), where,
            "give one set of limits for each drive");
   require_finite(gravity, "gravity", where);
-  for (std::size_t i = 0; i < limbs.size(); ++i) validate_limb(limbs[i], i + 1, rule.plate, drive_kind, where);
+  for (std::size_t i = 0; i < limbs.size(); ++i) validate_limb(limbs[i], i + 1, rule.parts > 0, drive_kind, where);
   for (std::size_t i = 0; i < limits.size(); ++i) validate_limits(limits[i], i + 1, where);
-  if (rule.plate) {
-    // Each parallelogram stops one rotation of the plate, about the direction across its struts; three parallel ones
-    // leave it loose.
-    double spread = 0;
-    for (const auto& limb : limbs) spread = std::max(spread, std::abs(std::sin(limb.azimuth - limbs[0].azimuth)));
-    if (spread < 1e-6)
+  if (rule.turns) {
+    articulated_plate::validate(*this, where);
+  } else if (rule.parts > 0) {
+    const PlatePart<double>& part = parts.front();
+    // All coefficients at once: NaN fails the comparison, too.
+    if (!(part.c.norm() + part.a.norm() + part.b.norm() + std::abs(part.kappa) + std::abs(part.turn) <= 0))
+      refuse(fmt::format("the plate of a {} neither turns nor has an offset of its own", type), where,
+             "put the offset into the attachments of the limbs");
+    for (std::size_t i = 0; i < limbs.size(); ++i)
+      if (limbs[i].part != 0)
+        refuse(fmt::format("limb {}: there is no plate part {}", i + 1, limbs[i].part), where,
+               "the plate of a Delta has one part, 0");
+    if (largest_angle_between_limbs(limbs, 0) < kParallel)
       refuse("all parallelograms lie in the same direction, so the plate could turn", where,
              "give the limbs different azimuths, e.g. 0, 120 and 240 degrees");
   }

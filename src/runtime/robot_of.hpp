@@ -29,12 +29,18 @@ std::vector<ParameterId> layout_ids() {
   const auto of_limb = [](int i) { return kSharing == Limbs::individual ? i + 1 : 0; };
   for (int i = 0; i < Layout::kLimbSets; ++i) add_body(Body::upper_arm, of_limb(i));
   for (int i = 0; i < Layout::kStruts; ++i) add_body(Body::strut, of_limb(i));
-  for (int k = 0; k < R::kPlateParts; ++k) add_body(Body::platform, k > 0 ? k + 1 : 0);
+  for (int k = 0, sets = 0; k < R::kPlateParts; ++k) {
+    if (Layout::plate_set(k) < sets) continue;  // the same body once more
+    ++sets;
+    add_body(R::kParts[k], R::kParts[k] == Body::half_plate ? of_limb(k) : 0);
+  }
   if (R::kTelescope)
     for (const Body body : {Body::tool, Body::telescope_upper, Body::telescope_lower}) add_body(body, 0);
   for (int j = 0; j < Layout::kFrictionJoints; ++j)
     for (const ParameterKind kind : {ParameterKind::viscous, ParameterKind::coulomb})
-      ids.push_back({kind, j < R::kDrives ? j + 1 : 0});
+      ids.push_back({.kind = kind,
+                     .number = j < R::kDrives ? j + 1 : 0,
+                     .inner = R::kPlateTurns && j == R::kDrives ? InnerJointKind::plate : InnerJointKind::telescope});
   for (const ParameterKind kind : {ParameterKind::rotor_inertia, ParameterKind::offset})
     for (int j = 0; j < R::kDrives; ++j) ids.push_back({kind, j + 1});
   return ids;
@@ -56,7 +62,8 @@ class RobotOf final : public Robot {
       names_.push_back(parameter_name(ids_.back()));
       units_.push_back(parameter_unit(
           ids_.back(),
-          ids_.back().number > 0 && description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute));
+          ids_.back().number > 0 ? description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute
+                                 : ids_.back().inner == InnerJointKind::plate));
     }
   }
 
@@ -185,9 +192,13 @@ class RobotOf final : public Robot {
     Motion<double, R> motion;
     Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
     if (status != Status::ok) return status;
-    JointReactions<double, R> found;
-    status = deltadyn::joint_reactions<Layout>(geometry_, motion, all_columns(p), found);
-    if (status == Status::ok) reactions = named_reactions(found);
+    if constexpr (R::kPlateTurns) {
+      return Status::out_of_range;  // not described yet
+    } else {
+      JointReactions<double, R> found;
+      status = deltadyn::joint_reactions<Layout>(geometry_, motion, all_columns(p), found);
+      if (status == Status::ok) reactions = named_reactions(found);
+    }
     return status;
   }
 

@@ -1,6 +1,7 @@
 #include "deltadyn/runtime/workspace.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kLargestCondition = 50.0;  // of dz_r/dq, beyond which a pose says little about the machine in use
 constexpr double kTurnRange = 3.0;          // of a telescope drive, rad
+constexpr double kPlateShare = 0.8;         // of the range of an articulated plate
 
 /// A drive position in the middle of its limits, 0 if it has none.
 double middle(const DriveLimits& limits) {
@@ -25,6 +27,17 @@ double move_size(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+double plate_condition(const RobotDescription& robot, const Eigen::MatrixXd& J) {
+  const auto limbs = static_cast<Eigen::Index>(robot.limbs.size());
+  Eigen::MatrixXd plate = J.topLeftCorner(limbs, limbs);
+  if (robot.plate) {
+    const PlatePart<double>& half = robot.parts.front();
+    plate.row(3) *= (half.a.norm() + half.b.norm()) / robot.plate->ratio;
+  }
+  const Eigen::VectorXd sizes = dense::singular_values(plate);
+  return sizes(limbs - 1) > 0 ? sizes(0) / sizes(limbs - 1) : std::numeric_limits<double>::infinity();
+}
 
 WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : robot_(robot), random_(seed) {
   const RobotDescription& description = robot.description();
@@ -56,9 +69,7 @@ bool WorkspaceSampler::regular(const Eigen::VectorXd& q) const {
   const int n = robot_.drives();
   Eigen::MatrixXd J(n, n);
   if (robot_.jacobian(q, J) != Status::ok) return false;
-  const auto plate = static_cast<Eigen::Index>(robot_.description().limbs.size());
-  const Eigen::VectorXd sizes = dense::singular_values(J.topLeftCorner(plate, plate));
-  return sizes(plate - 1) * kLargestCondition > sizes(0);
+  return plate_condition(robot_.description(), J) < kLargestCondition;
 }
 
 void WorkspaceSampler::draw_task(TaskState& task) {
@@ -68,7 +79,8 @@ void WorkspaceSampler::draw_task(TaskState& task) {
   task.zd.resize(n);
   task.zdd.resize(n);
   for (int i = 0; i < n; ++i) {
-    const double scale = i < 3 ? size : kTurnRange;
+    const double turn = robot_.description().plate ? kPlateShare * robot_.description().plate_yaw_range() : kTurnRange;
+    const double scale = i < 3 ? size : turn;
     task.z(i) = scale * uniform(-1, 1);
     task.zd(i) = 10 * scale * uniform(-1, 1);
     task.zdd(i) = 100 * scale * uniform(-1, 1);

@@ -10,7 +10,7 @@ namespace deltadyn {
 
 namespace detail {
 
-/// In mechanism_of.hpp, with one translation unit for each type, so that they build side by side.
+/// In mechanism_of.hpp, compiled for each type in src/robots.
 template <class R>
 std::unique_ptr<Mechanism> make_mechanism_of(const RobotDescription& description, const Eigen::VectorXd& p,
                                              const MechanismOptions& options);

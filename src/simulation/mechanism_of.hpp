@@ -8,6 +8,7 @@
 #include "deltadyn/dynamics/equations_of_motion.hpp"
 #include "deltadyn/dynamics/forward_dynamics.hpp"
 #include "deltadyn/kinematics/passive_joints.hpp"
+#include "deltadyn/kinematics/tool_point.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/simulation/mechanism.hpp"
 
@@ -27,7 +28,7 @@ class MechanismOf final : public Mechanism {
     for (int j = 0; j < N && options.home_offset.size() == N; ++j) home_offset_(j) = options.home_offset(j);
     drives_ = N;
     multiplicity_.assign(static_cast<std::size_t>(Layout::kFrictionJoints), 1.0);
-    if (R::kTelescope) telescope_ = N;
+    if (kHasInnerJoint<R>) inner_joint_ = N;
     if (passive_) {
       for (int k = 0; k < kPassiveJoints<R>; ++k) multiplicity_.push_back(passive_joints_alike<R>(k));
     }
@@ -55,10 +56,11 @@ class MechanismOf final : public Mechanism {
     }
     set_joints(motion, terms);
     if constexpr (kHasPlate<R>) {
-      terms.r = motion.posture.z.template head<3>();
-      terms.v = motion.zd.template head<3>();
-      terms.a_bias = motion.zdd.template head<3>();
-      terms.J_r = motion.posture.J_plate.template topRows<3>();
+      const auto tool = tool_point(geometry_, motion);
+      terms.r = tool.position;
+      terms.v = tool.velocity;
+      terms.a_bias = tool.acceleration;
+      terms.J_r = tool.J;
       if constexpr (R::kTelescope) terms.bar = motion.posture.telescope.e;
     }
     return Status::ok;
@@ -95,9 +97,9 @@ class MechanismOf final : public Mechanism {
       terms.bias_rate(row) = bias_rate;
       terms.J.row(row++) = J;
     };
-    if constexpr (R::kTelescope) {
-      add(motion.posture.telescope.length, motion.telescope.length_d, motion.telescope.length_dd,
-          motion.posture.telescope.J_length);
+    if constexpr (kHasInnerJoint<R>) {
+      const InnerJoint<double, R> inner = deltadyn::inner_joint(motion);
+      add(inner.position, inner.rate, inner.acceleration, inner.J);
     }
     if (!passive_) return;
     for_each_passive_joint(

@@ -343,7 +343,7 @@ DriveVector Plant::inverse(double time, const DriveVector& q, const DriveVector&
     throw Error(fmt::format("at {:.4f} s the motion is out of reach or in a singular pose", time), "simulation",
                 "check that the trajectory belongs to this robot");
   }
-  const int bar = m.parts.mechanism->telescope_joint();
+  const int bar = m.parts.mechanism->inner_joint();
   const auto sense = [&terms](int j) { return terms.robot.rate(j) > 0 ? 1 : (terms.robot.rate(j) < 0 ? -1 : 0); };
   m.inverse_memory.resize(Impl::at(m.joints));
   for (int j = 0; j < m.joints; ++j) {

@@ -193,7 +193,7 @@ struct JointDynamics {
 
   /// The side load of the telescope depends on the acceleration, which it changes a little: a few rounds settle it.
   double solve_with_side_load(double time, const Terms& terms, Solution& out) const {
-    const int bar = parts.mechanism->telescope_joint();
+    const int bar = parts.mechanism->inner_joint();
     if (bar < 0 || !parts.laws[at(bar)].has_side_load()) {
       solve(time, terms, 0, out);
       return 0;

@@ -99,12 +99,17 @@ class Builder {
   }
 
   void add_laws(const std::vector<Effect>& effects) {
-    const int n = machine_.description.drives(), telescope = parts_.mechanism->telescope_joint();
+    const int n = machine_.description.drives(), inner = parts_.mechanism->inner_joint();
     for (int j = 0; j < parts_.mechanism->joints(); ++j) {
-      const int drive = j < n ? j + 1 : 0;
-      if (j < n || j == telescope) {
-        parts_.laws.emplace_back(values_[{ParameterKind::viscous, drive}], values_[{ParameterKind::coulomb, drive}],
-                                 j < n ? values_[{ParameterKind::offset, drive}] : 0.0);
+      const auto own = [&](ParameterKind kind) {
+        return values_[{.kind = kind,
+                        .number = j < n ? j + 1 : 0,
+                        .inner = j == inner && machine_.description.plate ? InnerJointKind::plate
+                                                                          : InnerJointKind::telescope}];
+      };
+      if (j < n || j == inner) {
+        parts_.laws.emplace_back(own(ParameterKind::viscous), own(ParameterKind::coulomb),
+                                 j < n ? own(ParameterKind::offset) : 0.0);
       } else {
         parts_.laws.emplace_back(0.0, 0.0);
       }
@@ -112,11 +117,11 @@ class Builder {
     for (const Effect& effect : effects) {
       if (!FrictionLaw::takes(effect.id)) continue;
       for (int j = 0; j < parts_.mechanism->joints(); ++j) {
-        const bool passive = j >= n && j != telescope;
+        const bool passive = j >= n && j != inner;
         const EffectPlace place = effect_kind(effect.id).place;
         const bool here = effect.joint >= 0                      ? j == effect.joint
                           : place == EffectPlace::passive_joints ? passive
-                          : place == EffectPlace::telescope      ? j == telescope
+                          : place == EffectPlace::telescope      ? j == inner
                                                                  : acts_on_all(effect.id, j, machine_.description);
         if (here) parts_.laws[static_cast<std::size_t>(j)].add(effect, parts_.mechanism->multiplicity(j));
       }

@@ -59,6 +59,10 @@ MotionLimits::MotionLimits(const RobotDescription& robot) {
     qdd(i) = limits.acceleration;
     tau(i) = limits.effort;
   }
+  if (robot.plate) {
+    z_upper(n - 1) = robot.plate_yaw_range();
+    z_lower(n - 1) = -z_upper(n - 1);
+  }
 }
 
 DriveLimits MotionLimits::of_drive(int drive) const {

@@ -14,7 +14,7 @@ std::vector<TaskColumns> task_columns(const RobotDescription& robot) {
                 robot.kind_of_drive(k) == DriveKind::revolute};
     } else {
       column.rotation = k >= 3;
-      column.name = k < 3 ? std::string(1, "xyz"[k]) : (robot.telescope ? "psi" : "theta");
+      column.name = k < 3 ? std::string(1, "xyz"[k]) : "psi";
       const std::string unit = column.rotation ? "_rad" : "_m";
       column.z = column.name + unit;
       column.zd = column.name + "d" + unit + "_s";

@@ -55,7 +55,7 @@ class EveryEffect : public testing::TestWithParam<const char*> {
     const bool axis = type.find("axis") != std::string::npos;
     robot_ =
         make_robot(axis ? testing_support::axis_description(type == "axis" ? DriveKind::revolute : DriveKind::prismatic)
-                        : testing_support::delta_description(type));
+                        : testing_support::description_of(type));
     p_ = testing_support::delta_truth(*robot_);
     testing_support::SyntheticOptions options;
     options.duration_s = 2;
@@ -314,7 +314,8 @@ TEST_P(EveryEffect, ANumberOutOfRangeIsRefusedByFilesFlagsAndTheVirtualRobot) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, EveryEffect,
-                         testing::Values("delta3", "delta4", "linear-delta3", "axis", "linear-axis"),
+                         testing::Values("delta3", "delta4", "linear-delta3", "h4", "i4", "par4", "axis",
+                                                      "linear-axis"),
                          [](const auto& tested) {
                            std::string name = tested.param;
                            std::erase(name, '-');

@@ -277,11 +277,11 @@ TYPED_TEST(EffectFeedForwardOf, ReversesSmoothlyOverTheWidth) {
     return bench.p(viscous) * rate + (bench.p(coulomb) + 2 * std::exp(-rate * rate / 0.25)) * sign;
   };
   if (TypeParam::kTelescope) {
-    ASSERT_EQ(control.set_friction(control.kTelescopeJoint, 0, 0), Status::ok);
+    ASSERT_EQ(control.set_friction(control.kInnerJoint, 0, 0), Status::ok);
   }
   EXPECT_NEAR(friction(0.1), expected(0.1, 1), 1e-12);
   EXPECT_EQ(friction(0), 0);
-  for (int joint = 0; joint <= control.kTelescopeJoint; ++joint)
+  for (int joint = 0; joint <= control.kInnerJoint; ++joint)
     ASSERT_EQ(control.set_reversal_width(joint, 0.1), Status::ok);
   EXPECT_EQ(friction(0), 0);
   EXPECT_NEAR(friction(0.1), expected(0.1, std::sqrt(0.5)), 1e-12);

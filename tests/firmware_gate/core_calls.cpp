@@ -64,23 +64,14 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   Vector<T, N> qdd;
   EquationsOfMotion<T, N> task;
   TorqueDerivatives<T, N> slopes;
-  JointReactions<T, Robot> loads;
   const EquationsOfMotion<T, N> terms = equations_of_motion<Layout>(geometry, motion, p);
   outcome.ok = outcome.ok &&
                forward_dynamics<Layout, T, Robot>(geometry, motion.posture, motion.qd, tau, p, qdd) == Status::ok &&
                equations_in_task(geometry, motion, terms, task) == Status::ok &&
                inverse_dynamics_derivatives<Layout>(geometry, motion, p, slopes) == Status::ok &&
-               joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok &&
                kinetic_energy<Layout>(geometry, motion, p) > T(0) &&
                potential_energy<Layout>(geometry, motion.posture, p) < T(1e6);
   const Vector<T, N> sum = terms.M.lazyProduct(motion.qdd) + terms.C.lazyProduct(motion.qd) + terms.g + terms.f;
-  // What the first drive's joint carries, and what its motor takes beside that.
-  const Vector3<T> axis = rot_z(motion.posture.limbs[0].azimuth) * geometry.limbs[0].axis_L;
-  const T carried =
-      axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
-  const T motor =
-      friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
-
   const auto keep_larger = [](double value, double& kept) {
     if (!(value <= kept)) kept = value;
   };
@@ -91,7 +82,17 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   keep_larger(largest<T>(qdd - motion.qdd) / largest<T>(motion.qdd), outcome.acceleration_gap);
   keep_larger(largest<T>(sum - tau) / scale, outcome.equations_gap);
   keep_larger(largest<T>(slopes.by_qdd - M), outcome.slope_gap);
-  keep_larger(largest<T>(Vector<T, 1>(carried + motor - tau(0))) / scale, outcome.reaction_gap);
+  if constexpr (!Robot::kPlateTurns) {  // the joints inside an articulated plate are not described
+    JointReactions<T, Robot> loads;
+    outcome.ok = outcome.ok && joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok;
+    // What the first drive's joint carries, and what its motor takes beside that.
+    const Vector3<T> axis = motion.posture.limbs[0].R_WL * geometry.limbs[0].axis_L;
+    const T carried =
+        axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
+    const T motor =
+        friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
+    keep_larger(largest<T>(Vector<T, 1>(carried + motor - tau(0))) / scale, outcome.reaction_gap);
+  }
   keep_larger(largest<T>(tau_task - tau) / scale, outcome.feed_forward_gap);
   keep_larger(largest<T>(tau_drives - tau) / scale, outcome.feed_forward_gap);
 }
@@ -145,6 +146,8 @@ Outcome run_robot(int robot, T phase) {
     case 2: return run<T, Delta4>(phase);
     case 3: return run<T, Axis>(phase);
     case 4: return run<T, LinearAxis>(phase);
+    case 5: return run<T, I4>(phase);
+    case 6: return run<T, Par4>(phase);
     default: return Outcome();
   }
 }

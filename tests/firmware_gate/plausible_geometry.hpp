@@ -1,7 +1,9 @@
 #pragma once
 
 #include "deltadyn/core/rotation.hpp"
-#include "deltadyn/model/geometry.hpp"
+#include "deltadyn/kinematics/forward.hpp"
+#include "deltadyn/model/cast_geometry.hpp"
+#include "deltadyn/model/robot_types.hpp"
 
 namespace deltadyn::firmware_gate {
 
@@ -9,9 +11,19 @@ namespace deltadyn::firmware_gate {
 template <class T, class Robot>
 Geometry<T, Robot> plausible_geometry() {
   Geometry<T, Robot> geometry;
+  if constexpr (Robot::kPlateTurns) {
+    PlateShape shape;
+    shape.spacing = shape.pinion_radius = 0.04;
+    shape.bar_spacing = 0.06;
+    Geometry<double, Robot> placed;
+    Robot::place_parts(shape, placed.parts);
+    geometry = cast_geometry<T>(placed);
+    geometry.yaw_ratio = T(2);
+  }
   for (int i = 0; i < Robot::kLimbs; ++i) {
     LimbGeometry<T>& limb = geometry.limbs[i];
-    limb.azimuth = T(i) * T(2.0943951023931953);
+    limb.azimuth = Robot::kLimbs == 4 ? (T(i) + T(0.5)) * T(1.5707963267948966) : T(i) * T(2.0943951023931953);
+    limb.part = Robot::kLimbs == 4 && i >= 2 ? 1 : 0;
     const Matrix3<T> R_WL = rot_z(SinCos<T>(limb.azimuth));
     limb.p_BA = R_WL * Vector3<T>(T(0.045), T(0), T(0));
     limb.strut = T(0.8);
@@ -24,6 +36,7 @@ Geometry<T, Robot> plausible_geometry() {
     }
   }
   geometry.telescope.p_BV = Vector3<T>(T(0), T(0), T(0.02));
+  if constexpr (Robot::kPlateTurns) geometry.mode = plate_mode(geometry);
   return geometry;
 }
 

@@ -40,7 +40,8 @@ inline constexpr int kMaxColumns = 120;
 inline const std::vector<std::string>& floors() {
   static const std::vector<std::string> names = {
       "core",       "model",      "kinematics",     "effects",   "dynamics",   "firmware", "runtime", "signal",
-      "trajectory", "excitation", "identification", "diagnosis", "simulation", "io",       "report"};
+      "trajectory", "excitation", "identification", "diagnosis", "simulation", "robots",
+      "io",         "report"};
   return names;
 }
 

@@ -24,6 +24,8 @@ inline Eigen::VectorXd delta_truth(const Robot& robot) {
     if (name.rfind("upper_arm", 0) == 0) return {1.1, 0.09, 0, 0.009, 0.012, 0.189, 0.181, 0, 0, 0};
     if (name.rfind("strut", 0) == 0) return {0.28, 0.1, 0, 0, 0.02, 0.114, 0.116, 0, 0, 0};
     if (name == "platform") return {1.2, 0, 0, 0, 0.004, 0.004, 0.006, 0, 0, 0};
+    if (name.rfind("half_plate", 0) == 0) return {0.5, 0.01, 0, 0, 0.002, 0.001, 0.0025, 0, 0, 0};
+    if (name == "crossbar") return {0.2, 0.004, 0.001, 0, 4e-4, 8e-4, 9e-4, 0, 0, 0};
     if (name == "tool") return {0.4, 0, 0, -0.02, 0.003, 0.003, 0.0029, 0, 0, 0};
     if (name == "telescope_upper") return {0.73, 0, 0, -0.305, 0.148, 0.148, 4e-5, 0, 0, 0};
     return {0.48, 0, 0, 0.24, 0.126, 0.126, 3e-5, 0, 0, 0};
@@ -33,11 +35,11 @@ inline Eigen::VectorXd delta_truth(const Robot& robot) {
     const std::string& name = robot.parameter_names()[static_cast<std::size_t>(k)];
     const auto dot = name.find('.');
     const std::string owner = name.substr(0, dot);
-    const bool small = owner == "drive4";
+    const bool small = owner == "drive4" && robot.description().telescope.has_value();
     if (name.find("viscous") != std::string::npos) {
-      p(k) = owner == "telescope" ? 4.0 : (small ? 0.02 : 1.5);
+      p(k) = owner == "telescope" ? 4.0 : owner == "plate" ? 0.03 : (small ? 0.02 : 1.5);
     } else if (name.find("coulomb") != std::string::npos) {
-      p(k) = owner == "telescope" ? 5.0 : (small ? 0.8 : 4.6);
+      p(k) = owner == "telescope" ? 5.0 : owner == "plate" ? 0.15 : (small ? 0.8 : 4.6);
     } else {
       p(k) = body(owner)[static_cast<std::size_t>(k % 10)];
     }
@@ -76,7 +78,8 @@ inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, const Syn
   Eigen::MatrixXd a(n, kHarmonics), b(n, kHarmonics);
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < kHarmonics; ++k) {
-      const double size = (i < 3 ? 0.3 * sampler.ball().radius : 1.0) / (k + 1);
+      const double yaw = robot.description().plate ? 0.15 * robot.description().plate_yaw_range() : 1.0;
+      const double size = (i < 3 ? 0.3 * sampler.ball().radius : yaw) / (k + 1);
       a(i, k) = size * normal(random);
       b(i, k) = size * normal(random);
     }

@@ -1,10 +1,15 @@
 #include "deltadyn/kinematics/forward.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
+#include <algorithm>
 #include <limits>
 
 #include "deltadyn/kinematics/inverse.hpp"
+#include "deltadyn/model/robot_types.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 
+#include "support/descriptions.hpp"
 #include "support/matchers.hpp"
 #include "support/oracle_of.hpp"
 #include "support/random_robot.hpp"
@@ -117,6 +122,102 @@ TEST(LowerIntersection, IsUnreachableForSpheresApart) {
   const double radii[3] = {5, 5, 5};
   Vector3<double> p;
   EXPECT_EQ(lower_intersection(centres, radii, p), Status::unreachable);
+}
+
+template <class R>
+class ForwardKinematicsOfFourLimbs : public ::testing::Test {
+ protected:
+  using Drives = Vector<double, 4>;
+  Random random{7};
+
+  /// The default of create in the size of a published robot.
+  Geometry<double, R> geometry() {
+    RobotDescription robot = four_limb_description(R::kName, R::kDrive);
+    return geometry_of<double, R>(robot);
+  }
+
+  /// A pose that a machine works in: far from singular, drives in their usual range.
+  bool reachable(const Geometry<double, R>& geometry, const Drives& z, Drives& q) {
+    if (inverse_kinematics(geometry, z, q) != Status::ok) return false;
+    if (R::kDrive == DriveKind::revolute && (q.minCoeff() < -1.0 || q.maxCoeff() > 1.7)) return false;
+    Posture<double, R> posture;
+    if (assemble_posture(geometry, q, z, posture) != Status::ok) return false;
+    Matrix<double, 4, 4> J = posture.J_plate;
+    J.row(3) *= attachment(geometry, 0, z(3)).first.norm();
+    const auto sizes = Eigen::JacobiSVD<Eigen::Matrix4d>(J).singularValues().eval();
+    return sizes(0) < 50 * sizes(3) && PlateLoops<double, R>(geometry, q).determinant(z) * geometry.mode > 0;
+  }
+
+  Drives pose(const Geometry<double, R>& geometry) {
+    const double yaw = geometry.theta_range * geometry.yaw_ratio;
+    return Drives(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-1.0, -0.4),
+                  random.uniform(-yaw, yaw));
+  }
+};
+
+using FourLimbTypes = ::testing::Types<H4, LinearH4, I4, LinearI4, Par4, LinearPar4>;
+TYPED_TEST_SUITE(ForwardKinematicsOfFourLimbs, FourLimbTypes);
+
+TYPED_TEST(ForwardKinematicsOfFourLimbs, FindsThePoseFromNothing) {
+  using R = TypeParam;
+  const auto geometry = this->geometry();
+  Vector<double, 4> q, z;
+  int poses = 0, lost = 0;
+  for (int trial = 0; trial < 100000; ++trial) {
+    const Vector<double, 4> truth = this->pose(geometry);
+    if (!this->reachable(geometry, truth, q)) continue;
+    ++poses;
+    // Two poses of one mode may belong to the same drives, at the rim; then the plate's last pose decides.
+    lost += (forward_kinematics<double, R>(geometry, q, z)) != Status::ok || (z - truth).cwiseAbs().maxCoeff() > 1e-9;
+  }
+  EXPECT_GT(poses, 10000);
+  EXPECT_LE(lost, poses / 10000);
+}
+
+TYPED_TEST(ForwardKinematicsOfFourLimbs, FollowsTheLastSetPoint) {
+  using R = TypeParam;
+  const auto geometry = this->geometry();
+  Vector<double, 4> q, z;
+  int poses = 0, most = 0;
+  for (int trial = 0; trial < 100000; ++trial) {
+    const Vector<double, 4> truth = this->pose(geometry);
+    if (!this->reachable(geometry, truth, q)) continue;
+    ++poses;
+    Vector<double, 4> start = truth, solved;
+    for (int k = 0; k < 3; ++k) start(k) += this->random.uniform(-0.005, 0.005);  // 5 m/s at 1 kHz
+    start(3) += 0.05 * geometry.yaw_ratio * this->random.uniform(-1, 1);
+    ASSERT_EQ((forward_kinematics_from<double, R>(geometry, q, start, z)), Status::ok);
+    ASSERT_LT((z - truth).cwiseAbs().maxCoeff(), 1e-9) << truth.transpose();
+    int steps = 0;
+    solved = start;
+    ASSERT_EQ((PlateLoops<double, R>(geometry, q).solve(solved, steps)), Status::ok);
+    most = std::max(most, steps);
+  }
+  EXPECT_GT(poses, 10000);
+  EXPECT_LE(most, kForwardSteps);
+}
+
+TYPED_TEST(ForwardKinematicsOfFourLimbs, SaysWhenTheStrutsDoNotMeet) {
+  using R = TypeParam;
+  auto geometry = this->geometry();
+  for (auto& limb : geometry.limbs) limb.strut = 0.05;
+  Vector<double, 4> z;
+  EXPECT_EQ((forward_kinematics<double, R>(geometry, Vector<double, 4>::Zero(), z)), Status::unreachable);
+}
+
+TYPED_TEST(ForwardKinematicsOfFourLimbs, WorksInFloat) {
+  using R = TypeParam;
+  const auto geometry = this->geometry();
+  const auto single = cast_geometry<float>(geometry);
+  Vector<double, 4> q;
+  Vector<float, 4> z;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Vector<double, 4> truth = 0.5 * this->pose(geometry);
+    truth(2) -= 0.3;
+    if (!this->reachable(geometry, truth, q)) continue;
+    ASSERT_EQ((forward_kinematics<float, R>(single, q.cast<float>(), z)), Status::ok);
+    EXPECT_LT((z.cast<double>() - truth).cwiseAbs().maxCoeff(), 1e-4) << truth.transpose();
+  }
 }
 
 }  // namespace

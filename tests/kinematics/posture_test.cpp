@@ -70,7 +70,7 @@ TYPED_TEST(PostureOf, HasTheStrutAnglesAndTheirJacobians) {
       const auto i = static_cast<std::size_t>(limb);
       const auto y = oracles::plate(mechanism, q, numbers(this->task.z));
       const oracles::Vec3<Real> w =
-          oracles::turn<Real>(2, -mechanism.limbs[i].azimuth) *
+          oracles::limb_axes<Real>(mechanism.limbs[i]).transpose() *
           (oracles::attachment_point(mechanism, i, y) - oracles::elbow_point(mechanism, i, q[i]));
       return std::pair<Real, Real>(std::atan2(-w.z(), w.x()), std::asin(w.y() / w.norm()));
     };

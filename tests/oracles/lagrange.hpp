@@ -16,7 +16,7 @@ using Ten = std::array<Real, 10>;
 /// Everything that weighs or rubs, in the order of poses().
 struct Load {
   std::vector<Ten> bodies;
-  Numbers viscous, coulomb;  ///< drives, then the bar
+  Numbers viscous, coulomb;  ///< drives, then the bar's slide or the joints of a plate that turns, by theta
   Numbers rotor_inertia, offset;
 };
 
@@ -71,6 +71,12 @@ S potential_energy(const Mechanism& m, const Load& load, const std::vector<S>& q
   return energy;
 }
 
+/// Coordinate of the joint with friction that is no drive.
+template <class S>
+S inner_coordinate(const Mechanism& m, const std::vector<S>& y) {
+  return m.has_bar ? bar_length(m, y) : theta(m, y);
+}
+
 /// Rates of the joints with friction, and their derivatives by the drive rates (row: joint, column: drive).
 struct Rubbing {
   Numbers rate;
@@ -80,13 +86,13 @@ inline Rubbing rubbing(const Mechanism& m, const Numbers& q, const Numbers& qd, 
   const std::size_t n = m.drives();
   Rubbing result{qd, std::vector<Numbers>(n, Numbers(n, 0))};
   for (std::size_t i = 0; i < n; ++i) result.gain[i][i] = 1;
-  if (!m.has_bar) return result;
+  if (!m.has_bar && !m.turning_plate) return result;
   Numbers gain(n);
   Real rate = 0;
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<Dual<Real>> seeded(n);
     for (std::size_t k = 0; k < n; ++k) seeded[k] = Dual<Real>(q[k], k == i ? 1.0L : 0.0L);
-    gain[i] = bar_length(m, plate(m, seeded, guess)).slope;
+    gain[i] = inner_coordinate(m, plate(m, seeded, guess)).slope;
     rate += gain[i] * qd[i];
   }
   result.rate.push_back(rate);

@@ -31,17 +31,20 @@ struct Limb {
   Real strut = 0, spacing = 0;
   Vec3<Real> attachment;  ///< from the origin of the plate part, in the base frame
   int part = 0;
+  Real tilt = 0;  ///< of the limb frame about its own x, after the azimuth
 };
 
 struct Part {
   Vec3<Real> c, a, b;
   Real kappa = 0;
+  Real turn = 0;  ///< of the part's frame where the plate is not turned
 };
 
 struct Mechanism {
   bool prismatic = false, turning_plate = false, has_bar = false;
   std::vector<Limb> limbs;
   std::vector<Part> parts;
+  Real yaw_ratio = 1;              ///< yaw of the tool, the fourth plate coordinate, a turn theta of the plate
   Vec3<Real> bar_top, bar_bottom;  ///< in the base frame, from the plate centre
   Vec3<Real> gravity;
 
@@ -61,7 +64,7 @@ Vec3<S> lift(const Vec3<Real>& v) {
   return Vec3<S>(S(v.x()), S(v.y()), S(v.z()));
 }
 
-/// Right-hand turn about e_z (axis 2) or e_y (axis 1).
+/// Right-hand turn about e_x (axis 0), e_y (axis 1) or e_z (axis 2).
 template <class S>
 Mat3<S> turn(int axis, const S& angle) {
   using std::cos;
@@ -91,6 +94,12 @@ Mat3<S> columns(const Vec3<S>& x, const Vec3<S>& y, const Vec3<S>& z) {
   return R;
 }
 
+/// Orientation of the limb frame: x radially outwards, y along the axis of a revolute drive.
+template <class S>
+Mat3<S> limb_axes(const Limb& limb) {
+  return turn<S>(2, S(limb.azimuth)) * turn<S>(0, S(limb.tilt));
+}
+
 template <class S>
 Vec3<S> elbow_point(const Mechanism& m, std::size_t i, const S& q) {
   const Limb& limb = m.limbs[i];
@@ -100,7 +109,13 @@ Vec3<S> elbow_point(const Mechanism& m, std::size_t i, const S& q) {
   } else {
     d = turn<S>(1, q) * d;
   }
-  return lift<S>(limb.drive) + turn<S>(2, S(limb.azimuth)) * d;
+  return lift<S>(limb.drive) + limb_axes<S>(limb) * d;
+}
+
+/// Inner coordinate of a plate that turns.
+template <class S>
+S theta(const Mechanism& m, const std::vector<S>& y) {
+  return y[3] / S(m.yaw_ratio);
 }
 
 template <class S>
@@ -108,15 +123,19 @@ Pose<S> part_pose(const Mechanism& m, std::size_t k, const std::vector<S>& y) {
   const Part& part = m.parts[k];
   const Vec3<S> r(y[0], y[1], y[2]);
   if (!m.turning_plate) return {turn<S>(2, S(0)), r};
-  Vec3<S> origin = r + lift<S>(part.c) + turn<S>(2, y[3]) * lift<S>(part.a);
-  for (int j = 0; j < 3; ++j) origin(j) += y[3] * S(part.b(j));
-  return {turn<S>(2, y[3] * S(part.kappa)), origin};
+  const S angle = theta(m, y);
+  Vec3<S> origin = r + lift<S>(part.c) + turn<S>(2, angle) * lift<S>(part.a);
+  for (int j = 0; j < 3; ++j) origin(j) += angle * S(part.b(j));
+  return {turn<S>(2, angle * S(part.kappa) + S(part.turn)), origin};
 }
 
 template <class S>
 Vec3<S> attachment_point(const Mechanism& m, std::size_t i, const std::vector<S>& y) {
-  const Pose<S> part = part_pose(m, static_cast<std::size_t>(m.limbs[i].part), y);
-  return part.p + part.R * lift<S>(m.limbs[i].attachment);
+  const auto k = static_cast<std::size_t>(m.limbs[i].part);
+  const Pose<S> part = part_pose(m, k, y);
+  // The attachment is given along the axes of the base, so it knows nothing of the part's own frame.
+  const Mat3<S> back = m.turning_plate ? turn<S>(2, S(-m.parts[k].turn)) : turn<S>(2, S(0));
+  return part.p + part.R * (back * lift<S>(m.limbs[i].attachment));
 }
 
 /// |A_i - E_i|^2 - L_i^2, zero where limb i is closed.
@@ -212,7 +231,7 @@ std::vector<Pose<S>> poses(const Mechanism& m, const std::vector<S>& q, const Nu
   std::vector<Pose<S>> bodies;
   for (std::size_t i = 0; i < m.limbs.size(); ++i) {
     const Limb& limb = m.limbs[i];
-    const Mat3<S> R_L = turn<S>(2, S(limb.azimuth));
+    const Mat3<S> R_L = limb_axes<S>(limb);
     if (m.prismatic) {
       Vec3<S> along = lift<S>(limb.axis);
       for (int k = 0; k < 3; ++k) along(k) *= q[i];

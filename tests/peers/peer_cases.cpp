@@ -41,7 +41,12 @@ class Case {
   using Drives = deltadyn::Vector<double, R::kDrives>;
   static constexpr int N = R::kDrives;
 
-  explicit Case(std::string folder) : folder_(std::move(folder)), description_(delta_description(R::kName)) {
+  explicit Case(std::string folder) : folder_(std::move(folder)) {
+    if constexpr (R::kPlateTurns) {
+      description_ = four_limb_description(R::kName, R::kDrive);
+    } else {
+      description_ = delta_description(R::kName);
+    }
     if (description_.telescope) {
       description_.telescope->p_WU = Vector3<double>(0.01, -0.02, 0.05);
       description_.telescope->p_BV = Vector3<double>(0, 0, 0.03);
@@ -100,7 +105,7 @@ class Case {
  private:
   static TaskState task_at(const WorkspaceSampler& sampler, double t) {
     TaskState task{Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N), Eigen::VectorXd::Zero(N)};
-    const double amplitude[] = {0.1, 0.08, 0.05, 2.0}, omega[] = {12, 15, 18, 14};
+    const double amplitude[] = {0.1, 0.08, 0.05, R::kPlateTurns ? 0.5 : 2.0}, omega[] = {12, 15, 18, 14};
     for (int i = 0; i < N; ++i) {
       const double angle = omega[i] * t + 0.7 * i;
       task.z(i) = amplitude[i] * std::sin(angle) + (i < 3 ? sampler.ball().centre(i) : 0);
@@ -110,7 +115,11 @@ class Case {
     return task;
   }
 
-  [[nodiscard]] std::string path(const std::string& ending) const { return folder_ + "/" + R::kName + ending; }
+  [[nodiscard]] std::string path(const std::string& ending) const { return folder_ + "/" + name() + ending; }
+  [[nodiscard]] static std::string name() {
+    const bool linear = R::kPlateTurns && R::kDrive == DriveKind::prismatic;
+    return (linear ? "linear-" : "") + std::string(R::kName);
+  }
 
   /// Nominal parameters, made crooked by a point mass on every body, with friction and rotor inertias.
   void choose_parameters() {
@@ -122,6 +131,7 @@ class Case {
     for (int k = Layout::kFriction; k < robot_->parameters(); ++k) {
       const bool rotor = k >= Layout::kRotorInertia;
       values_(k) = rotor ? random_.uniform(0.01, 0.05) : random_.uniform(0.5, 2);
+      if (R::kPlateTurns && (k == Layout::viscous(N) || k == Layout::coulomb(N))) values_(k) = random_.uniform(0.05, 0.2);
     }
     if (R::kTelescope) values_(Layout::kRotorInertia + N - 1) = 0.002;
     p_.setZero();
@@ -138,7 +148,7 @@ class Case {
     for (int i = 1; i <= N; ++i) add(fmt::format("M{}_", i));
     file.print("{}x,y,z", header);
     for (int i = 1; i <= R::kLimbs; ++i) file.print(",beta{0},gamma{0}", i);
-    file.print("{}\n", R::kTelescope ? ",bar_a,bar_b,bar_length" : "");
+    file.print("{}\n", R::kTelescope ? ",bar_a,bar_b,bar_length" : (R::kPlateTurns ? ",theta,half_x,half_y,half_z,half_turn" : ""));
     WorkspaceSampler sampler(*robot_);
     for (int state = 0; state < kStates; ++state) {
       Eigen::VectorXd q, qd, qdd, tau(N);
@@ -158,6 +168,11 @@ class Case {
       const auto& bar = posture.telescope;
       if (R::kTelescope)
         file.print(",{},{},{}", std::atan2(bar.a.sin, bar.a.cos), std::atan2(bar.b.sin, bar.b.cos), bar.length);
+      if constexpr (R::kPlateTurns) {
+        const PartPose<double> half = part_pose(geometry_.parts[0], posture.z(3), geometry_.yaw_ratio);
+        const Vector3<double> p = posture.z.template head<3>() + half.p.value;
+        file.print(",{},{},{},{},{}", posture.theta, p.x(), p.y(), p.z(), geometry_.parts[0].turn);
+      }
       file.write("\n");
     }
     file.commit();
@@ -240,6 +255,12 @@ int main(int argc, char** argv) {
   try {
     Case<Delta3>(argv[1]).write();
     Case<LinearDelta3>(argv[1]).write();
+    Case<H4>(argv[1]).write();
+    Case<LinearH4>(argv[1]).write();
+    Case<I4>(argv[1]).write();
+    Case<LinearI4>(argv[1]).write();
+    Case<Par4>(argv[1]).write();
+    Case<LinearPar4>(argv[1]).write();
     Case<Delta4> delta4(argv[1]);
     delta4.write();
     delta4.write_effects_and_trajectory();

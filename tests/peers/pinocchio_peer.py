@@ -45,6 +45,12 @@ class Tree:
                 place = frame.placement * pin.SE3(np.eye(3), vector(end.find("origin")))
                 ends.append((frame.parentJoint, place))
             self.loops.append((loop.get("type"), ends))
+        # Pinocchio takes a joint that mimics another for a free one. Those of struts and telescope are true by the loops.
+        self.mimics = [
+            (joint.get("name"), joint.find("mimic").get("joint"), float(joint.find("mimic").get("multiplier")))
+            for joint in root.findall("joint")
+            if joint.find("mimic") is not None
+        ]
         self.model.armature[:] = 0
         self.friction = {}
         for joint in root.findall("joint"):
@@ -71,13 +77,19 @@ class Tree:
         for i in range(drives):
             self.put(q, f"drive{i + 1}", table[f"q{i + 1}"][row])
         carriage = self.joint("drive1").shortname().startswith("JointModelP")
-        for i in range(3):
+        for i in range(sum(f"beta{k + 1}" in table for k in range(4))):
             beta, gamma = table[f"beta{i + 1}"][row], table[f"gamma{i + 1}"][row]
             for side in "ab":
                 self.put(q, f"strut{i + 1}{side}_y", beta if carriage else beta - table[f"q{i + 1}"][row])
                 self.put(q, f"strut{i + 1}{side}_z", gamma)
         self.put(q, "platform_z", -table["gamma1"][row]), self.put(q, "platform_y", -table["beta1"][row])
-        if drives == 4:
+        if "theta" in table:
+            followed = {master for _, master, _ in self.mimics if master.startswith(("half_plate", "crossbar", "tool"))}
+            for name, gain in [(name, 1.0) for name in followed] + [
+                (name, gain) for name, master, gain in self.mimics if master in followed
+            ]:
+                self.put(q, name, gain * table["theta"][row])
+        elif drives == 4:
             a, b = table["bar_a"][row], table["bar_b"][row]
             self.put(q, "telescope_x", a), self.put(q, "telescope_y", b), self.put(q, "telescope", table["bar_length"][row])
             self.put(q, "tool_y", -b), self.put(q, "tool_x", -a)
@@ -112,6 +124,10 @@ class Tree:
                 errors.append((at1.rotation - at2.rotation)[:2, 2])
                 rows.append((W1 - W2)[:2])
                 drifts.append((turn1 - turn2)[:2])
+        for name, master, gain in self.mimics:
+            row = np.zeros((1, self.model.nv))
+            row[0, self.dof(name)], row[0, self.dof(master)] = 1.0, -gain
+            errors.append(np.zeros(1)), rows.append(row), drifts.append(np.zeros(1))
         return np.concatenate(errors), np.concatenate(rows), np.concatenate(drifts)
 
 
@@ -120,7 +136,7 @@ def main(folder, kind):
     tree = Tree(f"{folder}/{kind}.out.urdf")
     drives = sum(f"q{i + 1}" in table for i in range(4))
     q, qd, qdd, tau = (np.stack([table[f"{stem}{i + 1}"] for i in range(drives)], axis=1) for stem in ("q", "qd", "qdd", "tau"))
-    if kind == "linear-delta3":  # a rotor on a vertical rail does not weigh, so URDF cannot hold it
+    if kind.startswith("linear-"):  # a rotor on a vertical rail does not weigh, so URDF cannot hold it
         rotors = {}
         with open(f"{folder}/{kind}_params.csv", encoding="utf-8") as lines:
             for line in lines:

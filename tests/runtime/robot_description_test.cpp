@@ -54,7 +54,28 @@ TEST_P(FaultyDescription, IsRefusedInPlainWords) {
 
 const DescriptionFault kFaults[] = {
     {"UnknownType", "delta3", [](auto& r) { r.type = "scara"; }, "'scara' is not a robot type"},
-    {"LaterType", "delta3", [](auto& r) { r.type = "par4"; }, "not supported yet"},
+    {"FourLimbs", "delta3", [](auto& r) { r.type = "par4"; }, "has 4 limbs, but this one has 3"},
+    {"Tilt", "delta3", [](auto& r) { r.limbs[0].tilt = kNaN; }, "limb 1: the azimuth or the tilt"},
+    {"NoShape", "par4", [](auto& r) { r.plate.reset(); }, "its lengths are missing"},
+    {"PlateOfADelta", "delta3", [](auto& r) { r.plate.emplace(); }, "the plate of a delta3 is one part"},
+    {"PlateParts", "h4", [](auto& r) { r.parts.pop_back(); }, "has 4 parts, but this one has 3"},
+    {"Ratio", "par4", [](auto& r) { r.plate->ratio = 0; }, "the ratio of the tool's gear is 0"},
+    {"RatioOfAnI4", "i4", [](auto& r) { r.plate->ratio = 2; }, "the tool sits on the pinion"},
+    {"Hinges", "h4", [](auto& r) { r.plate->spacing = 0; }, "distance between the hinges of the two halves is 0"},
+    {"Bars", "par4", [](auto& r) { r.plate->bar_spacing = -1; }, "distance between the two bars"},
+    {"Pinion", "i4", [](auto& r) { r.plate->pinion_radius = kNaN; }, "radius of the pinion"},
+    {"Millimetres", "h4", [](auto& r) { r.plate->spacing = 120; }, "millimetres"},
+    {"Collides", "par4", [](auto& r) { r.plate->range = 1.6; }, "the parts of the plate collide"},
+    {"NoRange", "i4", [](auto& r) { r.plate->range = 0; }, "range of theta"},
+    {"LimbOnABar", "h4", [](auto& r) { r.limbs[1].part = 2; }, "limb 2 does not end on a half plate"},
+    {"OneSide", "par4", [](auto& r) { r.limbs[2].part = 0; }, "3 limbs on half plate 1, but two limbs hold each half"},
+    {"LooseHalf", "i4", [](auto& r) { r.limbs[1].azimuth = r.limbs[0].azimuth; }, "so the half could turn"},
+    {"ThetaNotHeld", "h4",
+     [](auto& r) {
+       r.plate->azimuth = 0;
+       r.set_plate(*r.plate);
+     },
+     "the limbs do not hold the plate's turn"},
     {"TwoLimbs", "delta3", [](auto& r) { r.limbs.pop_back(); }, "has 3 limbs, but this one has 2"},
     {"Kind", "delta3", [](auto& r) { r.drive_kind = DriveKind::prismatic; }, "drives of a delta3 are revolute"},
     {"NoPlate", "delta3", [](auto& r) { r.parts.clear(); }, "plate"},
@@ -65,7 +86,7 @@ const DescriptionFault kFaults[] = {
     {"TelescopeNaN", "delta4", [](auto& r) { r.telescope->p_BV.z() = kNaN; }, "lower joint"},
     {"LimitCount", "delta4", [](auto& r) { r.limits.pop_back(); }, "4 drives, but limits for 3"},
     {"Gravity", "delta3", [](auto& r) { r.gravity.x() = kNaN; }, "gravity"},
-    {"Azimuth", "delta3", [](auto& r) { r.limbs[1].azimuth = kNaN; }, "limb 2: the azimuth"},
+    {"Azimuth", "delta3", [](auto& r) { r.limbs[1].azimuth = kNaN; }, "limb 2: the azimuth or the tilt"},
     {"Axis", "delta3", [](auto& r) { r.limbs[0].axis_L = Vector3<double>::UnitZ(); }, "+y of its limb frame"},
     {"AxisLength", "linear-delta3", [](auto& r) { r.limbs[2].axis_L *= 2; },
      "limb 3: the axis of the drive has length 2"},

@@ -24,7 +24,7 @@ struct DescriptionFault {
 
 /// The spoilt robot is refused as bad input, with its file, the words, and what to do.
 inline void expect_refused(const DescriptionFault& fault) {
-  RobotDescription robot = delta_description(fault.type);
+  RobotDescription robot = description_of(fault.type);
   fault.spoil(robot);
   try {
     robot.validate("robot.urdf");

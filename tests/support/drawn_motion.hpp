@@ -22,7 +22,7 @@ struct DrawnMotion {
 
   void next() {
     geometry = random_geometry<R>(random);
-    task = random_task<R>(random);
+    task = random_task<R>(random, geometry.yaw_ratio);
     p = random_parameters<Layout>(random);
     ASSERT_EQ(motion_from_task(geometry, task.z, task.zd, task.zdd, motion), Status::ok);
   }

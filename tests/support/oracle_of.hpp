@@ -20,12 +20,13 @@ oracles::Mechanism oracle_of(const Geometry<double, Robot>& geometry) {
   m.has_bar = Robot::kTelescope;
   for (const LimbGeometry<double>& limb : geometry.limbs) {
     m.limbs.push_back({Real(limb.azimuth), real(limb.p_WD), real(limb.axis_L), real(limb.p_DE_0), Real(limb.strut),
-                       Real(limb.strut_spacing), real(limb.p_BA), limb.part});
+                       Real(limb.strut_spacing), real(limb.p_BA), limb.part, Real(limb.tilt)});
   }
   for (int k = 0; k < Robot::kPlateParts; ++k) {
     const PlatePart<double>& part = geometry.parts[k];
-    m.parts.push_back({real(part.c), real(part.a), real(part.b), Real(part.kappa)});
+    m.parts.push_back({real(part.c), real(part.a), real(part.b), Real(part.kappa), Real(part.turn)});
   }
+  m.yaw_ratio = Real(geometry.yaw_ratio);
   m.bar_top = real(geometry.telescope.p_WU);
   m.bar_bottom = real(geometry.telescope.p_BV);
   m.gravity = real(geometry.gravity);
@@ -47,7 +48,7 @@ oracles::Load load_of(const Vector<double, Layout::kColumns>& p) {
     add(Body::upper_arm, i);
     for (int strut = 0; strut < (kHasPlate<Robot> ? 2 : 0); ++strut) add(Body::strut, i);
   }
-  for (int k = 0; k < Robot::kPlateParts; ++k) add(Body::platform, k);
+  for (int k = 0; k < Robot::kPlateParts; ++k) add(Robot::kParts[k], k);
   if constexpr (Robot::kTelescope) {
     add(Body::tool, 0);
     add(Body::telescope_upper, 0);

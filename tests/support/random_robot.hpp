@@ -5,21 +5,32 @@
 
 #include <cstdint>
 #include <random>
+#include <type_traits>
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/model/cast_geometry.hpp"
 #include "deltadyn/model/geometry.hpp"
+#include "deltadyn/model/i4.hpp"
+#include "deltadyn/model/par4.hpp"
 #include "deltadyn/model/parameter_layout.hpp"
 
 namespace deltadyn::testing_support {
 
-/// Four limbs and two plate parts with an inner coordinate: the general plate (H4, I4, Par4 are special cases).
+/// Four limbs and two plate parts with an inner coordinate that move as no real plate does: all terms of a part's pose.
 struct TurningPlate : Delta3 {
   static constexpr const char* kName = "turning-plate";
+  static constexpr const char* kClass = "TurningPlate";
   static constexpr int kLimbs = 4;
   static constexpr int kDrives = 4;
   static constexpr bool kPlateTurns = true;
   static constexpr int kPlateParts = 2;
+  static constexpr Body kParts[] = {Body::half_plate, Body::half_plate};
+};
+
+/// H4, I4, Par4 and the same with carriages: their parts come from a drawing.
+template <class Robot>
+concept DrawnPlate = requires(PlatePart<double> (&parts)[Robot::kPlateParts > 0 ? Robot::kPlateParts : 1]) {
+  Robot::place_parts(PlateShape(), parts);
 };
 
 /// The same numbers with every standard library.
@@ -38,35 +49,80 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+/// Mean azimuth of a limb.
+template <class Robot>
+double mean_azimuth(int limb) {
+  constexpr double kRight = 1.5707963267948966;
+  if constexpr (std::is_base_of_v<H4, Robot>) {
+    // As the first H4 had it. With limbs at 45, 135, 225 and 315 degrees the halves could tip about the crossbar.
+    constexpr double kAzimuths[] = {0, -kRight, 2 * kRight, -kRight};
+    return kAzimuths[limb];
+  }
+  return (Robot::kPlateTurns ? kRight / 2 : 0.0) + limb * 4 * kRight / Robot::kLimbs;
+}
+
 /// About the size of a pick-and-place robot; no two limbs alike.
+template <class Robot>
+LimbGeometry<double> random_limb(Random& random, double azimuth) {
+  LimbGeometry<double> limb;
+  limb.azimuth = azimuth + random.uniform(-0.15, 0.15);
+  if (Robot::kPlateTurns) limb.tilt = random.uniform(-0.3, 0.3);
+  const Matrix3<double> radial = rot_z(SinCos<double>(limb.azimuth));
+  if (Robot::kDrive == DriveKind::revolute) {
+    limb.p_WD = radial * (Vector3<double>(random.uniform(0.2, 0.3), 0, 0) + random.cube(0.02));
+    limb.p_DE_0 = Vector3<double>(random.uniform(0.42, 0.5), 0, 0) + random.cube(0.02);
+  } else {
+    limb.p_WD = radial * (Vector3<double>(random.uniform(0.4, 0.5), 0, 0) + random.cube(0.02));
+    limb.axis_L = (random.cube(0.2) - Vector3<double>::UnitZ()).normalized();
+    limb.p_DE_0 = random.cube(0.03);
+  }
+  limb.strut = random.uniform(0.95, 1.05);
+  limb.strut_spacing = random.uniform(0.05, 0.15);
+  limb.p_BA = radial * (Vector3<double>(random.uniform(0.04, 0.08), 0, 0) + random.cube(0.01));
+  return limb;
+}
+
+/// Lengths of an articulated plate; half of the Par4 carry the tool on half plate 1.
+template <DrawnPlate Robot>
+PlateShape random_shape(Random& random) {
+  constexpr double kRatios[] = {1, 4, -2.5};
+  PlateShape shape;
+  // Half plate 1 points towards the limbs that it holds.
+  shape.azimuth = (std::is_base_of_v<H4, Robot> ? 0.0 : 1.5707963267948966) + random.uniform(-0.15, 0.15);
+  shape.spacing = random.uniform(0.08, 0.16);
+  shape.bar_spacing = random.uniform(0.05, 0.1);
+  shape.pinion_radius = random.uniform(0.03, 0.06);
+  const int ratio = static_cast<int>(random.uniform(0, 3));
+  if constexpr (!std::is_base_of_v<I4, Robot>) shape.ratio = kRatios[ratio];
+  if (random.uniform(0, 1) < 0.5 && std::is_base_of_v<Par4, Robot>) shape.tool = ToolPlace::half_plate;
+  shape.range = 0.6;
+  return shape;
+}
+
+/// Puts the parts of a plate where its drawing has them; limbs 1 and 2 hold half plate 1.
+template <DrawnPlate Robot>
+void set_plate(const PlateShape& shape, Geometry<double, Robot>& geometry) {
+  for (PlatePart<double>& part : geometry.parts) part = {};  // of an earlier drawing nothing may stay
+  Robot::place_parts(shape, geometry.parts);
+  geometry.yaw_ratio = shape.ratio;
+  for (int i = 0; i < Robot::kLimbs; ++i) geometry.limbs[i].part = i < 2 ? 0 : 1;
+}
+
 template <class Robot>
 Geometry<double, Robot> random_geometry(Random& random) {
   Geometry<double, Robot> geometry;
-  for (int i = 0; i < Robot::kLimbs; ++i) {
-    LimbGeometry<double>& limb = geometry.limbs[i];
-    const double first = Robot::kPlateTurns ? 0.785 : 0.0;
-    limb.azimuth = first + i * 6.283185307179586 / Robot::kLimbs + random.uniform(-0.15, 0.15);
-    const Matrix3<double> R_WL = rot_z(SinCos<double>(limb.azimuth));
-    if (Robot::kDrive == DriveKind::revolute) {
-      limb.p_WD = R_WL * (Vector3<double>(random.uniform(0.2, 0.3), 0, 0) + random.cube(0.02));
-      limb.p_DE_0 = Vector3<double>(random.uniform(0.42, 0.5), 0, 0) + random.cube(0.02);
-    } else {
-      limb.p_WD = R_WL * (Vector3<double>(random.uniform(0.4, 0.5), 0, 0) + random.cube(0.02));
-      limb.axis_L = (random.cube(0.2) - Vector3<double>::UnitZ()).normalized();
-      limb.p_DE_0 = random.cube(0.03);
-    }
-    limb.strut = random.uniform(0.95, 1.05);
-    limb.strut_spacing = random.uniform(0.05, 0.15);
-    limb.p_BA = R_WL * (Vector3<double>(random.uniform(0.04, 0.08), 0, 0) + random.cube(0.01));
-  }
-  if constexpr (Robot::kPlateTurns) {
+  for (int i = 0; i < Robot::kLimbs; ++i) geometry.limbs[i] = random_limb<Robot>(random, mean_azimuth<Robot>(i));
+  if constexpr (DrawnPlate<Robot>) {
+    set_plate(random_shape<Robot>(random), geometry);
+  } else if constexpr (Robot::kPlateTurns) {
     // Limbs on either side of x share a part, which is what lets the loops hold theta.
     for (int i = 0; i < Robot::kLimbs; ++i) geometry.limbs[i].part = i == 0 || i == 3 ? 0 : 1;
     for (int k = 0; k < 2; ++k) {
       const double side = k == 0 ? 1 : -1;
       geometry.parts[k] = {random.cube(0.01), Vector3<double>(side * 0.1, 0, 0) + random.cube(0.01), random.cube(0.005),
-                           side * random.uniform(0.2, 0.4)};
+                           side * random.uniform(0.2, 0.4), random.uniform(-3, 3)};
     }
+    geometry.yaw_ratio = random.uniform(1, 2);
   }
   geometry.telescope.p_WU = random.cube(0.03);
   geometry.telescope.p_BV = random.cube(0.03);
@@ -81,8 +137,9 @@ struct RandomTask {
 };
 
 /// In reach of every random geometry; speeds and accelerations of a fast motion.
+/// \param yaw_ratio  of the geometry: the tool may turn so many times as far as a plate that turns
 template <class Robot>
-RandomTask<Robot> random_task(Random& random) {
+RandomTask<Robot> random_task(Random& random, double yaw_ratio = 1) {
   RandomTask<Robot> task;
   constexpr double kHome[] = {0, 0, Robot::kDrive == DriveKind::revolute ? -0.85 : -1.1, 0};
   constexpr double kSpread[] = {0.2, 0.2, 0.08, Robot::kPlateTurns ? 0.5 : 3.0};
@@ -90,6 +147,11 @@ RandomTask<Robot> random_task(Random& random) {
     task.z(i) = kHasPlate<Robot> ? kHome[i] + random.uniform(-kSpread[i], kSpread[i]) : random.uniform(-1.5, 1.5);
     task.zd(i) = random.uniform(-2, 2);
     task.zdd(i) = random.uniform(-20, 20);
+  }
+  if constexpr (Robot::kPlateTurns) {
+    task.z(3) *= yaw_ratio;
+    task.zd(3) *= yaw_ratio;
+    task.zdd(3) *= yaw_ratio;
   }
   return task;
 }

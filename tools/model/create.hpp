@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
@@ -21,6 +23,11 @@
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
+
+/// Is `word` one of the words?
+inline bool has_word(const std::string& words, const std::string& word) {
+  return (" " + words + " ").find(" " + word + " ") != std::string::npos;
+}
 
 [[noreturn]] inline void refuse_usage(const std::string& what, const std::string& mend) {
   throw Error(what, "", mend, ExitCode::usage);
@@ -49,44 +56,64 @@ class Create {
         "      --strut-spacing 0.1 --drive-velocity-rad-s 6,6,6,48 -o robot.urdf\n"
         "  delta-model create linear-delta3 --base-radius 0.3 --platform-radius 0.06 --strut 0.8 --drive-range-m "
         "0,0.9 -o l.urdf\n"
+        "  delta-model create par4 --base-radius 0.15 --platform-radius 0.09 --upper-arm 0.2 --strut 0.51 \\\n"
+        "      --plate-spacing 0.127 --plate-bar-spacing 0.06 --tool-ratio 4 -o par4.urdf\n"
         "  delta-model create axis --drive-kind prismatic --axis-direction 1,0,0 -o axis.urdf");
-    c.add_option("type", type_, "delta3, linear-delta3, delta4 or axis")->required()->type_name("TYPE");
+    c.add_option("type", type_, robot_type_names())->required()->type_name("TYPE");
     c.add_option("-o,--output", output_, "robot file to write [standard output]")->type_name("FILE");
     c.add_option("--name", name_, "name of the robot [its type]");
-    flag("--base-radius", base_radius_, "drive i at this distance from z, at azimuth 0, 120, 240 deg [m]",
-         "delta3 linear-delta3 delta4");
-    flag("--platform-radius", platform_radius_, "attachments of the limbs from the plate's centre [m]",
-         "delta3 linear-delta3 delta4");
-    flag("--upper-arm", upper_arm_, "drive axis to elbow [m]", "delta3 delta4");
-    flag("--strut", strut_, "strut, ball centre to ball centre [m]", "delta3 linear-delta3 delta4");
+    flag("--base-radius", base_radius_, "drive i at this distance from z, at the azimuth of its limb [m]",
+         kAll);
+    flag("--platform-radius", platform_radius_, "attachments of the limbs from the plate's centre (of an articulated plate: in its middle) [m]",
+         kAll);
+    flag("--upper-arm", upper_arm_, "drive axis to elbow [m]", kWithArms);
+    flag("--strut", strut_, "strut, ball centre to ball centre [m]", kAll);
     flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1",
-         "delta3 linear-delta3 delta4");
+         kAll);
+    list("--limb-azimuth-rad", azimuths_,
+         "azimuth of each limb [rad], default 0, 120, 240 deg; of four limbs 45, 135, 225, 315 deg", kAll);
+    list("--limb-tilt-rad", tilts_, "tilt of the limb frames about their own x [rad], one for all or one a limb", kAll);
+    flag("--drive-places-m", places_, "instead of --base-radius: x,y,z of each drive; x,y,z;x,y,z;... [m]", kAll);
+    flag("--attachments-m", attachments_,
+         "instead of --platform-radius: x,y,z of each limb's attachment from the plate's centre, of an articulated plate "
+         "from the hinge or middle of its half [m]",
+         kAll);
     flag("--elbow", elbow_, "outwards (default) or inwards; of carriages: above (default) or below",
-         "delta3 linear-delta3 delta4");
+         kAll);
     list("--telescope-base-m", telescope_base_,
          "upper joint of the telescope bar from the base origin x,y,z [m], default 0,0,0", "delta4");
     list("--telescope-platform-m", telescope_platform_, "lower joint from the plate's centre x,y,z [m], default 0,0,0",
          "delta4");
     list("--rail-axis-limb", rail_axis_,
          "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down",
-         "linear-delta3");
-    flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", "linear-delta3");
-    flag("--drive-kind", drive_kind_, "revolute (default) or prismatic", "axis");
+         kWithRails);
+    flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", kWithRails);
+    flag("--plate-spacing", plate_.spacing, "between the hinges of the two halves of the plate [m]", "h4 par4");
+    flag("--plate-bar-spacing", plate_.bar_spacing, "between the two bars of the plate's parallelogram [m]", "par4");
+    flag("--pinion-radius", plate_.pinion_radius, "of the pinion that the halves turn [m]", "i4");
+    flag("--tool-ratio", plate_.ratio, "turns of the tool for a turn of the plate, by gear or belt, default 1; par4: 4",
+         "h4 par4");
+    flag("--tool-on", tool_on_, "centre (default) or half_plate: where the tool's axis stands", "par4");
+    flag("--plate-azimuth-rad", plate_.azimuth,
+         "of half plate 1 from the plate's centre [rad], default the middle of limbs 1 and 2", kFourLimbs);
+    flag("--plate-range-rad", plate_.range,
+         "largest turn of the plate to either side [rad], default 0.9; i4: 2.5", kFourLimbs);
+    flag("--drive-kind", drive_kind_, "revolute (default) or prismatic", kFourLimbs + " axis");
     flag("--arm", arm_, "length of the arm on a revolute drive [m]", "axis");
     list("--axis-direction", axis_direction_,
          "axis of the drive x,y,z; revolute: horizontal, default 0,1,0; prismatic: default 1,0,0", "axis");
     const char* count = "; one for all, or one a drive";
-    flag("--drive-range-rad", range_rad_, "position limits lo,hi or lo,hi;lo,hi;... [rad]", "delta3 delta4 axis");
-    flag("--drive-range-m", range_m_, "the same of prismatic drives [m]", "linear-delta3 axis");
-    list("--drive-velocity-rad-s", velocity_rad_, std::string("velocity limits [rad/s]") + count, "delta3 delta4 axis");
-    list("--drive-velocity-m-s", velocity_m_, std::string("of prismatic drives [m/s]") + count, "linear-delta3 axis");
+    flag("--drive-range-rad", range_rad_, "position limits lo,hi or lo,hi;lo,hi;... [rad]", kWithArms + " axis");
+    flag("--drive-range-m", range_m_, "the same of prismatic drives [m]", kWithRails + " axis");
+    list("--drive-velocity-rad-s", velocity_rad_, std::string("velocity limits [rad/s]") + count, kWithArms + " axis");
+    list("--drive-velocity-m-s", velocity_m_, std::string("of prismatic drives [m/s]") + count, kWithRails + " axis");
     list("--drive-acceleration-rad-s2", acceleration_rad_, std::string("acceleration limits [rad/s^2]") + count,
-         "delta3 delta4 axis");
+         kWithArms + " axis");
     list("--drive-acceleration-m-s2", acceleration_m_, std::string("of prismatic drives [m/s^2]") + count,
-         "linear-delta3 axis");
-    list("--drive-effort-Nm", effort_Nm_, std::string("torque limits [N m]") + count, "delta3 delta4 axis");
+         kWithRails + " axis");
+    list("--drive-effort-Nm", effort_Nm_, std::string("torque limits [N m]") + count, kWithArms + " axis");
     list("--drive-effort-N", effort_N_, std::string("force limits of prismatic drives [N]") + count,
-         "linear-delta3 axis");
+         kWithRails + " axis");
     c.add_option("--gravity-m-s2", gravity_, "size of gravity [m/s^2]")->capture_default_str();
     c.add_option("--gravity-direction", gravity_direction_, "direction x,y,z in the base frame, default 0,0,-1")
         ->delimiter(',')
@@ -111,13 +138,10 @@ class Create {
   }
 
   void execute(ToolRun& run) {
-    if (type_ == "h4" || type_ == "i4" || type_ == "par4")
-      refuse_usage(fmt::format("robots of type {} cannot be created yet", type_),
-                   "use delta3, linear-delta3, delta4 or axis");
-    if (type_ != "delta3" && type_ != "linear-delta3" && type_ != "delta4" && type_ != "axis")
-      refuse_usage(fmt::format("'{}' is not a robot type", type_), "use delta3, linear-delta3, delta4 or axis");
+    if ((", " + robot_type_names() + ",").find(", " + type_ + ",") == std::string::npos)
+      refuse_usage(fmt::format("'{}' is not a robot type", type_), "use one of " + robot_type_names());
     for (const Flag& f : flags_)
-      if (f.option->count() > 0 && (" " + f.types + " ").find(" " + type_ + " ") == std::string::npos)
+      if (f.option->count() > 0 && !has_word(f.types, type_))
         refuse_usage(fmt::format("{} does not belong to a {}", f.name, type_), "leave it out; it is for " + f.types);
     run.check_files({output_}, {});
     RobotDescription robot;
@@ -176,28 +200,101 @@ class Create {
     return {std::sin(tilt), 0, -std::cos(tilt)};
   }
 
+  [[nodiscard]] bool four_limbs() const { return has_word(kFourLimbs, type_); }
+
+  /// Rails in place of arms.
+  [[nodiscard]] bool linear() const {
+    const std::string kind = drive_kind_.value_or(type_ == LinearDelta3::kName ? "prismatic" : "revolute");
+    if (kind != "revolute" && kind != "prismatic")
+      refuse_usage(fmt::format("--drive-kind {} is not known", kind), "use revolute or prismatic");
+    return kind == "prismatic";
+  }
+
+  [[nodiscard]] std::vector<double> azimuths(std::size_t limbs) const {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < limbs; ++i)
+      all.push_back(2 * std::numbers::pi / static_cast<double>(limbs) * static_cast<double>(i) +
+                    (limbs == 4 ? std::numbers::pi / 4 : 0));
+    return azimuths_.empty() ? all : spread(azimuths_, limbs, "--limb-azimuth-rad");
+  }
+
+  void add_plate(RobotDescription& robot, const std::vector<double>& azimuth) const {
+    PlateShape shape;
+    // In the middle of the first two limbs, by the shorter way.
+    shape.azimuth = plate_.azimuth.value_or(std::atan2(std::sin(azimuth[0]) + std::sin(azimuth[1]),
+                                                       std::cos(azimuth[0]) + std::cos(azimuth[1])));
+    const bool slides = type_ == I4::kName, bars = type_ == Par4::kName;
+    if (!slides) shape.spacing = required(plate_.spacing, "--plate-spacing");
+    if (bars) shape.bar_spacing = required(plate_.bar_spacing, "--plate-bar-spacing");
+    if (slides) shape.pinion_radius = required(plate_.pinion_radius, "--pinion-radius");
+    shape.ratio = plate_.ratio.value_or(bars ? 4 : 1);
+    shape.range = plate_.range.value_or(slides ? 2.5 : 0.9);
+    const std::string tool = tool_on_.value_or("centre");
+    if (tool != "centre" && tool != "half_plate")
+      refuse_usage(fmt::format("--tool-on {} is not known", tool), "use centre or half_plate");
+    shape.tool = tool == "centre" ? ToolPlace::centre : ToolPlace::half_plate;
+    robot.set_plate(shape);
+  }
+
+  /// Points x,y,z;x,y,z;... of each limb.
+  static std::vector<Eigen::Vector3d> points(const std::string& text, std::size_t limbs, const std::string& flag) {
+    std::vector<Eigen::Vector3d> all;
+    std::istringstream entries(text);
+    for (std::string entry; std::getline(entries, entry, ';');) {
+      Eigen::Vector3d point;
+      char comma[2] = {};
+      std::string rest;
+      std::istringstream words(entry);
+      if (!(words >> point.x() >> comma[0] >> point.y() >> comma[1] >> point.z()) || comma[0] != ',' ||
+          comma[1] != ',' || words >> rest)
+        refuse_usage(fmt::format("{}: '{}' is not a point", flag, entry), "write x,y,z;x,y,z;... in metres");
+      for (const double number : point) plausibility::require(plausibility::kOffset, number, flag, "", ExitCode::usage);
+      all.push_back(point);
+    }
+    if (all.size() != limbs)
+      refuse_usage(fmt::format("{} gives {} points", flag, all.size()), fmt::format("give {}, one a limb", limbs));
+    return all;
+  }
+
   void add_limbs(RobotDescription& robot) const {
-    const bool linear = type_ == "linear-delta3";
-    robot.drive_kind = linear ? DriveKind::prismatic : DriveKind::revolute;
-    const double base = required(base_radius_, "--base-radius");
-    const double plate = required(platform_radius_, "--platform-radius");
-    for (int i = 0; i < 3; ++i) {
+    robot.drive_kind = linear() ? DriveKind::prismatic : DriveKind::revolute;
+    const std::size_t limbs = four_limbs() ? 4 : 3;
+    const std::vector<double> azimuth = azimuths(limbs);
+    const std::vector<double> tilt = tilts_.empty() ? std::vector<double>(limbs, 0.0) : spread(tilts_, limbs, "--limb-tilt-rad");
+    if (four_limbs()) {
+      add_plate(robot, azimuth);
+    } else {
+      robot.parts.emplace_back();
+    }
+    std::vector<Eigen::Vector3d> places, ends;
+    if (places_) places = points(*places_, limbs, "--drive-places-m");
+    if (attachments_) ends = points(*attachments_, limbs, "--attachments-m");
+    if (places_ && base_radius_) refuse_usage("--base-radius and --drive-places-m exclude each other", "give one of them");
+    if (attachments_ && platform_radius_)
+      refuse_usage("--platform-radius and --attachments-m exclude each other", "give one of them");
+    for (std::size_t i = 0; i < limbs; ++i) {
       LimbGeometry<double> limb;
-      limb.azimuth = 2 * std::numbers::pi / 3 * i;
+      limb.azimuth = azimuth[i];
+      limb.tilt = tilt[i];
+      plausibility::require(plausibility::kTilt, limb.tilt, "--limb-tilt-rad", "", ExitCode::usage);
+      limb.part = four_limbs() && i >= 2 ? 1 : 0;
       const Eigen::Vector3d radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
-      limb.p_WD = base * radial;
-      limb.p_BA = plate * radial;
+      limb.p_WD = places_ ? places[i] : Eigen::Vector3d(required(base_radius_, "--base-radius") * radial);
+      limb.p_BA = attachments_ ? ends[i]
+                               : Eigen::Vector3d(required(platform_radius_, "--platform-radius") * radial -
+                                                 robot.parts[static_cast<std::size_t>(limb.part)].a);
       limb.strut = required(strut_, "--strut");
       limb.strut_spacing = spacing_.value_or(0.1);
       limb.elbow = elbow();
-      if (linear) {
+      if (linear()) {
+        if (upper_arm_) refuse_usage("--upper-arm belongs to revolute drives", "leave it out");
         limb.axis_L = rail();
       } else {
+        if (!rail_axis_.empty() || rail_tilt_) refuse_usage("a rail belongs to prismatic drives", "leave it out, or give --drive-kind prismatic");
         limb.p_DE_0 = Eigen::Vector3d(required(upper_arm_, "--upper-arm"), 0, 0);
       }
       robot.limbs.push_back(limb);
     }
-    robot.parts.emplace_back();
     if (type_ == "delta4") {
       robot.telescope.emplace();
       if (!telescope_base_.empty()) robot.telescope->p_WU = vector_of(telescope_base_, "--telescope-base-m");
@@ -271,11 +368,19 @@ class Create {
     set(linear ? effort_N_ : effort_Nm_, "--drive-effort", &DriveLimits::effort);
   }
 
+  inline static const std::string kFourLimbs = "h4 i4 par4", kWithArms = "delta3 delta4 " + kFourLimbs,
+                                  kWithRails = "linear-delta3 " + kFourLimbs, kAll = "delta3 delta4 " + kWithRails;
+  struct PlateFlags {
+    std::optional<double> spacing, bar_spacing, pinion_radius, ratio, azimuth, range;
+  };
+
   CLI::App* command_ = nullptr;
   std::vector<Flag> flags_;
   std::string type_, output_, name_;
   std::optional<double> base_radius_, platform_radius_, upper_arm_, strut_, spacing_, rail_tilt_, arm_;
-  std::optional<std::string> elbow_, drive_kind_, range_rad_, range_m_;
+  std::optional<std::string> elbow_, drive_kind_, range_rad_, range_m_, places_, attachments_, tool_on_;
+  PlateFlags plate_;
+  std::vector<double> azimuths_, tilts_;
   std::vector<double> telescope_base_, telescope_platform_, rail_axis_, axis_direction_;
   std::vector<double> velocity_rad_, velocity_m_, acceleration_rad_, acceleration_m_, effort_Nm_, effort_N_;
   double gravity_ = 9.81;

@@ -15,6 +15,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/report/plot.hpp"
 #include "deltadyn/runtime/reach.hpp"
+#include "deltadyn/runtime/sketch.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
 #include "layout_flags.hpp"
@@ -30,7 +31,7 @@ class Info {
     set_example(c, "delta-model info robot.urdf --plot workspace.png --summary info.csv");
     c.add_option("robot", robot_file_, "robot file (URDF)")->required()->type_name("ROBOT");
     layout_.add_bodies(c);
-    c.add_option("--plot", plot_, "picture of the workspace (PNG)")->type_name("FILE");
+    c.add_option("--plot", plot_, "picture of the robot and its workspace (PNG)")->type_name("FILE");
     run.on(c, [this, &run] { execute(run); });
   }
 
@@ -51,8 +52,9 @@ class Info {
     for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
       const auto& limb = robot.limbs[i];
       const auto name = [&](const char* key) { return fmt::format("limb{}_{}", i + 1, key); };
-      fmt::print("  limb {}: azimuth {:.6g} deg, drive at ({:.6g}, {:.6g}, {:.6g}) m", i + 1,
-                 limb.azimuth * 180 / std::numbers::pi, limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
+      fmt::print("  limb {}: azimuth {:.6g} deg,{} drive at ({:.6g}, {:.6g}, {:.6g}) m", i + 1,
+                 limb.azimuth * 180 / std::numbers::pi,
+                 limb.tilt != 0 ? fmt::format(" tilt {:.6g} deg,", limb.tilt * 180 / std::numbers::pi) : "", limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
       summary.add(name("azimuth"), limb.azimuth, "rad");
       summary.add(name("base_radius"), limb.p_WD.head<2>().norm(), "m");
       if (robot.drive_kind == DriveKind::prismatic) {
@@ -62,13 +64,28 @@ class Info {
         summary.add(name("upper_arm"), limb.p_DE_0.norm(), "m");
       }
       if (!robot.parts.empty()) {
-        fmt::print(", struts {:.6g} m, {:.6g} m apart, plate radius {:.6g} m", limb.strut, limb.strut_spacing,
-                   limb.p_BA.head<2>().norm());
+        fmt::print(", struts {:.6g} m, {:.6g} m apart, ", limb.strut, limb.strut_spacing);
+        if (robot.plate) {
+          fmt::print("on half plate {}, ({:.6g}, {:.6g}, {:.6g}) m from its origin", limb.part + 1, limb.p_BA.x(),
+                     limb.p_BA.y(), limb.p_BA.z());
+          summary.add(name("half_plate"), limb.part + 1);
+        } else {
+          fmt::print("plate radius {:.6g} m", limb.p_BA.head<2>().norm());
+        }
         summary.add(name("strut"), limb.strut, "m");
         summary.add(name("strut_spacing"), limb.strut_spacing, "m");
         summary.add(name("platform_radius"), limb.p_BA.head<2>().norm(), "m");
       }
       fmt::print("\n");
+    }
+    if (robot.plate) {
+      const PlateShape& plate = *robot.plate;
+      fmt::print("  plate: ");
+      if (plate.spacing > 0) fmt::print("hinges of the halves {:.6g} m apart, ", plate.spacing);
+      if (plate.bar_spacing > 0) fmt::print("bars {:.6g} m apart, ", plate.bar_spacing);
+      if (plate.pinion_radius > 0) fmt::print("pinion of radius {:.6g} m, ", plate.pinion_radius);
+      fmt::print("half 1 at azimuth {:.6g} deg, turn +-{:.6g} deg, tool {:.6g} times that\n",
+                 plate.azimuth * 180 / std::numbers::pi, plate.range * 180 / std::numbers::pi, plate.ratio);
     }
     if (robot.telescope) {
       const auto& u = robot.telescope->p_WU;
@@ -113,6 +130,14 @@ class Info {
     fmt::print(
         "  condition number of the Jacobian: best {:.2f}, half of the workspace below {:.2f}, 95 % below {:.2f}\n",
         reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
+    if (const double range = robot.description().plate_yaw_range(); range > 0) {
+      fmt::print(
+          "  the plate turns the tool by {:.4g} deg to either side; with it turned that far {:.0f} % of this volume are "
+          "left\n",
+          range * 180 / std::numbers::pi, 100 * reach.share_at_full_turn);
+      summary.add("yaw_range", range, "rad");
+      summary.add("workspace_share_at_full_turn", reach.share_at_full_turn);
+    }
     const auto& limits = robot.description().limits;
     if (std::isinf(limits.front().lower) || std::isinf(limits.front().upper))
       fmt::print("  the drives have no position limits in the robot file; the real workspace is smaller\n");
@@ -124,13 +149,49 @@ class Info {
     summary.add("jacobian_condition_median", reach.condition_median);
     summary.add("jacobian_condition_95", reach.condition_worst_of_95);
     if (!plot_.empty()) {
-      draw(robot.description(), reach);
+      draw(robot, reach);
       fmt::print("  picture: {}\n", plot_);
     }
   }
 
+  /// The robot at its home pose, seen from above and the side.
+  static PlotSpec picture(const RobotDescription& robot, const Eigen::VectorXd& home) {
+    constexpr double kAzimuth = 0.45, kElevation = 0.4;  // of the eye [rad]
+    const Eigen::Vector3d right(-std::sin(kAzimuth), std::cos(kAzimuth), 0);
+    const Eigen::Vector3d up(-std::sin(kElevation) * std::cos(kAzimuth), -std::sin(kElevation) * std::sin(kAzimuth),
+                             std::cos(kElevation));
+    PlotSpec spec;
+    spec.title = fmt::format("{} at its home pose, oblique view", robot.type);
+    spec.x_label = "to the right [m]";
+    spec.y_label = "upwards in the picture [m]";
+    const PlotColor colors[] = {PlotColor::black, PlotColor::vermillion, PlotColor::blue,
+                                PlotColor::green, PlotColor::orange,     PlotColor::purple};
+    std::size_t color = 0;
+    for (const SketchLines& one : sketch_of(robot, home)) {
+      Series series;
+      series.label = one.label;
+      series.color = colors[color++ % std::size(colors)];
+      const auto n = static_cast<Eigen::Index>(one.lines.size());
+      series.x = series.y = Eigen::VectorXd::Constant(3 * n, std::nan(""));  // the third point is a gap
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const auto& [from, to] = one.lines[static_cast<std::size_t>(k)];
+        series.x.segment<2>(3 * k) << right.dot(from), right.dot(to);
+        series.y.segment<2>(3 * k) << up.dot(from), up.dot(to);
+      }
+      spec.series.push_back(std::move(series));
+    }
+    spec.width = 700;
+    spec.height = 620;
+    return spec;
+  }
+
   /// Side view of the plane y = 0 and top view at the height of the home pose, coloured by the condition number.
-  void draw(const RobotDescription& robot, const Reach& reach) const {
+  void draw(const Robot& model, const Reach& reach) const {
+    const RobotDescription& robot = model.description();
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(model.drives()), home(model.drives());
+    z.head<3>() = reach.home;
+    if (model.inverse_kinematics(z, home) != Status::ok)
+      throw Error("the home pose is out of reach", robot_file_, "check the lengths in the robot file");
     const auto slice = [&](int normal, double place, int horizontal, int vertical, const std::string& title) {
       PlotSpec spec;
       spec.title = title;
@@ -170,7 +231,7 @@ class Info {
       spec.height = 480;
       return spec;
     };
-    render_png({slice(1, 0, 0, 2, "side view, y = 0"),
+    render_png({picture(robot, home), slice(1, 0, 0, 2, "side view, y = 0"),
                 slice(2, reach.home.z(), 0, 1, fmt::format("top view, z = {:.2f} m", reach.home.z()))},
                plot_);
   }

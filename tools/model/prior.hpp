@@ -61,17 +61,20 @@ class Prior {
     run.summary.add("columns", robot->parameters());
   }
 
-  enum Part { arm, carriage, strut, platform, tool, telescope, any };
-  static constexpr const char* kPartNames[] = {"upper arm", "carriage", "struts", "plate", "tool", "telescope bar", ""};
+  enum Part { arm, carriage, strut, platform, tool, telescope, halves, bars, any };
+  static constexpr const char* kPartNames[] = {"upper arm", "carriage", "struts", "rigid plate", "tool",
+                                              "telescope bar", "half plates", "crossbar", ""};
 
   /// A flag for a part that the robot does not have is a mistake, not a wish.
   [[nodiscard]] bool has(const RobotDescription& robot, Part part) const {
     switch (part) {
       case arm: return robot.drive_kind == DriveKind::revolute;
       case carriage: return robot.drive_kind == DriveKind::prismatic;
-      case strut:
-      case platform: return !robot.parts.empty();
-      case tool: return robot.telescope && layout_.options(robot).tool;
+      case strut: return !robot.parts.empty();
+      case platform: return !robot.parts.empty() && !robot.plate;
+      case tool: return robot.plate || (robot.telescope && layout_.options(robot).tool);
+      case halves: return robot.plate.has_value();
+      case bars: return robot.plate && robot.plate->spacing > 0;
       case telescope: return robot.telescope.has_value();
       case any: break;
     }
@@ -110,6 +113,10 @@ class Prior {
       {"--tool-mass-kg", "tool [kg]", tool, &PartShapes::tool_mass},
       {"--tool-diameter-m", "its diameter [m]", tool, &PartShapes::tool_diameter},
       {"--tool-length-m", "its length below the plate's centre [m]", tool, &PartShapes::tool_length},
+      {"--half-plate-mass-kg", "half of an articulated plate [kg]", halves, &PartShapes::half_plate_mass},
+      {"--half-plate-diameter-m", "its thickness [m]", halves, &PartShapes::half_plate_diameter},
+      {"--crossbar-mass-kg", "bar between the halves [kg]", bars, &PartShapes::crossbar_mass},
+      {"--crossbar-diameter-m", "its thickness [m]", bars, &PartShapes::crossbar_diameter},
       {"--telescope-mass-kg", "both parts of the telescope bar [kg]", telescope, &PartShapes::telescope_mass},
       {"--telescope-upper-share", "share of the upper part in that mass, the paper's is 0.6", telescope,
        &PartShapes::telescope_upper_share},
@@ -127,6 +134,9 @@ class Prior {
       {"--telescope-drive-coulomb-Nm", "the same [N m]", telescope, &PartShapes::telescope_drive_coulomb},
       {"--telescope-viscous-N-s-m", "friction of the sliding bar [N s/m]", telescope, &PartShapes::telescope_viscous},
       {"--telescope-coulomb-N", "the same [N]", telescope, &PartShapes::telescope_coulomb},
+      {"--plate-viscous-Nm-s-rad", "friction of all joints of an articulated plate, by its turn [N m s/rad]", halves,
+       &PartShapes::plate_viscous},
+      {"--plate-coulomb-Nm", "the same [N m]", halves, &PartShapes::plate_coulomb},
       {"--body-std", "assumed standard deviation of masses and moments as a share of the value, default 0.5", any,
        &PartShapes::body_std},
       {"--friction-std", "of the friction, default 1", any, &PartShapes::friction_std},

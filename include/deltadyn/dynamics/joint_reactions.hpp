@@ -120,7 +120,7 @@ Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot
     Matrix3<T> levelling;
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const auto& limb = motion.posture.limbs[i];
-      const Matrix3<T> R_WL = rot_z(limb.azimuth);
+      const Matrix3<T>& R_WL = limb.R_WL;
       const detail::Need<T>& strut = struts[i];
       u[i] = strut.R_WB.col(0);
       half[i] = T(0.5) * geometry.limbs[i].strut_spacing * R_WL.col(1);

@@ -5,6 +5,7 @@
 
 #include "deltadyn/core/sign.hpp"
 #include "deltadyn/kinematics/body_motion.hpp"
+#include "deltadyn/kinematics/inner_joint.hpp"
 #include "deltadyn/model/parameter_layout.hpp"
 
 namespace deltadyn {
@@ -22,7 +23,7 @@ template <class Layout, class T, class Robot>
 void regressor(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                Matrix<T, Robot::kDrives, Layout::kColumns>& Y);
 
-/// Rates of the joints with friction and their partial derivatives by qd: drives, then the telescope's prismatic joint.
+/// Rates of the joints with friction and their partial derivatives by qd: drives, then the inner joint.
 template <class T, class Robot>
 struct FrictionJoint {
   T rate;

@@ -33,14 +33,17 @@ Matrix<T, 3, kInertialParameters> moment_regressor(const BodyMotion<T, N>& body)
 template <class T, class Robot>
 FrictionJoint<T, Robot> friction_joint(const Motion<T, Robot>& motion, int joint) {
   FrictionJoint<T, Robot> f;
-  if (joint < Robot::kDrives) {
-    f.rate = motion.qd(joint);
-    f.J.setZero();
-    f.J(joint) = T(1);
-  } else {
-    f.rate = motion.telescope.length_d;
-    f.J = motion.posture.telescope.J_length;
+  if constexpr (kHasInnerJoint<Robot>) {
+    if (joint >= Robot::kDrives) {
+      const InnerJoint<T, Robot> inner = inner_joint(motion);
+      f.rate = inner.rate;
+      f.J = inner.J;
+      return f;
+    }
   }
+  f.rate = motion.qd(joint);
+  f.J.setZero();
+  f.J(joint) = T(1);
   return f;
 }
 

@@ -22,7 +22,7 @@ class EffectFeedForward {
   using Parameters = Vector<T, Layout::kColumns>;
   using Scene = EffectScene<T, Robot>;
 
-  static constexpr int kTelescopeJoint = Robot::kDrives;  ///< behind the drives, in set_friction and set_reversal_width
+  static constexpr int kInnerJoint = Robot::kDrives;  ///< behind the drives, in set_friction and set_reversal_width
   static constexpr int kPassiveJoints = Scene::kPassive;  ///< in set_reversal_width: all ball and universal joints
 
   EffectFeedForward(const Geometry<T, Robot>& geometry, const Parameters& p) : machine_(geometry), p_(p), given_(p) {}
@@ -42,7 +42,7 @@ class EffectFeedForward {
   /// Width of a reversal: Coulomb's friction and all laws that turn with the sign of a rate take rate / sqrt(rate^2 +
   /// width^2) for it, so that a set point which stops takes no jump of the torque. 0, the value at first: the sign
   /// itself.
-  /// \param joint  drive from 0, kTelescopeJoint or kPassiveJoints
+  /// \param joint  drive from 0, kInnerJoint or kPassiveJoints
   /// \param width  at least 0 [rad/s | m/s]
   /// \return out_of_range for another joint or width; then all stays as it was
   Status set_reversal_width(int joint, const T& width) {
@@ -112,8 +112,9 @@ class EffectFeedForward {
  private:
   Status torque(const Motion<T, Robot>& motion, const Drives& q, Drives& tau) {
     Drives load = Drives::Zero();
-    if constexpr (Robot::kTelescope) {
-      load = friction(kTelescopeJoint, motion.telescope.length_d) * motion.posture.telescope.J_length.transpose();
+    if constexpr (kHasInnerJoint<Robot>) {
+      const InnerJoint<T, Robot> inner = inner_joint(motion);
+      load = friction(kInnerJoint, inner.rate) * inner.J.transpose();
     }
     add_torque_of_bodies<Layout>(machine_.geometry, motion, p_(), load);
     Drives total = load;
@@ -122,7 +123,7 @@ class EffectFeedForward {
                       p_()(Layout::kOffset + drive);
     }
     auto memory = memory_;
-    effects_.add_torque(Scene{motion, machine_.geometry.gravity, q, load, width_, time_}, memory, total);
+    effects_.add_torque(Scene{motion, machine_.geometry, q, load, width_, time_}, memory, total);
     if (!total.allFinite()) return Status::out_of_range;
     memory_ = memory;
     tau = total;

@@ -10,6 +10,7 @@
 #include "deltadyn/firmware/changed_geometry.hpp"
 #include "deltadyn/firmware/effect_refusal.hpp"
 #include "deltadyn/kinematics/passive_joints.hpp"
+#include "deltadyn/kinematics/tool_point.hpp"
 
 namespace deltadyn {
 
@@ -29,7 +30,7 @@ struct EffectScene {
   using Drives = Vector<T, Robot::kDrives>;
 
   const Motion<T, Robot>& motion;  ///< of the machine as it is
-  const Vector3<T>& gravity;
+  const Geometry<T, Robot>& geometry;  ///< of the machine as it is
   const Drives& q;  ///< as the encoders have it [rad | m]
   /// Rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
   const Drives& load;
@@ -42,23 +43,24 @@ struct EffectScene {
     in.acceleration = motion.qdd(drive);
     in.load = load(drive);
     if (drive < Robot::kLimbs) {
-      const SinCos<T>& azimuth = motion.posture.limbs[drive].azimuth;
-      in.gravity_x = azimuth.cos * gravity.x() + azimuth.sin * gravity.y();
-      in.gravity_z = gravity.z();
+      const Matrix3<T>& R_WL = motion.posture.limbs[drive].R_WL;
+      in.gravity_x = R_WL.col(0).dot(geometry.gravity);
+      in.gravity_z = R_WL.col(2).dot(geometry.gravity);
     }
     return in;
   }
   [[nodiscard]] JointInput<T> at_telescope() const {
     JointInput<T> in = at_rate(motion.telescope.length_d, Robot::kDrives);
-    in.side_load = side_load<T>(motion.posture.telescope.e, motion.zdd.template head<3>(), gravity);
+    in.side_load = side_load<T>(motion.posture.telescope.e, motion.zdd.template head<3>(), geometry.gravity);
     return in;
   }
   [[nodiscard]] PlateInput<T> at_plate() const {
     PlateInput<T> in;
-    in.position = motion.posture.z.template head<3>();
-    in.velocity = motion.zd.template head<3>();
-    in.acceleration = motion.zdd.template head<3>();
-    in.gravity = gravity;
+    const auto tool = tool_point(geometry, motion);
+    in.position = tool.position;
+    in.velocity = tool.velocity;
+    in.acceleration = tool.acceleration;
+    in.gravity = geometry.gravity;
     return in;
   }
   [[nodiscard]] JointInput<T> at_rate(const T& rate, int joint) const {
@@ -218,7 +220,7 @@ class EffectSet {
       const auto forces = E::columns(scene.at_plate(), term.shape);
       Vector3<T> force = Vector3<T>::Zero();
       for (std::size_t c = 0; c < forces.size(); ++c) force += term.amplitude[c] * forces[c];
-      tau += scene.motion.posture.J_plate.template topRows<3>().transpose().lazyProduct(force);
+      tau += tool_point(scene.geometry, scene.motion).J.transpose().lazyProduct(force);
     }
   }
 

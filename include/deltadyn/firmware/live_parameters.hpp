@@ -50,7 +50,7 @@ class LiveParameters {
   }
 
   /// Friction of one joint of the model.
-  /// \param joint    drive from 0, then the telescope
+  /// \param joint    drive from 0, then the inner joint
   /// \param viscous  at least 0 [N m s/rad | N s/m]
   /// \param coulomb  at least 0 [N m | N]
   /// \return out_of_range for another joint, or a number that is not finite or below 0; then all stays as it was
@@ -64,7 +64,7 @@ class LiveParameters {
 
  private:
   static constexpr Body kCarrierBody =
-      Robot::kTelescope ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
+      kHasTool<Robot> ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
   static constexpr int kCarrier = kInertialParameters * Layout::body(kCarrierBody, 0);
 
   /// Has a body of this mass such moments? Each is at most the sum of the two others, and without mass there are none.

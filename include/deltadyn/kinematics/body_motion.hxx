@@ -26,7 +26,7 @@ void upper_arm_motion(const LimbGeometry<T>& geometry, const LimbPosture<T, Robo
   if constexpr (BodyType::kWithState) {
     body.Jd_v.setZero();
     body.Jd_w.setZero();
-    body.R_WB = rot_z(limb.azimuth);
+    body.R_WB = limb.R_WL;
     body.p_WB = geometry.p_WD;
     if constexpr (Robot::kDrive == DriveKind::revolute) {
       body.R_WB = body.R_WB * rot_y(limb.q);
@@ -61,7 +61,7 @@ template <class T, class Robot>
 void strut_state(const LimbGeometry<T>& geometry, const LimbPosture<T, Robot::kDrives>& limb,
                  const LimbMotion<T>& motion, const typename JacobianRates<T, Robot>::Limb& rates, int i, const T& qd,
                  BodyState<T, Robot::kDrives>& body) {
-  const Matrix3<T> R_WL = rot_z(limb.azimuth);
+  const Matrix3<T>& R_WL = limb.R_WL;
   const Matrix3<T> R_LS = rot_y(limb.beta) * rot_z(limb.gamma);
   const T& s = limb.gamma.sin;
   const T& c = limb.gamma.cos;
@@ -74,11 +74,11 @@ void strut_state(const LimbGeometry<T>& geometry, const LimbPosture<T, Robot::kD
   body.p_WB = geometry.p_WD + R_WL * limb.p_DE.value;
 }
 
-/// Part k of the plate: offset c + Rz(theta) a + theta b from r, orientation Rz(kappa theta).
+/// A part of the plate.
 template <class T, class Robot, class BodyType>
-void platform_motion(const PlatePart<T>& part, const Vector3<T>& gravity, const Motion<T, Robot>& motion,
-                     const JacobianRates<T, Robot>* rates, BodyType& body) {
-  body.a = motion.zdd.template head<3>() - gravity;
+void plate_part_motion(const Geometry<T, Robot>& geometry, int k, const Motion<T, Robot>& motion,
+                       const JacobianRates<T, Robot>* rates, BodyType& body) {
+  body.a = motion.zdd.template head<3>() - geometry.gravity;
   body.J_v = motion.posture.J_plate.template topRows<3>();
   body.w.setZero();
   body.w_d.setZero();
@@ -92,27 +92,26 @@ void platform_motion(const PlatePart<T>& part, const Vector3<T>& gravity, const 
     (void)rates;
   }
   if constexpr (Robot::kPlateTurns) {
-    const T theta = motion.posture.z(3);
-    const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
-    const Vector3<T> first = cross_z(turned) + part.b;
-    const Vector3<T> second = cross_z<T>(cross_z(turned));
+    const PartPose<T> part = part_pose(geometry.parts[k], motion.posture.z(3), geometry.yaw_ratio);
+    const Vector3<T>& first = part.p.first;
+    const Vector3<T>& second = part.p.second;
     body.a += first * motion.zdd(3) + second * (motion.zd(3) * motion.zd(3));
     body.J_v += first * motion.posture.J_plate.row(3);
-    const Matrix3<T> R_BW = rot_z(SinCos<T>(T(part.kappa * theta))).transpose();
+    const Matrix3<T> R_BW = rot_z(part.angle).transpose();
     body.a = Vector3<T>(R_BW * body.a);
     body.J_v = Matrix<T, 3, Robot::kDrives>(R_BW * body.J_v);
-    body.w.z() = part.kappa * motion.zd(3);
-    body.w_d.z() = part.kappa * motion.zdd(3);
-    body.J_w.row(2) = part.kappa * motion.posture.J_plate.row(3);
+    body.w.z() = part.rate * motion.zd(3);
+    body.w_d.z() = part.rate * motion.zdd(3);
+    body.J_w.row(2) = part.rate * motion.posture.J_plate.row(3);
     if constexpr (BodyType::kWithState) {
       body.Jd_v += first * rates->J_plate.row(3) + (second * motion.zd(3)) * motion.posture.J_plate.row(3);
       body.Jd_v = Matrix<T, 3, Robot::kDrives>(R_BW * body.Jd_v);
-      body.Jd_w.row(2) = part.kappa * rates->J_plate.row(3);
+      body.Jd_w.row(2) = part.rate * rates->J_plate.row(3);
       body.R_WB = R_BW.transpose();
-      body.p_WB += part.c + turned + theta * part.b;
+      body.p_WB += part.p.value;
     }
   } else {
-    (void)part;
+    (void)k;
   }
 }
 
@@ -193,7 +192,7 @@ void visit_bodies(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   BodyType body;
   for (int i = 0; i < Robot::kLimbs; ++i) {
     const auto& limb = motion.posture.limbs[i];
-    const Vector3<T> gravity_L = rot_z(limb.azimuth).transpose() * geometry.gravity;
+    const Vector3<T> gravity_L = limb.R_WL.transpose() * geometry.gravity;
     upper_arm_motion<T, Robot>(geometry.limbs[i], limb, i, gravity_L, motion.qd(i), motion.qdd(i), body);
     visit(Body::upper_arm, i, 1, body);
     if constexpr (kHasPlate<Robot>) {
@@ -205,8 +204,8 @@ void visit_bodies(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
     }
   }
   for (int k = 0; k < Robot::kPlateParts; ++k) {
-    platform_motion(geometry.parts[k], geometry.gravity, motion, rates, body);
-    visit(Body::platform, k, 1, body);
+    plate_part_motion(geometry, k, motion, rates, body);
+    visit(Robot::kParts[k], k, 1, body);
   }
   if constexpr (Robot::kTelescope) {
     tool_motion(geometry.gravity, motion, rates, body);

@@ -1,39 +1,167 @@
 #pragma once
 
 /// \file
-/// Forward kinematics z = f_FK(q) in closed form for three limbs: the plate centre lies on three spheres about
-/// c_i = E_i - p_BA_i with the strut lengths as radii; of the two intersections the lower one is the robot's.
+/// Forward kinematics z = f_FK(q): in closed form for three limbs, by Newton's iteration for a plate that turns.
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 
-#include "deltadyn/kinematics/posture.hpp"
+#include "deltadyn/kinematics/inverse.hpp"
+#include "deltadyn/kinematics/three_spheres.hpp"
 
 namespace deltadyn {
 
-/// Lower intersection of three spheres.
-/// \return unreachable if they do not meet, singular if their centres are in line
-template <class T>
-Status lower_intersection(const Vector3<T> (&c)[3], const T (&radius)[3], Vector3<T>& p) {
-  using std::sqrt;
-  const Vector3<T> d2 = c[1] - c[0];
-  const Vector3<T> d3 = c[2] - c[0];
-  const T length2 = sqrt(d2.squaredNorm());
-  if (!(length2 > T(1e-6))) return Status::singular;
-  const Vector3<T> e_x = d2 / length2;
-  const T along3 = e_x.dot(d3);
-  const Vector3<T> rest = d3 - along3 * e_x;
-  const T across3 = sqrt(rest.squaredNorm());
-  if (!(across3 > T(1e-6))) return Status::singular;
-  const Vector3<T> e_y = rest / across3;
-  const T r0 = radius[0] * radius[0];
-  const T x = (r0 - radius[1] * radius[1] + length2 * length2) / (T(2) * length2);
-  const T y = (r0 - radius[2] * radius[2] + d3.squaredNorm() - T(2) * along3 * x) / (T(2) * across3);
-  const T square = r0 - x * x - y * y;
-  if (!(square >= T(0))) return Status::unreachable;
-  Vector3<T> e_z = e_x.cross(e_y);
-  if (e_z.z() > T(0)) e_z = -e_z;
-  p = c[0] + x * e_x + y * e_y + sqrt(square) * e_z;
+/// Steps of Newton's iteration from one start; the paths of machines need three or four.
+inline constexpr int kForwardSteps = 8;
+
+/// The loop equations of a plate that turns, at fixed drives.
+template <class T, class Robot>
+class PlateLoops {
+ public:
+  static constexpr int P = kPlateCoordinates<Robot>;
+  static_assert(P == 4, "for a plate that turns");
+  using Plate = Vector<T, P>;  ///< (r, psi)
+
+  PlateLoops(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q) : geometry_(geometry) {
+    for (int i = 0; i < P; ++i) {
+      LimbPosture<T, Robot::kDrives> limb;
+      elbow<T, Robot>(geometry.limbs[i], q(i), limb);
+      elbow_[i] = geometry.limbs[i].p_WD + limb_frame(geometry.limbs[i]) * limb.p_DE.value;
+    }
+  }
+
+  /// Rows u_i^T dA_i/dy, and (|A_i - E_i|^2 / L_i - L_i) / 2.
+  void at(const Plate& y, Matrix<T, P, P>& loops, Plate& error) const {
+    for (int i = 0; i < P; ++i) {
+      const T& length = geometry_.limbs[i].strut;
+      const PointCurve<T> p = attachment(geometry_, i, y(3));
+      const Vector3<T> u = (y.template head<3>() + p.value - elbow_[i]) / length;
+      loops.row(i) << u.transpose(), u.dot(p.first);
+      error(i) = T(0.5) * length * (u.squaredNorm() - T(1));
+    }
+  }
+
+  /// Whether the plate hangs below the elbows.
+  [[nodiscard]] bool hangs(const Plate& y) const {
+    T above = T(0);
+    for (const Vector3<T>& elbow : elbow_) above += elbow.z() - y(2);
+    return above > T(0);
+  }
+
+  /// Its sign tells the assembly modes apart.
+  [[nodiscard]] T determinant(const Plate& y) const {
+    Matrix<T, P, P> loops;
+    Plate error;
+    at(y, loops, error);
+    return loops.determinant();
+  }
+
+  /// Newton's iteration on |A_i - E_i|^2 = L_i^2 from `y`; kForwardSteps at most.
+  /// \param steps  how many it took
+  /// \return unreachable if it does not come to rest, singular if it runs into a singular pose; then `y` is of no use
+  Status solve(Plate& y, int& steps) const {
+    using std::abs;
+    using std::sqrt;
+    // Convergence is quadratic: a step of this size leaves nothing to do.
+    const T enough = sqrt(Eigen::NumTraits<T>::epsilon()) / T(8);
+    Matrix<T, P, P> loops, inverse;
+    Plate error;
+    for (steps = 1; steps <= kForwardSteps; ++steps) {
+      at(y, loops, error);
+      bool invertible = false;
+      loops.computeInverseWithCheck(inverse, invertible, T(kSingularLoop) / T(100));
+      if (!invertible) return Status::singular;
+      const Plate by = inverse * error;
+      y -= by;
+      if (!y.allFinite()) return Status::unreachable;
+      if (by.cwiseAbs().maxCoeff() < enough) return Status::ok;
+    }
+    return Status::unreachable;
+  }
+
+ private:
+  const Geometry<T, Robot>& geometry_;
+  Vector3<T> elbow_[P];  // in W
+};
+
+/// Sign of the loops' determinant in the middle of the workspace: below the drives' middle, the plate not turned. Poses
+/// of the other sign lie beyond a singular pose.
+/// \return 0 if none of the heights looked at is in reach
+template <class T, class Robot>
+T plate_mode(const Geometry<T, Robot>& geometry) {
+  Vector<T, Robot::kDrives> z = Vector<T, Robot::kDrives>::Zero(), q;
+  T length = T(0);
+  for (const LimbGeometry<T>& limb : geometry.limbs) {
+    z.template head<3>() += limb.p_WD / T(Robot::kLimbs);
+    length += (limb.strut + limb.p_DE_0.norm()) / T(Robot::kLimbs);
+  }
+  const T top = z(2);
+  constexpr double kHeights[] = {0.6, 0.5, 0.7, 0.4, 0.8, 0.3, 0.9, 0.2};
+  for (const double height : kHeights) {
+    z(2) = top - T(height) * length;
+    if (inverse_kinematics(geometry, z, q) != Status::ok) continue;
+    const T determinant = PlateLoops<T, Robot>(geometry, q).determinant(z);
+    return determinant > T(0) ? T(1) : T(-1);
+  }
+  return T(0);
+}
+
+namespace detail {
+
+/// The turn in (-pi, pi] where full turns lead back to the same pose, as they do unless a part slides.
+template <class T, class Robot>
+void unwind(const Geometry<T, Robot>& geometry, T& psi) {
+  for (const PlatePart<T>& part : geometry.parts)
+    if (!(part.b.squaredNorm() <= T(0))) return;
+  using std::floor;
+  constexpr double kPi = 3.14159265358979323846;
+  const T turns = floor((psi / geometry.yaw_ratio + T(kPi)) / T(2 * kPi));
+  psi -= turns * T(2 * kPi) * geometry.yaw_ratio;
+}
+
+/// From several turns of the plate, with the centre where three limbs put it. The solution that counts is of the
+/// robot's assembly mode.
+template <class T, class Robot>
+Status forward_from_anywhere(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
+                             Vector<T, Robot::kDrives>& z) {
+  constexpr double kStarts[] = {0, 0.5, -0.5, 1, -1};  // of the range of theta
+  const PlateLoops<T, Robot> loops(geometry, q);
+  const T mode = geometry.mode != T(0) ? geometry.mode : plate_mode(geometry);
+  Status status = Status::unreachable;
+  for (const double share : kStarts) {
+    for (int left_out = 3; left_out >= 0; --left_out) {
+      Vector3<T> r;
+      const T psi = geometry.yaw_ratio * geometry.theta_range * T(share);
+      if (centre_on_three_limbs(geometry, q, psi, r, left_out) != Status::ok) continue;
+      Vector<T, Robot::kDrives> solution;
+      solution << r, psi;
+      int steps = 0;
+      const Status found = loops.solve(solution, steps);
+      if (found == Status::ok && loops.determinant(solution) * mode > T(0) && loops.hangs(solution)) {
+        z = solution;
+        unwind(geometry, z(3));
+        return found;
+      }
+      if (found == Status::singular) status = found;
+    }
+  }
+  return status;
+}
+
+}  // namespace detail
+
+/// Task coordinates of a plate that turns, from a pose near by, e.g. that of the last set point: half the work, and the
+/// right one of two poses that belong to the same drives in the same assembly mode.
+template <class T, class Robot>
+Status forward_kinematics_from(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q,
+                               const Vector<T, Robot::kDrives>& start, Vector<T, Robot::kDrives>& z) {
+  if (!q.allFinite() || !start.allFinite()) return Status::out_of_range;
+  const PlateLoops<T, Robot> loops(geometry, q);
+  Vector<T, Robot::kDrives> y = start;
+  int steps = 0;
+  if (loops.solve(y, steps) != Status::ok || !(loops.determinant(y) * loops.determinant(start) > T(0)))
+    return detail::forward_from_anywhere(geometry, q, z);
+  z = y;
   return Status::ok;
 }
 
@@ -43,19 +171,12 @@ Status forward_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Ro
                           Vector<T, Robot::kDrives>& z) {
   if (!q.allFinite()) return Status::out_of_range;
   z = q;
-  if constexpr (kHasPlate<Robot>) {
-    static_assert(Robot::kLimbs == 3 && !Robot::kPlateTurns, "the closed form is for three limbs");
-    Vector3<T> centre[3];
-    T radius[3];
-    for (int i = 0; i < 3; ++i) {
-      LimbPosture<T, Robot::kDrives> limb;
-      elbow<T, Robot>(geometry.limbs[i], q(i), limb);
-      centre[i] = geometry.limbs[i].p_WD + rot_z(SinCos<T>(geometry.limbs[i].azimuth)) * limb.p_DE.value -
-                  attachment(geometry, i, T(0)).value;
-      radius[i] = geometry.limbs[i].strut;
-    }
+  if constexpr (Robot::kPlateTurns) {
+    return detail::forward_from_anywhere(geometry, q, z);
+  } else if constexpr (kHasPlate<Robot>) {
+    static_assert(Robot::kLimbs == 3, "the closed form is for three limbs");
     Vector3<T> r;
-    if (const Status status = lower_intersection(centre, radius, r); status != Status::ok) return status;
+    if (const Status status = centre_on_three_limbs(geometry, q, T(0), r, 3); status != Status::ok) return status;
     z.template head<3>() = r;
   }
   return Status::ok;

@@ -43,18 +43,18 @@ Status prismatic_drive_position(const LimbGeometry<T>& limb, const Vector3<T>& p
   return Status::ok;
 }
 
-/// Drive coordinates of the task coordinates z = (r, theta | psi); an axis has z = q.
+/// Drive coordinates of the task coordinates z = (r, psi); an axis has z = q.
 template <class T, class Robot>
 Status inverse_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& z,
                           Vector<T, Robot::kDrives>& q) {
   if (!z.allFinite()) return Status::out_of_range;
   q = z;
   if constexpr (kHasPlate<Robot>) {
-    const T theta = Robot::kPlateTurns ? z(kPlateCoordinates<Robot> - 1) : T(0);
+    const T psi = Robot::kPlateTurns ? z(kPlateCoordinates<Robot> - 1) : T(0);
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const LimbGeometry<T>& limb = geometry.limbs[i];
-      const Vector3<T> p_DA = rot_z(SinCos<T>(limb.azimuth)).transpose() *
-                              (z.template head<3>() + attachment(geometry, i, theta).value - limb.p_WD);
+      const Vector3<T> p_DA = limb_frame(limb).transpose() *
+                              (z.template head<3>() + attachment(geometry, i, psi).value - limb.p_WD);
       const Status status = Robot::kDrive == DriveKind::revolute ? revolute_drive_angle(limb, p_DA, q(i))
                                                                  : prismatic_drive_position(limb, p_DA, q(i));
       if (status != Status::ok) return status;

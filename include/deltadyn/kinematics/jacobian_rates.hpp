@@ -62,23 +62,23 @@ JacobianRates<T, Robot> jacobian_rates(const Geometry<T, Robot>& geometry, const
     constexpr int N = Robot::kDrives;
     constexpr int P = kPlateCoordinates<Robot>;
     const auto& posture = motion.posture;
-    const T theta_d = Robot::kPlateTurns ? motion.zd(P - 1) : T(0);
+    const T psi_d = Robot::kPlateTurns ? motion.zd(P - 1) : T(0);
     Matrix3<T> R_LW[Robot::kLimbs];
     Vector3<T> u_d[Robot::kLimbs];
     // Loop i: u_i . (dA_i/dy J_plate - dE_i/dq) = 0, differentiated by time.
     Matrix<T, P, N> right;
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const auto& limb = posture.limbs[i];
-      R_LW[i] = rot_z(limb.azimuth).transpose();
+      R_LW[i] = limb.R_WL.transpose();
       u_d[i] = R_LW[i] * motion.zd.template head<3>() - limb.p_DE.first * motion.qd(i);
-      if constexpr (Robot::kPlateTurns) u_d[i] += limb.p_BA.first * theta_d;
+      if constexpr (Robot::kPlateTurns) u_d[i] += limb.p_BA.first * psi_d;
       u_d[i] /= geometry.limbs[i].strut;
       Matrix<T, 3, P> J_A = Matrix<T, 3, P>::Zero();
       J_A.template leftCols<3>() = R_LW[i];
       Vector3<T> turning = Vector3<T>::Zero();
       if constexpr (Robot::kPlateTurns) {
         J_A.col(3) = limb.p_BA.first;
-        turning = limb.p_BA.second * theta_d;
+        turning = limb.p_BA.second * psi_d;
       }
       right.row(i) = -(u_d[i].transpose().lazyProduct(J_A)).lazyProduct(posture.J_plate);
       if constexpr (Robot::kPlateTurns) right.row(i) -= limb.u.dot(turning) * posture.J_plate.row(3);
@@ -90,7 +90,7 @@ JacobianRates<T, Robot> jacobian_rates(const Geometry<T, Robot>& geometry, const
       const auto& limb = posture.limbs[i];
       Matrix<T, 3, N> J_u_d = R_LW[i].lazyProduct(rates.J_plate.template topRows<3>());
       if constexpr (Robot::kPlateTurns) {
-        J_u_d += limb.p_BA.first * rates.J_plate.row(3) + (limb.p_BA.second * theta_d) * posture.J_plate.row(3);
+        J_u_d += limb.p_BA.first * rates.J_plate.row(3) + (limb.p_BA.second * psi_d) * posture.J_plate.row(3);
       }
       J_u_d.col(i) -= limb.p_DE.second * motion.qd(i);
       J_u_d /= geometry.limbs[i].strut;

@@ -9,7 +9,7 @@ template <class T, class Robot>
 void strut_end_rates(const LimbPosture<T, Robot::kDrives>& limb, const Vector<T, Robot::kDrives>& zd,
                      const Vector<T, Robot::kDrives>& zdd, const T& qd, const T& qdd, Vector3<T>& first,
                      Vector3<T>& second) {
-  const Matrix3<T> R_LW = rot_z(limb.azimuth).transpose();
+  const Matrix3<T> R_LW = limb.R_WL.transpose();
   first = R_LW * zd.template head<3>() - limb.p_DE.first * qd;
   second = R_LW * zdd.template head<3>() - limb.p_DE.first * qdd - limb.p_DE.second * (qd * qd);
   if constexpr (Robot::kPlateTurns) {

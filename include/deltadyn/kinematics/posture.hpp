@@ -3,8 +3,8 @@
 /// \file
 /// Everything about one robot posture that does not depend on speed: positions, joint angles, Jacobians.
 ///
-/// Notation: q drives; y plate coordinates (r, and theta if the plate turns); z task coordinates. For limb i: D drive
-/// origin, E elbow, A attachment, u the unit vector from E to A, L the limb frame with R_WL = Rz(azimuth).
+/// Notation: q drives; y plate coordinates (r, and the tool's yaw psi = yaw_ratio theta if the plate turns); z task
+/// coordinates. For limb i: D drive origin, E elbow, A attachment, u the unit vector from E to A, L the limb frame.
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/core/status.hpp"
@@ -24,10 +24,10 @@ struct PointCurve {
 /// Posture of one limb; vectors in the limb frame L.
 template <class T, int N>
 struct LimbPosture {
-  SinCos<T> azimuth;   ///< of R_WL
+  Matrix3<T> R_WL;     ///< orientation of L
   SinCos<T> q;         ///< of the drive angle (revolute drives)
   PointCurve<T> p_DE;  ///< elbow from the drive origin and its derivatives by q_i [m, m/rad]
-  /// Attachment from r and its derivatives by theta (zero derivatives for a Delta), in L
+  /// Attachment from r and its derivatives by psi (zero derivatives for a Delta), in L
   PointCurve<T> p_BA;
   Vector3<T> u = Vector3<T>::Zero();                  ///< unit vector of the strut
   SinCos<T> beta;                                     ///< strut angle about y of L: R_LS = Ry(beta) Rz(gamma)
@@ -60,6 +60,8 @@ struct Posture {
   Matrix<T, kRows, N> J_plate = Matrix<T, kRows, N>::Zero();  ///< dy/dq
   /// Inverse of the loop matrix with rows u_i^T dA_i/dy
   Matrix<T, kRows, kRows> J_plate_loops = Matrix<T, kRows, kRows>::Zero();
+  T theta = T(0);       ///< of a plate that turns [rad]
+  T theta_gain = T(1);  ///< d theta / d psi
   TelescopePosture<T, N> telescope;
 };
 
@@ -82,20 +84,43 @@ void elbow(const LimbGeometry<T>& geometry, const T& q, LimbPosture<T, Robot::kD
   }
 }
 
-/// Attachment of limb i relative to r, in W, as a function of theta.
+/// Pose of one part of a turning plate and its derivatives by the yaw psi.
+template <class T>
+struct PartPose {
+  PointCurve<T> p;  ///< origin from r, in W [m, m/rad]
+  SinCos<T> turned; ///< kappa theta
+  SinCos<T> angle;  ///< of the orientation, turn + kappa theta
+  T rate;           ///< d angle / d psi
+};
+
+template <class T>
+PartPose<T> part_pose(const PlatePart<T>& part, const T& psi, const T& yaw_ratio) {
+  const T gain = T(1) / yaw_ratio;  // d theta / d psi
+  const T theta = gain * psi;
+  const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
+  PartPose<T> pose;
+  pose.p.value = part.c + turned + theta * part.b;
+  pose.p.first = gain * (cross_z(turned) + part.b);
+  pose.p.second = gain * gain * cross_z<T>(cross_z(turned));
+  pose.turned = SinCos<T>(T(part.kappa * theta));
+  pose.angle = SinCos<T>(T(part.turn + part.kappa * theta));
+  pose.rate = gain * part.kappa;
+  return pose;
+}
+
+/// Attachment of limb i relative to r, in W, as a function of psi.
 template <class T, class Robot>
-PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& theta) {
+PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& psi) {
   const LimbGeometry<T>& limb = geometry.limbs[i];
   PointCurve<T> p;
   if constexpr (Robot::kPlateTurns) {
-    const PlatePart<T>& part = geometry.parts[limb.part];
-    const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
-    const Vector3<T> arm = rot_z(SinCos<T>(T(part.kappa * theta))) * limb.p_BA;
-    p.value = part.c + turned + theta * part.b + arm;
-    p.first = cross_z(turned) + part.b + part.kappa * cross_z(arm);
-    p.second = cross_z<T>(cross_z(turned)) + part.kappa * part.kappa * cross_z<T>(cross_z(arm));
+    const PartPose<T> part = part_pose(geometry.parts[limb.part], psi, geometry.yaw_ratio);
+    const Vector3<T> arm = rot_z(part.turned) * limb.p_BA;
+    p.value = part.p.value + arm;
+    p.first = part.p.first + part.rate * cross_z(arm);
+    p.second = part.p.second + part.rate * part.rate * cross_z<T>(cross_z(arm));
   } else {
-    (void)theta;
+    (void)psi;
     p.value = geometry.parts[limb.part].c + geometry.parts[limb.part].a + limb.p_BA;
   }
   return p;

@@ -58,19 +58,23 @@ Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robo
   posture.q = q;
   posture.z = z;
   for (int i = 0; i < Robot::kLimbs; ++i) {
-    posture.limbs[i].azimuth = SinCos<T>(geometry.limbs[i].azimuth);
+    posture.limbs[i].R_WL = limb_frame(geometry.limbs[i]);
     elbow<T, Robot>(geometry.limbs[i], q(i), posture.limbs[i]);
   }
   if constexpr (kHasPlate<Robot>) {
     static_assert(Robot::kLimbs == P, "one limb for each coordinate of the plate");
-    const T theta = Robot::kPlateTurns ? z(P - 1) : T(0);
+    const T psi = Robot::kPlateTurns ? z(P - 1) : T(0);
+    if constexpr (Robot::kPlateTurns) {
+      posture.theta_gain = T(1) / geometry.yaw_ratio;
+      posture.theta = posture.theta_gain * psi;
+    }
     Matrix<T, P, P> loops;    // rows u_i^T dA_i/dy
     Vector<T, P> drive_gain;  // u_i^T dE_i/dq_i
     Matrix3<T> R_LW[Robot::kLimbs];
     for (int i = 0; i < Robot::kLimbs; ++i) {
       auto& limb = posture.limbs[i];
-      R_LW[i] = rot_z(limb.azimuth).transpose();
-      const PointCurve<T> p = attachment(geometry, i, theta);
+      R_LW[i] = limb.R_WL.transpose();
+      const PointCurve<T> p = attachment(geometry, i, psi);
       limb.p_BA.value = R_LW[i] * p.value;
       limb.p_BA.first = R_LW[i] * p.first;
       limb.p_BA.second = R_LW[i] * p.second;

@@ -5,10 +5,12 @@
 
 namespace deltadyn {
 
-enum class Body { upper_arm, strut, platform, tool, telescope_upper, telescope_lower };
+/// half_plate: a part of an articulated plate that two limbs hold and that only translates; crossbar: a part between
+/// the halves that turns.
+enum class Body { upper_arm, strut, platform, tool, telescope_upper, telescope_lower, half_plate, crossbar };
 
-inline constexpr const char* kBodyNames[] = {"upper_arm", "strut",           "platform",
-                                             "tool",      "telescope_upper", "telescope_lower"};
+inline constexpr const char* kBodyNames[] = {"upper_arm",       "strut",           "platform",   "tool",
+                                             "telescope_upper", "telescope_lower", "half_plate", "crossbar"};
 constexpr const char* name(Body body) {
   return kBodyNames[static_cast<int>(body)];
 }

@@ -3,12 +3,13 @@
 /// \file
 /// Lengths and places of a Delta-like robot.
 ///
-/// Base frame W: origin in the plane of the arm axes, z up. Limb frame L of a limb: R_WL = Rz(azimuth), x radially
-/// outwards, y the axis of a revolute drive. A drive angle of 0 is horizontal outwards and positive turns the arm down.
+/// Base frame W: origin in the plane of the arm axes, z up. Limb frame L of a limb: R_WL = Rz(azimuth) Rx(tilt), x
+/// radially outwards, y the axis of a revolute drive. A drive angle of 0 puts the arm along x of L, and positive turns
+/// it towards -z of L.
 
 #include <Eigen/Core>
 
-#include "deltadyn/core/types.hpp"
+#include "deltadyn/core/rotation.hpp"
 #include "deltadyn/model/topology.hpp"
 
 namespace deltadyn {
@@ -17,6 +18,7 @@ namespace deltadyn {
 template <class T>
 struct LimbGeometry {
   T azimuth = T(0);                         ///< of the limb frame L about z of W [rad]
+  T tilt = T(0);                            ///< of the limb frame L about its own x, after the azimuth [rad]
   Vector3<T> p_WD = Vector3<T>::Zero();     ///< drive origin D from W, in W [m]
   Vector3<T> axis_L = Vector3<T>::UnitY();  ///< unit axis of the drive in L; revolute drives: always +y
   Vector3<T> p_DE_0 = Vector3<T>::Zero();   ///< elbow centre E from D at q = 0, in L [m]; revolute: (arm length, 0, 0)
@@ -29,14 +31,26 @@ struct LimbGeometry {
       T(1);
 };
 
-/// Pose of one part of the plate as a function of (r, theta): offset = c + Rz(theta) a + theta b, orientation Rz(kappa
-/// theta).
+/// R_WL of a limb.
+template <class T>
+Matrix3<T> limb_frame(const LimbGeometry<T>& limb) {
+  const SinCos<T> azimuth(limb.azimuth), tilt(limb.tilt);
+  Matrix3<T> R_WL;
+  R_WL << azimuth.cos, -azimuth.sin * tilt.cos, azimuth.sin * tilt.sin,  //
+      azimuth.sin, azimuth.cos * tilt.cos, -azimuth.cos * tilt.sin,      //
+      T(0), tilt.sin, tilt.cos;
+  return R_WL;
+}
+
+/// Pose of one part of the plate as a function of (r, theta): offset = c + Rz(theta) a + theta b from r, orientation
+/// Rz(turn + kappa theta).
 template <class T>
 struct PlatePart {
-  Vector3<T> c = Vector3<T>::Zero();
-  Vector3<T> a = Vector3<T>::Zero();
-  Vector3<T> b = Vector3<T>::Zero();
-  T kappa = T(0);
+  Vector3<T> c = Vector3<T>::Zero();  ///< [m]
+  Vector3<T> a = Vector3<T>::Zero();  ///< [m]
+  Vector3<T> b = Vector3<T>::Zero();  ///< [m/rad]
+  T kappa = T(0);                     ///< turns of the part a turn of theta; 0 for a part that only translates
+  T turn = T(0);                      ///< of the part's frame at theta = 0 [rad]
 };
 
 /// Telescope bar: upper universal joint on the base, prismatic joint, lower universal joint on the plate.
@@ -51,6 +65,10 @@ template <class T, class Robot>
 struct Geometry {
   LimbGeometry<T> limbs[Robot::kLimbs];
   PlatePart<T> parts[Robot::kPlateParts > 0 ? Robot::kPlateParts : 1];
+  T yaw_ratio = T(1);    ///< psi = yaw_ratio theta: turns of the tool a turn of theta
+  T theta_range = T(1);  ///< largest theta to either side [rad]
+  /// Sign of the loops' determinant in the assembly mode of a plate that turns, see plate_mode()
+  T mode = T(0);
   TelescopeGeometry<T> telescope;
   Vector3<T> gravity = Vector3<T>(T(0), T(0), T(-9.81));  ///< in W [m/s^2]
 };

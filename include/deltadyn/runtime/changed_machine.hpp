@@ -43,7 +43,10 @@ struct ChangedMachine {
   void add_rotor(int drive, double inertia) {
     parameters.push_back({{ParameterKind::rotor_inertia, drive + 1}, inertia});
   }
-  void add_to_plate(double mass) { parameters.push_back({{ParameterKind::inertial, 0, Body::platform}, mass}); }
+  /// Of an articulated plate the tool carries the load.
+  void add_to_plate(double mass) {
+    parameters.push_back({{ParameterKind::inertial, 0, description.plate ? Body::tool : Body::platform}, mass});
+  }
   void soften(int drive, const SpringInDrive& spring) { springs.emplace_back(drive, spring); }
 };
 

@@ -11,14 +11,14 @@
 
 namespace deltadyn {
 
-/// Plate, telescope and passive joints at one state of the drives. For an axis everything is zero.
+/// Plate, inner joint and passive joints at one state of the drives. For an axis everything is zero.
 struct EffectState {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< of the plate in W [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< of the tool's point in W [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< [m/s]
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
   Eigen::Matrix3Xd J;                                      ///< d position / dq
-  double bar_rate = 0;                                     ///< of the telescope [m/s]
-  Eigen::RowVectorXd J_bar;                                ///< d length / dq
+  double inner_rate = 0;                                   ///< of a telescope [m/s] or an articulated plate [rad/s]
+  Eigen::RowVectorXd J_inner;                              ///< d inner_rate / dqd
   Eigen::Vector3d bar = Eigen::Vector3d::UnitZ();          ///< unit vector along the telescope
   Eigen::VectorXd passive_rate;                            ///< of each different passive joint [rad/s]
   /// d rate / d qd, times the number of joints alike: joints x drives

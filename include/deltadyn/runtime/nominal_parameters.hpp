@@ -27,16 +27,19 @@ struct PartShapes {
   // Plate and tool: solid cylinders; the tool hangs below the plate's centre.
   double platform_mass, platform_diameter, platform_thickness;
   double tool_mass, tool_diameter, tool_length;
+  // Articulated plate: each half and each crossbar a solid round bar, the half from one attachment to the other.
+  double half_plate_mass, half_plate_diameter, crossbar_mass, crossbar_diameter;
   // Telescope bar: a solid rod hanging from the base joint, a tube standing on the platform joint.
   double telescope_mass;         ///< both parts [kg]
   double telescope_upper_share;  ///< of that mass
   double telescope_upper_length, telescope_upper_diameter;
   double telescope_lower_length, telescope_lower_outer_diameter, telescope_lower_inner_diameter;
-  // Friction: of a limb's drive [N m s/rad, N m | N s/m, N], the telescope's drive, and the sliding of the bar [N s/m,
-  // N].
+  // Friction: of a limb's drive [N m s/rad, N m | N s/m, N], the telescope's drive, the sliding of the bar [N s/m, N],
+  // and all joints of an articulated plate together, by its turn theta [N m s/rad, N m].
   double drive_viscous, drive_coulomb;
   double telescope_drive_viscous, telescope_drive_coulomb;
   double telescope_viscous, telescope_coulomb;
+  double plate_viscous, plate_coulomb;
   // Assumed standard deviation as a share of the value.
   double body_std = 0.5, friction_std = 1.0;
 

@@ -12,14 +12,17 @@
 namespace deltadyn {
 
 enum class ParameterKind { inertial, viscous, coulomb, rotor_inertia, offset };
+/// Joint with friction that is no drive: a telescope's slide, or the joints of an articulated plate together.
+enum class InnerJointKind { telescope, plate };
 
 struct ParameterId {
   ParameterKind kind = ParameterKind::inertial;
-  /// Inertial: of the limb's own body from 1, or 0 where all limbs share one. Else of the drive from 1; 0: the
-  /// telescope's slide.
+  /// Inertial: of the limb's own body or half plate from 1, or 0 where all share one. Else of the drive from 1; 0: the
+  /// inner joint.
   int number = 0;
   Body body = Body::upper_arm;  ///< inertial
   int entry = 0;                ///< inertial: place in kInertialNames
+  InnerJointKind inner = InnerJointKind::telescope;  ///< of a joint with number 0
 
   friend bool operator==(const ParameterId&, const ParameterId&) = default;
   [[nodiscard]] bool is_friction() const { return kind == ParameterKind::viscous || kind == ParameterKind::coulomb; }

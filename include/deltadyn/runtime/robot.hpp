@@ -85,10 +85,10 @@ class Robot {
   /// Forces and moments in all joints, by Newton and Euler (dynamics/joint_reactions.hpp says what carries what).
   [[nodiscard]] virtual Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
                                                const ConstRef& p, std::vector<JointReaction>& reactions) const = 0;
-  /// Rates of the joints with friction: drives, then the telescope's prismatic joint if there is one [rad/s | m/s].
+  /// Rates of the joints with friction: drives, then the inner joint if there is one [rad/s | m/s].
   [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd,
                                                     Eigen::Ref<Vector> rates) const = 0;
-  [[nodiscard]] int friction_joints() const { return drives() + (description().telescope ? 1 : 0); }
+  [[nodiscard]] int friction_joints() const { return drives() + (*description().inner_joint() != 0 ? 1 : 0); }
 };
 
 /// Columns of the Coulomb friction of each joint, in the order of friction_joint_rates().

@@ -14,7 +14,7 @@
 namespace deltadyn {
 
 inline constexpr int kMaxDrives = 4;
-/// Drives, the telescope's prismatic joint, and the passive joints: three kinds a limb and two angles of the telescope.
+/// Drives, the inner joint, and the passive joints: three kinds a limb and two angles of a telescope.
 inline constexpr int kMaxJoints = kMaxDrives + 1 + 3 * kMaxDrives + 2;
 
 /// Vectors and matrices that live on the stack, because a simulation evaluates them some ten thousand times a second.
@@ -32,7 +32,7 @@ struct MechanismTerms {
   JointVector rate;                                                ///< J qd [rad/s | m/s]
   JointVector bias_rate;                                           ///< joint acceleration at qdd = 0 [rad/s^2 | m/s^2]
   JointRows J;                                                     ///< joints x drives
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();                     ///< plate centre in W [m]
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();                     ///< the tool's point in W [m]
   Eigen::Vector3d v = Eigen::Vector3d::Zero();                     ///< its velocity [m/s]
   Eigen::Vector3d a_bias = Eigen::Vector3d::Zero();                ///< its acceleration at qdd = 0 [m/s^2]
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxDrives> J_r;  ///< dr/dq
@@ -54,15 +54,15 @@ class Mechanism {
   /// Of the bodies under gravity [J], zero for a mass at the origin of the base frame.
   [[nodiscard]] virtual Status potential_energy(const DriveVector& q, double& joule) const = 0;
   [[nodiscard]] int drives() const { return drives_; }
-  /// Drives, then the telescope's prismatic joint, then passive joints.
+  /// Drives, then the inner joint, then passive joints.
   [[nodiscard]] int joints() const { return static_cast<int>(multiplicity_.size()); }
-  [[nodiscard]] int telescope_joint() const { return telescope_; }  ///< -1 without telescope
-  /// How many equal joints of the robot an entry stands for: 1 for drives and telescope, e.g. 4 for the strut's turn
+  [[nodiscard]] int inner_joint() const { return inner_joint_; }  ///< -1 if there is none
+  /// How many equal joints of the robot an entry stands for: 1 for drives and the inner joint, e.g. 4 for the strut's turn
   /// about its z.
   [[nodiscard]] double multiplicity(int joint) const { return multiplicity_[static_cast<std::size_t>(joint)]; }
 
  protected:
-  int drives_ = 0, telescope_ = -1;
+  int drives_ = 0, inner_joint_ = -1;
   std::vector<double> multiplicity_;
 };
 

@@ -76,7 +76,7 @@ const std::vector<Coordinate>& coordinates() {
   constexpr OfRow time = [](const BasisRow& at) { return at.log.t_s(at.row) - at.log.t_s(0); };
   constexpr OfRow other_position = [](const BasisRow& at) { return at.log.q(at.row, at.other); };
   constexpr OfRow other_rate = [](const BasisRow& at) { return at.log.qd(at.row, at.other); };
-  constexpr OfRow bar_rate = [](const BasisRow& at) { return at.log.signals.bar_rate(at.sample); };
+  constexpr OfRow inner_rate = [](const BasisRow& at) { return at.log.signals.inner_rate(at.sample); };
   static const std::vector<Coordinate> all = {{"speed", 10, speed, direction},
                                               {"speed", 6, speed, unit},
                                               {"position", 10, position, unit},
@@ -90,7 +90,7 @@ const std::vector<Coordinate>& coordinates() {
                                               {"other joints", 4, other_position, unit, true},
                                               {"other joints", 4, other_rate, unit, true},
                                               {"other joints", 3, other_rate, direction, true},
-                                              {"telescope", 6, bar_rate, unit}};
+                                              {"inner joint", 6, inner_rate, unit}};
   return all;
 }
 

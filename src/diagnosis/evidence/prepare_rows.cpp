@@ -93,14 +93,13 @@ std::vector<Marks> slow_samples(const RowRules& rules, const std::vector<Prepare
 /// Leaves out what slow joints do, but for those whose bristles hold.
 void leave_rest_out(const Robot& robot, const ProcessingOptions& processing, const std::vector<Marks>& slow,
                     const std::vector<int>& masked, std::vector<PreparedLog>& logs) {
-  const auto limbs = static_cast<Index>(robot.description().limbs.size());
   for (std::size_t l = 0; l < logs.size(); ++l) {
     for (Index joint = 0; joint < slow[l].cols(); ++joint) {
       if (has_bristle(processing, joint) && std::ranges::count(masked, static_cast<int>(joint)) == 0) continue;
-      // The telescope bar's friction acts on the limbs' drives.
-      const Index first = joint < robot.drives() ? joint : 0, count = joint < robot.drives() ? 1 : limbs;
-      for (Index j = first; j < first + count; ++j)
-        logs[l].reversal.col(j) = logs[l].reversal.col(j) || slow[l].col(joint);
+      for (int j = 0; j < robot.drives(); ++j) {
+        const bool feels = joint < robot.drives() ? j == joint : robot.description().feels_inner_joint(j);
+        if (feels) logs[l].reversal.col(j) = logs[l].reversal.col(j) || slow[l].col(joint);
+      }
     }
   }
 }

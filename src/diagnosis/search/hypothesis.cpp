@@ -26,7 +26,7 @@ MotionScale scale_of(const std::vector<LogRows>& logs, int joint) {
     const auto& s = log.signals;
     for (Index k = 0; k < log.rows(); ++k) {
       const Index at = sample_of_row(log.log, k);
-      rates.push_back(std::abs(joint >= 0 ? s.qd(at, joint) : s.bar_rate(at)));
+      rates.push_back(std::abs(joint >= 0 ? s.qd(at, joint) : s.inner_rate(at)));
       if (joint < 0) continue;
       low = std::min(low, s.q(at, joint));
       high = std::max(high, s.q(at, joint));

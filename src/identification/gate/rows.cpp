@@ -87,10 +87,11 @@ struct PointRegressor {
       for (int j = 0; j < n; ++j) Y[static_cast<std::size_t>(j)].row(k) = full.row(j)(base.independent);
     }
     for (int j = 0; j < n; ++j) reversal.push_back(near_reversal(rates.col(j)));
-    if (!robot.description().telescope) return;
-    const std::vector<char> bar = near_reversal(rates.col(rates.cols() - 1));
-    for (std::size_t j = 0; j < robot.description().limbs.size(); ++j) {
-      for (std::size_t k = 0; k < bar.size(); ++k) reversal[j][k] = reversal[j][k] != 0 || bar[k] != 0 ? 1 : 0;
+    if (robot.friction_joints() == n) return;
+    const std::vector<char> inner = near_reversal(rates.col(rates.cols() - 1));
+    for (std::size_t j = 0; j < reversal.size(); ++j) {
+      if (!robot.description().feels_inner_joint(static_cast<int>(j))) continue;
+      for (std::size_t k = 0; k < inner.size(); ++k) reversal[j][k] = reversal[j][k] != 0 || inner[k] != 0 ? 1 : 0;
     }
   }
 };

@@ -1,0 +1,34 @@
+#pragma once
+
+/// \file
+/// Four limbs and a plate of two halves that slide on each other (Krut et al. 2003): limbs 1 and 2 hold one, 3 and 4
+/// the other, and racks on both turn a pinion with the tool.
+
+#include "deltadyn/model/h4.hpp"
+
+namespace deltadyn {
+
+struct I4 : FourLimbs {
+  static constexpr const char* kName = "i4";
+  static constexpr const char* kClass = "I4";
+  static constexpr int kPlateParts = 3;
+  static constexpr Body kParts[] = {Body::half_plate, Body::half_plate, Body::tool};
+
+  static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
+    // The rack of half 1 touches the pinion on the side of half 1.
+    const Vector3<double> travel = shape.pinion_radius * cross_z<double>(shape.outwards());
+    parts[0].b = travel;
+    parts[1].b = -travel;
+    parts[2].kappa = 1;
+    parts[0].turn = shape.azimuth;
+    parts[1].turn = shape.azimuth + 3.14159265358979323846;
+  }
+};
+
+/// With carriages in place of arms.
+struct LinearI4 : I4 {
+  static constexpr const char* kClass = "LinearI4";
+  static constexpr DriveKind kDrive = DriveKind::prismatic;
+};
+
+}  // namespace deltadyn

@@ -1,0 +1,24 @@
+#pragma once
+
+/// \file
+/// A robot as lines in space, to be drawn.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "deltadyn/runtime/robot_description.hpp"
+
+namespace deltadyn {
+
+/// Lines of one kind; in W [m].
+struct SketchLines {
+  std::string label;                                                 ///< "upper arms", "struts", "plate", ...
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lines = {};
+};
+
+/// Base, arms or carriages on their rails, struts, the parts of the plate, and the telescope bar, at drive coordinates q.
+/// Throws deltadyn::Error if the pose is out of reach or singular.
+[[nodiscard]] std::vector<SketchLines> sketch_of(const RobotDescription& robot, const Eigen::VectorXd& q);
+
+}  // namespace deltadyn

@@ -1,0 +1,117 @@
+#include "articulated_plate.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "deltadyn/kinematics/posture.hpp"
+#include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
+
+namespace deltadyn {
+
+double largest_angle_between_limbs(const std::vector<LimbGeometry<double>>& limbs, int part) {
+  double largest = 0;
+  for (const auto& one : limbs)
+    for (const auto& other : limbs)
+      if (one.part == part && other.part == part)
+        largest = std::max(largest, limb_frame(one).col(1).cross(limb_frame(other).col(1)).norm());
+  return largest;
+}
+
+namespace articulated_plate {
+namespace {
+
+constexpr double kHingeRange = 1.4;  // [rad] beyond it the bars and halves of a hinged plate lie on one another
+
+[[noreturn]] void refuse(const std::string& what, const std::string& where, const std::string& mend) {
+  throw Error(what, where, mend);
+}
+
+void require_length(double length, const char* what, const std::string& where) {
+  if (!(length > 0)) refuse(fmt::format("plate: the {} is {} m, but must be positive", what, length), where, "give it in metres");
+  plausibility::require(plausibility::kLength, length, fmt::format("plate: the {}", what), where);
+}
+
+/// The lengths of the plate itself. \param hinged  the halves turn on bars, else they slide
+void validate_shape(const PlateShape& shape, bool hinged, bool two_bars, const std::string& where) {
+  if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
+  if (hinged) {
+    require_length(shape.spacing, "distance between the hinges of the two halves", where);
+    if (two_bars) require_length(shape.bar_spacing, "distance between the two bars", where);
+  } else {
+    require_length(shape.pinion_radius, "radius of the pinion", where);
+    if (shape.ratio != 1)
+      refuse(fmt::format("plate: the tool sits on the pinion, but the ratio of its gear is {}", shape.ratio), where,
+             "leave the ratio out, and choose the radius of the pinion");
+  }
+  if (!(std::isfinite(shape.ratio) && shape.ratio != 0))
+    refuse(fmt::format("plate: the ratio of the tool's gear is {}", shape.ratio), where,
+           "give the turns of the tool for a turn of the plate, e.g. 1 without gear, 4 for a usual Par4; negative if the "
+           "gear reverses");
+  plausibility::require(plausibility::kGearRatio, std::abs(shape.ratio), "plate: the ratio of the tool's gear", where);
+  if (!(shape.range > 0)) refuse(fmt::format("plate: the range of theta is {} rad", shape.range), where, "give a positive angle in radians");
+  if (hinged && shape.range > kHingeRange)
+    refuse(fmt::format("plate: at theta = {:.4g} rad the parts of the plate collide: its hinges reach {} rad to either side at most",
+                       shape.range, kHingeRange),
+           where, "give a smaller range; a gear turns the tool farther");
+}
+
+/// Which limb is on which half: two on each, and each pair locks its half.
+void validate_limbs(const RobotDescription& robot, const std::string& where) {
+  for (std::size_t i = 0; i < robot.limbs.size(); ++i)
+    if (robot.limbs[i].part != 0 && robot.limbs[i].part != 1)
+      refuse(fmt::format("limb {} does not end on a half plate; two parallelograms hold a part level, but a part that "
+                         "turns needs none",
+                         i + 1),
+             where, "let every limb end on half plate 1 or 2");
+  for (const int half : {0, 1}) {
+    const auto on_half = std::ranges::count(robot.limbs, half, &LimbGeometry<double>::part);
+    if (on_half != 2)
+      refuse(fmt::format("{} limb{} on half plate {}, but two limbs hold each half", on_half, on_half == 1 ? "" : "s", half + 1),
+             where, "let limbs 1 and 2 end on half plate 1, limbs 3 and 4 on half plate 2");
+    if (largest_angle_between_limbs(robot.limbs, half) < kParallel)
+      refuse(fmt::format("the two parallelograms on half plate {} lie in the same direction, so the half could turn", half + 1), where,
+             "give the two limbs different azimuths");
+  }
+}
+
+/// Rows (u, u . dA/dtheta) with struts that reach straight from each drive to its attachment, at any height: if they
+/// are dependent at all of them, the limbs do not hold theta anywhere.
+void require_theta_held(const RobotDescription& robot, const std::string& where) {
+  constexpr double kHeld = 1e-3;
+  double most = 0;
+  for (const double height : {0.3, 0.5, 0.8}) {
+    Eigen::Matrix4d rows;
+    for (int i = 0; i < 4; ++i) {
+      const LimbGeometry<double>& limb = robot.limbs[static_cast<std::size_t>(i)];
+      const PartPose<double> part = part_pose(robot.parts[static_cast<std::size_t>(limb.part)], 0.0, 1.0);
+      const Vector3<double> radial = limb_frame(limb).col(0);
+      const Vector3<double> u = Vector3<double>(-radial.x(), -radial.y(), -height).normalized();
+      rows.row(i) << u.transpose(), u.dot(part.p.first) / part.p.first.norm();
+    }
+    most = std::max(most, std::abs(rows.determinant()));
+  }
+  if (most < kHeld)
+    refuse("the limbs do not hold the plate's turn: the two limbs of each half push it along the same line", where,
+           "set the half plates so that half plate 1 points towards limbs 1 and 2 (the plate's azimuth is the mean of "
+           "theirs)");
+}
+
+}  // namespace
+
+void validate(const RobotDescription& robot, const std::string& where) {
+  with_robot_type(robot, [&](auto type) {
+    using R = decltype(type);
+    const auto crossbars = std::count(std::begin(R::kParts), std::end(R::kParts), Body::crossbar);
+    validate_shape(*robot.plate, crossbars > 0, crossbars > 1, where);
+  });
+  validate_limbs(robot, where);
+  require_theta_held(robot, where);
+}
+
+}  // namespace articulated_plate
+}  // namespace deltadyn

@@ -1,0 +1,117 @@
+#include "../../src/io/plate_tree.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/error.hpp"
+
+#include "support/descriptions.hpp"
+#include "support/random_robot.hpp"
+
+namespace deltadyn {
+namespace {
+
+using ::testing::HasSubstr;
+using testing_support::four_limb_description;
+using testing_support::Random;
+
+/// Unequal limbs, tilted, and a plate that stands askew.
+RobotDescription crooked_robot(const std::string& type, DriveKind kind, Random& random) {
+  RobotDescription robot = four_limb_description(type, kind);
+  PlateShape shape = *robot.plate;
+  shape.azimuth += random.uniform(-0.3, 0.3);
+  if (type == "par4") shape.tool = random.uniform(-1, 1) > 0 ? ToolPlace::centre : ToolPlace::half_plate;
+  if (type != "i4") shape.ratio = random.uniform(1, 5);
+  robot.set_plate(shape);
+  for (auto& limb : robot.limbs) {
+    limb.azimuth += random.uniform(-0.2, 0.2);
+    limb.tilt = random.uniform(-0.7, 0.7);
+    limb.p_WD += random.cube(0.05);
+    limb.p_BA += random.cube(0.02);
+    limb.strut *= random.uniform(0.9, 1.1);
+    if (kind == DriveKind::prismatic) limb.axis_L = (limb.axis_L + random.cube(0.3)).normalized();
+  }
+  robot.gravity = 9.81 * random.cube(1).normalized();
+  return robot;
+}
+
+class FourLimbFile : public ::testing::TestWithParam<std::pair<const char*, DriveKind>> {};
+
+TEST_P(FourLimbFile, HoldsTheWholeRobot) {
+  const auto [type, kind] = GetParam();
+  Random random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const RobotDescription robot = crooked_robot(type, kind, random);
+    const RobotDescription back = robot_from_urdf(robot_to_urdf(robot), "memory");
+    EXPECT_EQ(back.type, robot.type);
+    EXPECT_EQ(back.drive_kind, robot.drive_kind);
+    ASSERT_TRUE(back.plate.has_value());
+    EXPECT_EQ(back.plate->spacing, robot.plate->spacing);
+    EXPECT_EQ(back.plate->ratio, robot.plate->ratio);
+    EXPECT_EQ(back.plate->tool, robot.plate->tool);
+    EXPECT_LT((back.gravity - robot.gravity).norm(), 1e-12);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto &a = robot.limbs[i], &b = back.limbs[i];
+      EXPECT_NEAR(a.azimuth, b.azimuth, 1e-12);
+      EXPECT_NEAR(a.tilt, b.tilt, 1e-12);
+      EXPECT_LT((a.p_WD - b.p_WD).norm(), 1e-12);
+      EXPECT_LT((a.axis_L - b.axis_L).norm(), 1e-12);
+      EXPECT_LT((a.p_BA - b.p_BA).norm(), 1e-12);
+      EXPECT_NEAR(a.strut, b.strut, 1e-12);
+      EXPECT_EQ(a.part, b.part);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, FourLimbFile,
+                         ::testing::Values(std::pair{"h4", DriveKind::revolute}, std::pair{"h4", DriveKind::prismatic},
+                                           std::pair{"i4", DriveKind::revolute}, std::pair{"i4", DriveKind::prismatic},
+                                           std::pair{"par4", DriveKind::revolute},
+                                           std::pair{"par4", DriveKind::prismatic}));
+
+TEST(TiltedDelta, TheFileHoldsTheTilt) {
+  RobotDescription robot = testing_support::delta_description("delta3");
+  for (std::size_t i = 0; i < 3; ++i) robot.limbs[i].tilt = 0.3 - 0.2 * static_cast<double>(i);
+  const RobotDescription back = robot_from_urdf(robot_to_urdf(robot), "memory");
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.limbs[i].tilt, robot.limbs[i].tilt, 1e-12);
+}
+
+/// The file of an H4 with one text in the place of another, and what is said of it.
+void expect_plate_refused(const std::string& from, const std::string& to, const std::string& words) {
+  std::string text = robot_to_urdf(four_limb_description("h4"));
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  try {
+    (void)robot_from_urdf(text, "h4.urdf");
+    FAIL() << "accepted: " << to;
+  } catch (const Error& error) {
+    EXPECT_THAT(error.problem(), HasSubstr(words));
+    EXPECT_THAT(error.where(), HasSubstr("h4.urdf"));
+    EXPECT_FALSE(error.mend().empty());
+  }
+}
+
+TEST(FourLimbFileFaults, EachIsNamed) {
+  expect_plate_refused("type=\"h4\"", "type=\"delta3\"", "how its plate is made");
+  expect_plate_refused("spacing_m=\"0.12\"", "spacing_m=\"0.2\"", "but the lengths in <plate> put it at");
+  expect_plate_refused("spacing_m=\"0.12\"", "spacing_m=\"x\"", "which is not a finite number");
+  expect_plate_refused("spacing_m=\"0.12\"", "width_m=\"0.12\"", "'width_m'");
+  expect_plate_refused("tool=\"centre\"", "tool=\"left\"", "'left' is not known");
+  expect_plate_refused("ratio=\"1\"", "ratio=\"0\"", "ratio of the tool's gear is 0");
+  expect_plate_refused("name=\"half_plate2_swing\"", "name=\"swing\"", "half_plate2_swing");
+}
+
+TEST(FourLimbFileFaults, ALimbOnAPartThatTurns) {
+  std::string text = robot_to_urdf(four_limb_description("h4"));
+  for (const char* strut : {"strut3a_end", "strut3b_end"}) {
+    const auto loop = text.find(strut);
+    const auto at = text.find("half_plate2", loop);
+    text.replace(at, std::string("half_plate2").size(), "crossbar");
+  }
+  EXPECT_THROW((void)robot_from_urdf(text, "h4.urdf"), Error);
+}
+
+}  // namespace
+}  // namespace deltadyn
