@@ -233,6 +233,12 @@ class Mjcf {
     }
   }
 
+  /// The position of a joint is `gain` times that of another.
+  void couple(const std::string& joint1, const std::string& joint2, double gain) {
+    child(equality_, "joint",
+          {{"name", joint1}, {"joint1", joint1}, {"joint2", joint2}, {"polycoef", "0 " + text(gain) + " 0 0 0"}});
+  }
+
   void fill_platform(XMLElement* plate) {
     double radius = 0;
     for (const auto& limb : robot_.limbs) radius = std::max(radius, limb.p_BA.norm());
@@ -248,45 +254,70 @@ class Mjcf {
     return (robot_.plate ? "plate_" : "platform_") + robot_file::strut_name(limb, first);
   }
 
-  /// Half plate 1 floats, held by its struts; the other parts hang on it by joints that move with theta.
+  /// The halves only translate, which the parallelograms see to; the simulation takes it as given, because MuJoCo's
+  /// loops give way a little and a light half would turn. So one strut a limb would do; two halve the error. Half 1 carries the rest by joints that move with theta; a half
+  /// that bars join to it moves by itself, tied to the first bar.
   void articulated_plate() {
-    const std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
-    const std::string theta = robot_file::theta_joint(bodies);
+    std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
+    const auto bar = std::ranges::find(bodies, std::string(name(Body::crossbar)), &robot_file::PlateBody::shared);
+    const bool tied = bar != bodies.end();
+    const robot_file::PlateBody bar_of_tie = tied ? *bar : robot_file::PlateBody();
+    const robot_file::PlateJoint leader = tied ? bar_of_tie.swing : bodies[1].swing;
     XMLElement* root = nullptr;
     for (const robot_file::PlateBody& one : bodies) {
-      const PlatePart<double>& part = robot_.parts[static_cast<std::size_t>(one.part)];
-      XMLElement* element = root == nullptr ? body(world_, one.name, home_.plate + part.c + part.a, about(Vec::UnitZ(), part.turn))
-                                            : body(root, one.name, one.origin, about(Vec::UnitZ(), one.turn));
-      if (root == nullptr) {
-        root = element;
-        child(element, "freejoint", {{"name", one.name}});
+      const bool floating = floats(one, tied);
+      XMLElement* element = floating ? floating_half(one) : body(root, one.name, one.origin, about(Vec::UnitZ(), one.turn));
+      if (root == nullptr) root = element;
+      if (!floating) {
+        const Rotation R_B1 = about(Vec::UnitZ(), -one.turn);
+        plate_joint(element, one.swing, leader, R_B1 * one.swing.along,
+                    one.swing.slides ? Vec(Vec::Zero()) : Vec(R_B1 * (one.first - one.origin)));
+        plate_joint(element, one.level, leader, Vec::UnitZ(), Vec::Zero());
+      } else if (one.part == 1) {
+        site(element, "tie_half", about(Vec::UnitZ(), -one.turn) * bar_of_tie.first);
+        child(equality_, "connect", {{"name", "tie"}, {"site1", "tie_half"}, {"site2", "tie_bar"}});
       }
-      const Rotation R_B1 = about(Vec::UnitZ(), -one.turn);
-      plate_joint(element, one.swing, theta, R_B1 * one.swing.along,
-                  one.swing.slides ? Vec(Vec::Zero()) : Vec(R_B1 * (one.first - one.origin)));
-      plate_joint(element, one.level, theta, Vec::UnitZ(), Vec::Zero());
-      const std::string own = one.name == one.shared ? std::string() : one.name;
-      inertial(element, parts_.body(one.shared, own), one.name, 0.02);
-      draw_part(element, one);
-      for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
-        const LimbGeometry<double>& limb = robot_.limbs[i];
-        for (const bool first : {true, false})
-          if (limb.part == one.part)
-            site(element, plate_site(i, first),
-                 robot_file::on_plate_link(robot_, limb, robot_file::strut_end(limb, first)));
-      }
+      if (tied && one.name == bar_of_tie.name)
+        site(element, "tie_bar", about(Vec::UnitZ(), -one.turn) * (bodies[1].origin + one.first - one.origin));
+      fill_part(element, one);
     }
   }
 
-  void plate_joint(XMLElement* element, const robot_file::PlateJoint& one, const std::string& theta, const Vec& axis,
-                   const Vec& place) {
+  static bool floats(const robot_file::PlateBody& one, bool tied) { return one.part == 0 || (one.part == 1 && tied); }
+
+  /// Three slides, whose positions are the half's place.
+  XMLElement* floating_half(const robot_file::PlateBody& one) {
+    const PlatePart<double>& part = robot_.parts[static_cast<std::size_t>(one.part)];
+    const Rotation R = about(Vec::UnitZ(), part.turn);
+    const Vec place = home_.plate + part.c + part.a;
+    XMLElement* element = body(world_, one.name, place, R);
+    for (int axis = 0; axis < 3; ++axis)
+      joint(element, one.name + "_" + "xyz"[axis], "slide", R.transpose() * Vec(Vec::Unit(axis)), place(axis));
+    return element;
+  }
+
+  /// \param leader  the joint between the halves, which carries load and friction; the others follow it
+  void plate_joint(XMLElement* element, const robot_file::PlateJoint& one, const robot_file::PlateJoint& leader,
+                   const Vec& axis, const Vec& place) {
     if (!one.moves()) return;
     XMLElement* made = joint(element, one.name, one.slides ? "slide" : "hinge", axis, 0, place);
-    if (one.name == theta) {
-      friction(made, "plate");
+    if (one.name == leader.name) {
+      set_if_any(made, "damping", parts_.value("plate.viscous") / (one.gain * one.gain));
+      set_if_any(made, "frictionloss", parts_.value("plate.coulomb") / std::abs(one.gain));
     } else {
-      child(equality_, "joint",
-            {{"name", one.name}, {"joint1", one.name}, {"joint2", theta}, {"polycoef", "0 " + text(one.gain) + " 0 0 0"}});
+      couple(one.name, leader.name, one.gain / leader.gain);
+    }
+  }
+
+  void fill_part(XMLElement* element, const robot_file::PlateBody& one) {
+    inertial(element, parts_.body(one.shared, one.name == one.shared ? std::string() : one.name), one.name, 0.02);
+    draw_part(element, one);
+    for (std::size_t i = 0; i < robot_.limbs.size(); ++i) {
+      const LimbGeometry<double>& limb = robot_.limbs[i];
+      if (limb.part != one.part) continue;
+      for (const bool first : {true, false})
+        site(element, plate_site(i, first),
+             robot_file::on_plate_link(robot_, limb, robot_file::strut_end(limb, first)));
     }
   }
 

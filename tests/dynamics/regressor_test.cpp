@@ -101,7 +101,14 @@ TYPED_TEST(Regressor, SharedColumnsAreTheSumOfTheLimbs) {
     EXPECT_THAT(body(shared, Shared::body(kind, 0)), IsNear(sum, 1e-12 * (1 + sum.cwiseAbs().maxCoeff())))
         << name(kind);
   }
-  constexpr int kRest = Shared::kColumns - kInertialParameters * (Shared::kLimbSets + Shared::kStruts);
+  constexpr int kHalves = TypeParam::kPlateTurns ? 1 : 0;  // these go with the limbs that they hold
+  if constexpr (kHalves > 0) {
+    const auto sum = (body(individual, Individual::body(Body::half_plate, 0)) +
+                      body(individual, Individual::body(Body::half_plate, 1)))
+                         .eval();
+    EXPECT_THAT(body(shared, Shared::body(Body::half_plate, 0)), IsNear(sum, 1e-12 * (1 + sum.cwiseAbs().maxCoeff())));
+  }
+  constexpr int kRest = Shared::kColumns - kInertialParameters * (Shared::kLimbSets + Shared::kStruts + kHalves);
   EXPECT_EQ(shared.template rightCols<kRest>(), individual.template rightCols<kRest>());
 }
 

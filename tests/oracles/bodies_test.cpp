@@ -1,5 +1,5 @@
-// Robots with an articulated plate against free bodies that nothing but their joints hold: where the plate is, how it
-// moves, the mass matrix and the torques.
+// Robots with an articulated plate against free bodies that nothing but their joints hold: where the bodies are, how the
+// plate moves, the mass matrix and the torques.
 
 #include "oracles/bodies.hpp"
 
@@ -68,6 +68,17 @@ class ArticulatedPlate : public ::testing::Test {
     expect("zdd", motion.zdd, zdd, zdd.norm());
   }
 
+  /// Orientation and origin of every part of the plate, which stand in the same order in the bodies.
+  void expect_parts() {
+    for (int k = 0; k < R::kPlateParts; ++k) {
+      const PartPose<double> part = part_pose(geometry.parts[k], motion.posture.z(3), geometry.yaw_ratio);
+      const Vector3<double> origin = motion.posture.z.template head<3>() + part.p.value;
+      const auto& body = flight.at[in_bodies->half(static_cast<std::size_t>(k))];
+      expect("R", rot_z(part.angle), body.R.template cast<double>().eval(), 1);
+      expect("p", origin, body.p.template cast<double>().eval(), 1);
+    }
+  }
+
   template <Limbs kSharing>
   void expect_dynamics() {
     using Layout = ParameterLayout<R, kSharing>;
@@ -109,6 +120,7 @@ TYPED_TEST(ArticulatedPlate, MovesAndWeighsAsItsBodies) {
     for (int k = 0; k < kStates && !this->HasFailure(); ++k, ++this->state) {
       ASSERT_NO_FATAL_FAILURE(this->draw_state());
       this->expect_plate();
+      this->expect_parts();
       this->template expect_dynamics<Limbs::individual>();
       this->template expect_dynamics<Limbs::shared>();
     }

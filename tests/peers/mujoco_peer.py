@@ -69,11 +69,11 @@ class Plant:
         return np.any(np.abs(self.data.qvel[rubbing]) < 2 * np.abs(self.data.qacc[rubbing]) / rate)
 
     def plate_joints(self):
-        """Places of the joints inside an articulated plate: one that follows, the one that it follows, and by how much."""
+        """Places of the joints inside an articulated plate: one that follows, the one that it follows, by how much."""
         model = self.model
         for k in np.flatnonzero(model.eq_type == mujoco.mjtEq.mjEQ_JOINT):
-            follower, master = model.jnt_qposadr[model.eq_obj1id[k]], model.jnt_qposadr[model.eq_obj2id[k]]
-            yield follower, master, model.eq_data[k, 1]
+            follower, leader = model.jnt_qposadr[model.eq_obj1id[k]], model.jnt_qposadr[model.eq_obj2id[k]]
+            yield follower, leader, model.eq_data[k, 1]
 
     def pose(self, table, row):
         data = self.data
@@ -89,11 +89,12 @@ class Plant:
                 put(f"strut{i + 1}{side}_y", table[f"beta{i + 1}"][row] - (0 if carriage else table[f"q{i + 1}"][row]))
                 put(f"strut{i + 1}{side}_z", table[f"gamma{i + 1}"][row])
         if "theta" in table.columns:
-            turn = table["half_turn"][row] / 2
-            put("half_plate1", [table[f"half_{axis}"][row] for axis in "xyz"] + [np.cos(turn), 0, 0, np.sin(turn)])
-            for joint, master, gain in self.plate_joints():
-                data.qpos[joint] = gain * table["theta"][row]
-                data.qpos[master] = table["theta"][row]
+            for half, axis in ((half, axis) for half in "12" for axis in "xyz"):
+                if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, f"half_plate{half}_{axis}") >= 0:
+                    put(f"half_plate{half}_{axis}", table[f"half{half}_{axis}"][row])
+            for joint, leader, gain in self.plate_joints():
+                data.qpos[leader] = table["leader"][row]
+                data.qpos[joint] = gain * table["leader"][row]
         elif self.count == 4:
             a, b = table["bar_a"][row], table["bar_b"][row]
             put("telescope_x", a), put("telescope_y", b), put("telescope", table["bar_length"][row])
@@ -169,7 +170,7 @@ def main(folder, kind):
     plant = Plant(f"{folder}/{kind}.xml")
     mujoco.mj_forward(plant.model, plant.data)
     closed = np.abs(plant.data.efc_pos[: plant.data.ne]).max()
-    freedom = plant.model.nv - plant.data.ne
+    freedom = plant.model.nv - np.linalg.matrix_rank(plant.loops()[1], tol=1e-9)  # both struts of a limb may say the same
     open_loops, mass, acceleration, compared = check_states(plant, states)
     angle = check_motion(plant, states, Table(f"{folder}/{kind}_motion.csv"))
     print(f"MuJoCo {mujoco.__version__}, {kind}, {len(states['q1'])} states, in {compared} of them no joint sticks")

@@ -148,7 +148,7 @@ class Case {
     for (int i = 1; i <= N; ++i) add(fmt::format("M{}_", i));
     file.print("{}x,y,z", header);
     for (int i = 1; i <= R::kLimbs; ++i) file.print(",beta{0},gamma{0}", i);
-    file.print("{}\n", R::kTelescope ? ",bar_a,bar_b,bar_length" : (R::kPlateTurns ? ",theta,half_x,half_y,half_z,half_turn" : ""));
+    file.print("{}\n", R::kTelescope ? ",bar_a,bar_b,bar_length" : (R::kPlateTurns ? ",theta,leader,half1_x,half1_y,half1_z,half2_x,half2_y,half2_z" : ""));
     WorkspaceSampler sampler(*robot_);
     for (int state = 0; state < kStates; ++state) {
       Eigen::VectorXd q, qd, qdd, tau(N);
@@ -169,9 +169,14 @@ class Case {
       if (R::kTelescope)
         file.print(",{},{},{}", std::atan2(bar.a.sin, bar.a.cos), std::atan2(bar.b.sin, bar.b.cos), bar.length);
       if constexpr (R::kPlateTurns) {
-        const PartPose<double> half = part_pose(geometry_.parts[0], posture.z(3), geometry_.yaw_ratio);
-        const Vector3<double> p = posture.z.template head<3>() + half.p.value;
-        file.print(",{},{},{},{},{}", posture.theta, p.x(), p.y(), p.z(), geometry_.parts[0].turn);
+        // The joint between the halves that leads the others in MuJoCo: the bar's turn, or the slide
+        const double travel = (geometry_.parts[1].b - geometry_.parts[0].b).norm();
+        file.print(",{},{}", posture.theta, travel > 0 ? travel * posture.theta : posture.theta);
+        for (const int half : {0, 1}) {
+          const PartPose<double> part = part_pose(geometry_.parts[half], posture.z(3), geometry_.yaw_ratio);
+          const Vector3<double> p = posture.z.template head<3>() + part.p.value;
+          file.print(",{},{},{}", p.x(), p.y(), p.z());
+        }
       }
       file.write("\n");
     }

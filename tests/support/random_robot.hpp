@@ -64,19 +64,23 @@ double mean_azimuth(int limb) {
 /// About the size of a pick-and-place robot; no two limbs alike.
 template <class Robot>
 LimbGeometry<double> random_limb(Random& random, double azimuth) {
+  // Two struts of an H4 look the same way and hold theta only where they lean.
+  constexpr bool kLeans = std::is_base_of_v<H4, Robot> && Robot::kDrive == DriveKind::prismatic;
+  constexpr double kFarther = kLeans ? 0.15 : 0;
   LimbGeometry<double> limb;
   limb.azimuth = azimuth + random.uniform(-0.15, 0.15);
-  if (Robot::kPlateTurns) limb.tilt = random.uniform(-0.3, 0.3);
+  constexpr double kTilt = Robot::kDrive == DriveKind::revolute ? 0.3 : 0.15;  // tilted carriages run out of reach
+  if (Robot::kPlateTurns) limb.tilt = random.uniform(-kTilt, kTilt);
   const Matrix3<double> radial = rot_z(SinCos<double>(limb.azimuth));
   if (Robot::kDrive == DriveKind::revolute) {
     limb.p_WD = radial * (Vector3<double>(random.uniform(0.2, 0.3), 0, 0) + random.cube(0.02));
     limb.p_DE_0 = Vector3<double>(random.uniform(0.42, 0.5), 0, 0) + random.cube(0.02);
   } else {
-    limb.p_WD = radial * (Vector3<double>(random.uniform(0.4, 0.5), 0, 0) + random.cube(0.02));
+    limb.p_WD = radial * (Vector3<double>(kFarther + random.uniform(0.4, 0.5), 0, 0) + random.cube(0.02));
     limb.axis_L = (random.cube(0.2) - Vector3<double>::UnitZ()).normalized();
     limb.p_DE_0 = random.cube(0.03);
   }
-  limb.strut = random.uniform(0.95, 1.05);
+  limb.strut = kFarther + random.uniform(0.95, 1.05);
   limb.strut_spacing = random.uniform(0.05, 0.15);
   limb.p_BA = radial * (Vector3<double>(random.uniform(0.04, 0.08), 0, 0) + random.cube(0.01));
   return limb;

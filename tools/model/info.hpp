@@ -161,7 +161,7 @@ class Info {
     const Eigen::Vector3d up(-std::sin(kElevation) * std::cos(kAzimuth), -std::sin(kElevation) * std::sin(kAzimuth),
                              std::cos(kElevation));
     PlotSpec spec;
-    spec.title = fmt::format("{} at its home pose, oblique view", robot.type);
+    spec.title = fmt::format("{} at its home pose, oblique view (across and upwards in m)", robot.type);
     spec.x_label = "to the right [m]";
     spec.y_label = "upwards in the picture [m]";
     const PlotColor colors[] = {PlotColor::black, PlotColor::vermillion, PlotColor::blue,
