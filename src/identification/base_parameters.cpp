@@ -13,6 +13,7 @@ namespace deltadyn {
 namespace {
 
 constexpr double kNegligible = 1e-8;  // of a coefficient of B beside 1: rounding of the QR
+constexpr double kVanishing = 1e-12;   // of a column beside the largest of its unit
 
 Eigen::MatrixXd random_regressor(const Robot& robot, const BaseParameterOptions& options) {
   const int n = robot.drives();
@@ -27,6 +28,17 @@ Eigen::MatrixXd random_regressor(const Robot& robot, const BaseParameterOptions&
     ++row;
   }
   return W;
+}
+
+/// For each column the largest norm among those with its unit.
+Eigen::VectorXd largest_of_unit(const Robot& robot, const Eigen::VectorXd& norm) {
+  Eigen::VectorXd largest = norm;
+  const std::vector<std::string>& units = robot.parameter_units();
+  for (Eigen::Index k = 0; k < norm.size(); ++k)
+    for (Eigen::Index j = 0; j < norm.size(); ++j)
+      if (units[static_cast<std::size_t>(j)] == units[static_cast<std::size_t>(k)])
+        largest(k) = std::max(largest(k), norm(j));
+  return largest;
 }
 
 std::string term(double coefficient, const std::string& name, bool first) {
@@ -55,9 +67,11 @@ BaseParameters find_base_parameters(const Robot& robot, const BaseParameterOptio
   Eigen::MatrixXd W = random_regressor(robot, options);
   const Eigen::Index P = W.cols();
   Eigen::VectorXd norm = W.colwise().norm();
+  const Eigen::VectorXd largest = largest_of_unit(robot, norm);
   for (Eigen::Index k = 0; k < P; ++k) {
-    // A column without any effect, like the mass of an arm that turns about a fixed axis
-    if (norm(k) < 1e-14) norm(k) = 1.0;
+    // A column without any effect: the mass of an arm that turns about a fixed axis, or the first moments of two equal
+    // bars that turn opposite ways round, whose sum is rounding.
+    if (norm(k) <= kVanishing * largest(k)) norm(k) = std::max(1.0, largest(k));
     W.col(k) /= norm(k);
   }
   const dense::PivotedQr qr(W);

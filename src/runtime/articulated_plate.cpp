@@ -36,25 +36,27 @@ void require_length(double length, const char* what, const std::string& where) {
   plausibility::require(plausibility::kLength, length, fmt::format("plate: the {}", what), where);
 }
 
-/// The lengths of the plate itself. \param hinged  the halves turn on bars, else they slide
-void validate_shape(const PlateShape& shape, bool hinged, bool two_bars, const std::string& where) {
+/// The lengths of the plate itself.
+/// \param usual  of its type: which lengths it needs
+/// \param geared  the tool may have a gear
+void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, const std::string& where) {
   if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
-  if (hinged) {
-    require_length(shape.spacing, "distance between the hinges of the two halves", where);
-    if (two_bars) require_length(shape.bar_spacing, "distance between the two bars", where);
-  } else {
-    require_length(shape.pinion_radius, "radius of the pinion", where);
-    if (shape.ratio != 1)
-      refuse(fmt::format("plate: the tool sits on the pinion, but the ratio of its gear is {}", shape.ratio), where,
-             "leave the ratio out, and choose the radius of the pinion");
-  }
+  const auto need = [&](double PlateShape::* length, const char* what) {
+    if (std::isnan(usual.*length)) require_length(shape.*length, what, where);
+  };
+  need(&PlateShape::spacing, "distance between the hinges of the two halves");
+  need(&PlateShape::bar_spacing, "distance between the two bars");
+  need(&PlateShape::pinion_radius, "radius of the pinion");
+  if (!geared && shape.ratio != 1)
+    refuse(fmt::format("plate: the tool sits on the pinion, but the ratio of its gear is {}", shape.ratio), where,
+           "leave the ratio out, and choose the radius of the pinion");
   if (!(std::isfinite(shape.ratio) && shape.ratio != 0))
     refuse(fmt::format("plate: the ratio of the tool's gear is {}", shape.ratio), where,
            "give the turns of the tool for a turn of the plate, e.g. 1 without gear, 4 for a usual Par4; negative if the "
            "gear reverses");
   plausibility::require(plausibility::kGearRatio, std::abs(shape.ratio), "plate: the ratio of the tool's gear", where);
   if (!(shape.range > 0)) refuse(fmt::format("plate: the range of theta is {} rad", shape.range), where, "give a positive angle in radians");
-  if (hinged && shape.range > kHingeRange)
+  if (std::isnan(usual.spacing) && shape.range > kHingeRange)
     refuse(fmt::format("plate: at theta = {:.4g} rad the parts of the plate collide: its hinges reach {} rad to either side at most",
                        shape.range, kHingeRange),
            where, "give a smaller range; a gear turns the tool farther");
@@ -106,8 +108,7 @@ void require_theta_held(const RobotDescription& robot, const std::string& where)
 void validate(const RobotDescription& robot, const std::string& where) {
   with_robot_type(robot, [&](auto type) {
     using R = decltype(type);
-    const auto crossbars = std::count(std::begin(R::kParts), std::end(R::kParts), Body::crossbar);
-    validate_shape(*robot.plate, crossbars > 0, crossbars > 1, where);
+    if constexpr (R::kPlateTurns) validate_shape(*robot.plate, R::usual(), R::kGeared, where);
   });
   validate_limbs(robot, where);
   require_theta_held(robot, where);

@@ -1,5 +1,5 @@
-// Robots with an articulated plate against free bodies that nothing but their joints hold: where the bodies are, how the
-// plate moves, the mass matrix and the torques.
+// Robots with an articulated plate against free bodies that nothing but their joints hold: where the bodies are, how
+// the plate moves, the mass matrix and the torques.
 
 #include "oracles/bodies.hpp"
 
@@ -149,8 +149,9 @@ TYPED_TEST(ArticulatedPlate, IsHeldByItsDrives) {
   }
 }
 
-// Limbs at 45, 135, 225 and 315 degrees, all alike, let the halves of an H4 tip against each other about the crossbar
-// where they are in the middle; the planar parallelogram and the slide of the others do not.
+// Two parallelograms leave a half plate one turn, about the line across both of their normals. In an H4 with all limbs
+// alike at 45, 135, 225 and 315 degrees these lines lie over the crossbar, so both halves may tip about it together and
+// turn opposite ways on their hinges. The slide and the planar parallelogram of the others forbid the latter.
 template <class R>
 double least_singular_value() {
   Geometry<double, R> geometry;
@@ -177,7 +178,7 @@ double least_singular_value() {
   return Eigen::BDCSVD<Eigen::MatrixXd>(J).singularValues().minCoeff();
 }
 
-TEST(Halves, OfAnH4WithLimbsInASquareTipAboutTheCrossbar) {
+TEST(Halves, OfAnH4TipAboutTheCrossbarIfTheLimbsStandInASquare) {
   EXPECT_LT(least_singular_value<H4>(), 1e-12);
   EXPECT_GT(least_singular_value<I4>(), 1e-3);
   EXPECT_GT(least_singular_value<Par4>(), 1e-3);
@@ -185,8 +186,8 @@ TEST(Halves, OfAnH4WithLimbsInASquareTipAboutTheCrossbar) {
 
 // Closure of a Par4 as others publish it (ROBNUX/arm_kinematics_trajectory, MIT). There psi is the direction from the
 // hinges of limbs 1 and 2 to those of 3 and 4, so half plate 1 lies at psi + pi. Limbs 1 and 2 stand at -90 and 0
-// degrees; half plate 1 points between them at theta = 0, so psi + pi = -pi/4 + theta, and theta = psi - 3 pi / 4 but for
-// a full turn. Rods end at their hinge minus v: -v is the attachment. Arms turn down, as here.
+// degrees; half plate 1 points between them at theta = 0, so psi + pi = -pi/4 + theta, and theta = psi - 3 pi / 4 but
+// for a full turn. Rods end at their hinge minus v: -v is the attachment. Arms turn down, as here.
 class PublishedPar4 : public ::testing::Test {
  protected:
   static constexpr double kPi = 3.14159265358979323846;

@@ -27,9 +27,9 @@ inline Real33 about(int axis, Real angle) {
   return Eigen::AngleAxis<Real>(angle, Real3::Unit(axis)).toRotationMatrix();
 }
 
-/// The robot as bodies: the base, for each limb the arm (or carriage) and its struts, half plates 1 and 2, the bars, the
-/// tool. Frames: arms have the elbow in front of them, struts x towards the plate, halves x away from the middle of the
-/// plate; bar 1 x towards half 1, bar 2 towards half 2; the tool as it stands before the plate turns.
+/// The robot as bodies: the base, for each limb the arm (or carriage) and its struts, half plates 1 and 2, the bars,
+/// the tool. Frames: arms have the elbow in front of them, struts x towards the plate, halves x away from the middle of
+/// the plate; bar 1 x towards half 1, bar 2 towards half 2; the tool as it stands before the plate turns.
 class FourLimbs {
  public:
   explicit FourLimbs(Drawing drawing) : d_(std::move(drawing)) {

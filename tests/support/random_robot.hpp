@@ -54,7 +54,7 @@ template <class Robot>
 double mean_azimuth(int limb) {
   constexpr double kRight = 1.5707963267948966;
   if constexpr (std::is_base_of_v<H4, Robot>) {
-    // As the first H4 had it. With limbs at 45, 135, 225 and 315 degrees the halves could tip about the crossbar.
+    // With limbs at 45, 135, 225 and 315 degrees the halves could tip about the crossbar (oracles/bodies_test.cpp).
     constexpr double kAzimuths[] = {0, -kRight, 2 * kRight, -kRight};
     return kAzimuths[limb];
   }

@@ -88,12 +88,15 @@ class Create {
          "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down",
          kWithRails);
     flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", kWithRails);
-    flag("--plate-spacing", plate_.spacing, "between the hinges of the two halves of the plate [m]", "h4 par4");
-    flag("--plate-bar-spacing", plate_.bar_spacing, "between the two bars of the plate's parallelogram [m]", "par4");
-    flag("--pinion-radius", plate_.pinion_radius, "of the pinion that the halves turn [m]", "i4");
+    flag("--plate-spacing", plate_.spacing, "between the hinges of the two halves of the plate [m]", types_needing(&PlateShape::spacing));
+    flag("--plate-bar-spacing", plate_.bar_spacing, "between the two bars of the plate's parallelogram [m]",
+         types_needing(&PlateShape::bar_spacing));
+    flag("--pinion-radius", plate_.pinion_radius, "of the pinion that the halves turn [m]",
+         types_needing(&PlateShape::pinion_radius));
     flag("--tool-ratio", plate_.ratio, "turns of the tool for a turn of the plate, by gear or belt, default 1; par4: 4",
-         "h4 par4");
-    flag("--tool-on", tool_on_, "centre (default) or half_plate: where the tool's axis stands", "par4");
+         types_where([](auto type) { return decltype(type)::kGeared; }));
+    flag("--tool-on", tool_on_, "centre (default) or half_plate: where the tool's axis stands",
+         types_where([](auto type) { return decltype(type)::kToolOnAHalf; }));
     flag("--plate-azimuth-rad", plate_.azimuth,
          "of half plate 1 from the plate's centre [rad], default the middle of limbs 1 and 2", kFourLimbs);
     flag("--plate-range-rad", plate_.range,
@@ -219,16 +222,29 @@ class Create {
   }
 
   void add_plate(RobotDescription& robot, const std::vector<double>& azimuth) const {
-    PlateShape shape;
+    PlateShape shape = visit_robot_type(
+        type_, robot.drive_kind,
+        [](auto type) -> PlateShape {
+          using R = decltype(type);
+          if constexpr (R::kPlateTurns) return R::usual();
+          return {};
+        },
+        [] { return PlateShape(); });
     // In the middle of the first two limbs, by the shorter way.
     shape.azimuth = plate_.azimuth.value_or(std::atan2(std::sin(azimuth[0]) + std::sin(azimuth[1]),
                                                        std::cos(azimuth[0]) + std::cos(azimuth[1])));
-    const bool slides = type_ == I4::kName, bars = type_ == Par4::kName;
-    if (!slides) shape.spacing = required(plate_.spacing, "--plate-spacing");
-    if (bars) shape.bar_spacing = required(plate_.bar_spacing, "--plate-bar-spacing");
-    if (slides) shape.pinion_radius = required(plate_.pinion_radius, "--pinion-radius");
-    shape.ratio = plate_.ratio.value_or(bars ? 4 : 1);
-    shape.range = plate_.range.value_or(slides ? 2.5 : 0.9);
+    const auto take = [&shape](const std::optional<double>& given, double PlateShape::*member, const char* flag) {
+      if (std::isnan(shape.*member)) {
+        shape.*member = required(given, flag);
+      } else {
+        shape.*member = given.value_or(shape.*member);
+      }
+    };
+    take(plate_.spacing, &PlateShape::spacing, "--plate-spacing");
+    take(plate_.bar_spacing, &PlateShape::bar_spacing, "--plate-bar-spacing");
+    take(plate_.pinion_radius, &PlateShape::pinion_radius, "--pinion-radius");
+    take(plate_.ratio, &PlateShape::ratio, "--tool-ratio");
+    take(plate_.range, &PlateShape::range, "--plate-range-rad");
     const std::string tool = tool_on_.value_or("centre");
     if (tool != "centre" && tool != "half_plate")
       refuse_usage(fmt::format("--tool-on {} is not known", tool), "use centre or half_plate");
@@ -368,7 +384,23 @@ class Create {
     set(linear ? effort_N_ : effort_Nm_, "--drive-effort", &DriveLimits::effort);
   }
 
-  inline static const std::string kFourLimbs = "h4 i4 par4", kWithArms = "delta3 delta4 " + kFourLimbs,
+  /// Names of the types with an articulated plate for which `is` holds, with spaces between.
+  template <class Is>
+  static std::string types_where(const Is& is) {
+    std::string names;
+    for_each_robot_type([&](auto type) {
+      using R = decltype(type);
+      if constexpr (R::kPlateTurns) {
+        if (is(type) && !has_word(names, R::kName)) names += (names.empty() ? "" : " ") + std::string(R::kName);
+      }
+    });
+    return names;
+  }
+  static std::string types_needing(double PlateShape::*length) {
+    return types_where([length](auto type) { return std::isnan(decltype(type)::usual().*length); });
+  }
+  inline static const std::string kFourLimbs = types_where([](auto) { return true; }),
+                                  kWithArms = "delta3 delta4 " + kFourLimbs,
                                   kWithRails = "linear-delta3 " + kFourLimbs, kAll = "delta3 delta4 " + kWithRails;
   struct PlateFlags {
     std::optional<double> spacing, bar_spacing, pinion_radius, ratio, azimuth, range;

@@ -23,6 +23,15 @@ struct H4 : FourLimbs {
   static constexpr int kPlateParts = 4;
   static constexpr Body kParts[] = {Body::half_plate, Body::half_plate, Body::crossbar, Body::tool};
 
+  static PlateShape usual() {
+    PlateShape shape;
+    shape.spacing = kNeeded;
+    shape.range = 0.9;
+    return shape;
+  }
+  static constexpr bool kGeared = true;         ///< a gear may stand between plate and tool
+  static constexpr bool kToolOnAHalf = false;  ///< the tool's axis may stand on a half plate
+
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
     const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
     parts[0].a = hinge;

@@ -14,6 +14,15 @@ struct I4 : FourLimbs {
   static constexpr int kPlateParts = 3;
   static constexpr Body kParts[] = {Body::half_plate, Body::half_plate, Body::tool};
 
+  static PlateShape usual() {
+    PlateShape shape;
+    shape.pinion_radius = kNeeded;
+    shape.range = 2.5;
+    return shape;
+  }
+  static constexpr bool kGeared = false;
+  static constexpr bool kToolOnAHalf = false;
+
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
     // The rack of half 1 touches the pinion on the side of half 1.
     const Vector3<double> travel = shape.pinion_radius * cross_z<double>(shape.outwards());

@@ -14,6 +14,16 @@ struct Par4 : FourLimbs {
   static constexpr int kPlateParts = 5;
   static constexpr Body kParts[] = {Body::half_plate, Body::half_plate, Body::crossbar, Body::crossbar, Body::tool};
 
+  static PlateShape usual() {
+    PlateShape shape;
+    shape.spacing = shape.bar_spacing = kNeeded;
+    shape.ratio = 4;
+    shape.range = 0.9;
+    return shape;
+  }
+  static constexpr bool kGeared = true;
+  static constexpr bool kToolOnAHalf = true;
+
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
     const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
     const Vector3<double> bar = 0.5 * shape.bar_spacing * cross_z<double>(shape.outwards());

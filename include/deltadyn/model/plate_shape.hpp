@@ -4,6 +4,7 @@
 /// Lengths of an articulated plate, as a drawing has them; the types (h4.hpp, i4.hpp, par4.hpp) make parts of them.
 
 #include <cmath>
+#include <limits>
 
 #include "deltadyn/model/geometry.hpp"
 
@@ -11,7 +12,11 @@ namespace deltadyn {
 
 enum class ToolPlace { centre, half_plate };
 
-/// What a type does not have it does not look at.
+/// Stands for a length that a type needs and nobody has given yet.
+inline constexpr double kNeeded = std::numeric_limits<double>::quiet_NaN();
+
+/// What a type does not have is 0, and it does not look at it. The static function usual() of a type holds kNeeded for
+/// what must be given, and defaults for the rest.
 struct PlateShape {
   double azimuth = 1.5707963267948966;  ///< of half plate 1 from the plate's centre, about z of W, at theta = 0 [rad]
   double spacing = 0;                   ///< between the hinges of the two halves (h4, par4) [m]
