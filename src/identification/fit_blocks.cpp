@@ -39,6 +39,8 @@ const Fitted& reduction_of(Body body) {
       {BlockKind::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
       {BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
       {BlockKind::spatial, {kM, kMcz, kIxx, kIyy, kIzz}, {kAlpha, kD1, kD2, kD3, kT3}, {0, 0}, 0},
+      {BlockKind::point, {kM}, {kAlpha}, {0, 0}, 0},
+      {BlockKind::planar, {kM, kMcx, kMcy, kIzz}, {kAlpha, kD1, kD2, kT1, kT2}, {0, 1}, kIzz},
   };
   return table.at(static_cast<std::size_t>(body));
 }

@@ -261,13 +261,15 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       "inline constexpr deltadyn::Limbs kSharing = deltadyn::Limbs::{2};\n"
       "using Layout = deltadyn::ParameterLayout<Robot, kSharing>;\n\n",
       space, type, options.individual_limbs ? "individual" : "shared", parts.effects.empty() ? "" : "effect_");
-  text += "struct Limb {\n  double azimuth, tilt, p_WD[3], axis_L[3], p_DE_0[3], strut, strut_spacing, p_BA[3], elbow;\n  int part;\n};\n";
+  text +=
+      "struct Limb {\n  double azimuth, tilt, p_WD[3], axis_L[3], p_DE_0[3], strut, strut_spacing, p_BA[3], elbow;\n  "
+      "int part;\n};\n";
   text += "inline constexpr Limb kLimbs[] = {\n";
   for (const auto& limb : description.limbs) {
     text += fmt::format("    {{{}, {}, {}, {}, {}, {}, {}, {}, {}, {}}},\n", model_export::text(limb.azimuth),
-                        model_export::text(limb.tilt), list(limb.p_WD),
-                        list(limb.axis_L), list(limb.p_DE_0), model_export::text(limb.strut),
-                        model_export::text(limb.strut_spacing), list(limb.p_BA), model_export::text(limb.elbow), limb.part);
+                        model_export::text(limb.tilt), list(limb.p_WD), list(limb.axis_L), list(limb.p_DE_0),
+                        model_export::text(limb.strut), model_export::text(limb.strut_spacing), list(limb.p_BA),
+                        model_export::text(limb.elbow), limb.part);
   }
   text += "};\n" + parts_text(description);
   const TelescopeGeometry<double> bar = description.telescope.value_or(TelescopeGeometry<double>());

@@ -266,7 +266,8 @@ class Mjcf {
     XMLElement* root = nullptr;
     for (const robot_file::PlateBody& one : bodies) {
       const bool floating = floats(one, tied);
-      XMLElement* element = floating ? floating_half(one) : body(root, one.name, one.origin, about(Vec::UnitZ(), one.turn));
+      XMLElement* element =
+          floating ? floating_half(one) : body(root, one.name, one.origin, about(Vec::UnitZ(), one.turn));
       if (root == nullptr) root = element;
       if (!floating) {
         const Rotation R_B1 = about(Vec::UnitZ(), -one.turn);

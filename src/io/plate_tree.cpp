@@ -48,8 +48,8 @@ std::vector<PlateBody> plate_bodies(const RobotDescription& robot) {
     const bool swings = turning.norm() > 0;
     if (swings) body.swing = {.name = body.name + "_swing", .gain = 1};
     if (sliding.norm() > 0) {
-      body.swing = {.name = body.name + "_slide", .slides = true, .gain = sliding.norm(),
-                    .along = R_1W * sliding.normalized()};
+      body.swing = {
+          .name = body.name + "_slide", .slides = true, .gain = sliding.norm(), .along = R_1W * sliding.normalized()};
     }
     body.level = {.name = body.name + "_turn", .gain = part.kappa - root.kappa - (swings ? 1 : 0)};
     bodies.push_back(std::move(body));
@@ -65,7 +65,8 @@ std::string theta_joint(const std::vector<PlateBody>& bodies) {
 }
 
 std::string plate_link(const RobotDescription& robot, const LimbGeometry<double>& limb) {
-  return robot.plate ? body_name(parts_of(robot), static_cast<std::size_t>(limb.part)) : deltadyn::name(deltadyn::Body::platform);
+  return robot.plate ? body_name(parts_of(robot), static_cast<std::size_t>(limb.part))
+                     : deltadyn::name(deltadyn::Body::platform);
 }
 
 Vec on_plate_link(const RobotDescription& robot, const LimbGeometry<double>& limb, const Vec& p_BA) {

@@ -15,8 +15,8 @@ namespace deltadyn::robot_file {
 struct PlateJoint {
   std::string name;
   bool slides = false;
-  double gain = 0;                                        ///< [1], of a slide [m/rad]
-  Vector3<double> along = Vector3<double>::UnitZ();       ///< in the frame of half plate 1
+  double gain = 0;                                   ///< [1], of a slide [m/rad]
+  Vector3<double> along = Vector3<double>::UnitZ();  ///< in the frame of half plate 1
   [[nodiscard]] bool moves() const { return gain != 0; }
 };
 

@@ -25,9 +25,12 @@ struct PlateNumber {
   double PlateShape::*member;
 };
 inline constexpr PlateNumber kPlateNumbers[] = {
-    {"azimuth_rad", &PlateShape::azimuth},          {"spacing_m", &PlateShape::spacing},
-    {"bar_spacing_m", &PlateShape::bar_spacing},    {"pinion_radius_m", &PlateShape::pinion_radius},
-    {"ratio", &PlateShape::ratio},                  {"range_rad", &PlateShape::range},
+    {"azimuth_rad", &PlateShape::azimuth},
+    {"spacing_m", &PlateShape::spacing},
+    {"bar_spacing_m", &PlateShape::bar_spacing},
+    {"pinion_radius_m", &PlateShape::pinion_radius},
+    {"ratio", &PlateShape::ratio},
+    {"range_rad", &PlateShape::range},
 };
 inline const char* tool_place_name(ToolPlace place) {
   return place == ToolPlace::centre ? "centre" : "half_plate";

@@ -177,7 +177,7 @@ class Reader {
              tree_.where,
              "a limb is a drive on the base with two struts; a CAD program's file is taken by delta-model adopt");
     robot_.drive_kind = drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute;
-    robot_.type = limbs == 4   ? type_of_four_limbs()
+    robot_.type = limbs == 4  ? type_of_four_limbs()
                   : telescope ? "delta4"
                               : (drives_[0]->prismatic ? "linear-delta3" : "delta3");
     for (std::size_t i = 0; i < limbs; ++i) {

@@ -32,7 +32,8 @@ constexpr double kHingeRange = 1.4;  // [rad] beyond it the bars and halves of a
 }
 
 void require_length(double length, const char* what, const std::string& where) {
-  if (!(length > 0)) refuse(fmt::format("plate: the {} is {} m, but must be positive", what, length), where, "give it in metres");
+  if (!(length > 0))
+    refuse(fmt::format("plate: the {} is {} m, but must be positive", what, length), where, "give it in metres");
   plausibility::require(plausibility::kLength, length, fmt::format("plate: the {}", what), where);
 }
 
@@ -41,7 +42,7 @@ void require_length(double length, const char* what, const std::string& where) {
 /// \param geared  the tool may have a gear
 void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, const std::string& where) {
   if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
-  const auto need = [&](double PlateShape::* length, const char* what) {
+  const auto need = [&](double PlateShape::*length, const char* what) {
     if (std::isnan(usual.*length)) require_length(shape.*length, what, where);
   };
   need(&PlateShape::spacing, "distance between the hinges of the two halves");
@@ -51,13 +52,16 @@ void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geare
     refuse(fmt::format("plate: the tool sits on the pinion, but the ratio of its gear is {}", shape.ratio), where,
            "leave the ratio out, and choose the radius of the pinion");
   if (!(std::isfinite(shape.ratio) && shape.ratio != 0))
-    refuse(fmt::format("plate: the ratio of the tool's gear is {}", shape.ratio), where,
-           "give the turns of the tool for a turn of the plate, e.g. 1 without gear, 4 for a usual Par4; negative if the "
-           "gear reverses");
+    refuse(
+        fmt::format("plate: the ratio of the tool's gear is {}", shape.ratio), where,
+        "give the turns of the tool for a turn of the plate, e.g. 1 without gear, 4 for a usual Par4; negative if the "
+        "gear reverses");
   plausibility::require(plausibility::kGearRatio, std::abs(shape.ratio), "plate: the ratio of the tool's gear", where);
-  if (!(shape.range > 0)) refuse(fmt::format("plate: the range of theta is {} rad", shape.range), where, "give a positive angle in radians");
+  if (!(shape.range > 0))
+    refuse(fmt::format("plate: the range of theta is {} rad", shape.range), where, "give a positive angle in radians");
   if (std::isnan(usual.spacing) && shape.range > kHingeRange)
-    refuse(fmt::format("plate: at theta = {:.4g} rad the parts of the plate collide: its hinges reach {} rad to either side at most",
+    refuse(fmt::format("plate: at theta = {:.4g} rad the parts of the plate collide: its hinges reach {} rad to either "
+                       "side at most",
                        shape.range, kHingeRange),
            where, "give a smaller range; a gear turns the tool farther");
 }
@@ -73,11 +77,13 @@ void validate_limbs(const RobotDescription& robot, const std::string& where) {
   for (const int half : {0, 1}) {
     const auto on_half = std::ranges::count(robot.limbs, half, &LimbGeometry<double>::part);
     if (on_half != 2)
-      refuse(fmt::format("{} limb{} on half plate {}, but two limbs hold each half", on_half, on_half == 1 ? "" : "s", half + 1),
+      refuse(fmt::format("{} limb{} on half plate {}, but two limbs hold each half", on_half, on_half == 1 ? "" : "s",
+                         half + 1),
              where, "let limbs 1 and 2 end on half plate 1, limbs 3 and 4 on half plate 2");
     if (largest_angle_between_limbs(robot.limbs, half) < kParallel)
-      refuse(fmt::format("the two parallelograms on half plate {} lie in the same direction, so the half could turn", half + 1), where,
-             "give the two limbs different azimuths");
+      refuse(fmt::format("the two parallelograms on half plate {} lie in the same direction, so the half could turn",
+                         half + 1),
+             where, "give the two limbs different azimuths");
   }
 }
 

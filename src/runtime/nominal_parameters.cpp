@@ -222,9 +222,9 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
   require_positive(shapes.friction_std, "the relative standard deviation of the friction");
   for (const double share : {shapes.body_std, shapes.friction_std})
     plausibility::require(plausibility::kShare, share, "a standard deviation", "", ExitCode::usage);
-  for (const double friction : {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous,
-                                shapes.telescope_drive_coulomb, shapes.telescope_viscous, shapes.telescope_coulomb,
-                                shapes.plate_viscous, shapes.plate_coulomb})
+  for (const double friction :
+       {shapes.drive_viscous, shapes.drive_coulomb, shapes.telescope_drive_viscous, shapes.telescope_drive_coulomb,
+        shapes.telescope_viscous, shapes.telescope_coulomb, shapes.plate_viscous, shapes.plate_coulomb})
     require_positive(friction, "a friction coefficient");
   NominalParameters nominal;
   nominal.value = Eigen::VectorXd::Zero(robot.parameters());

@@ -12,8 +12,7 @@ constexpr const char* kQuantities[] = {"", "viscous", "coulomb", "rotor_inertia"
 
 bool ParameterId::same_owner(const ParameterId& other) const {
   const bool inertial = kind == ParameterKind::inertial;
-  return inertial == (other.kind == ParameterKind::inertial) && number == other.number &&
-         inner == other.inner &&
+  return inertial == (other.kind == ParameterKind::inertial) && number == other.number && inner == other.inner &&
          (!inertial || body == other.body);
 }
 

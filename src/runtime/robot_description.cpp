@@ -137,7 +137,8 @@ void RobotDescription::validate(const std::string& where) const {
                        rule.parts == 1 ? "" : "s", parts.size()),
            where, "make the plate by set_plate()");
   if (plate.has_value() != rule.turns)
-    refuse(fmt::format("the plate of a {} {}", type, rule.turns ? "is articulated, and its lengths are missing" : "is one part"),
+    refuse(fmt::format("the plate of a {} {}", type,
+                       rule.turns ? "is articulated, and its lengths are missing" : "is one part"),
            where, rule.turns ? "give the lengths of the plate" : "leave out the lengths of an articulated plate");
   if (telescope.has_value() != rule.telescope)
     refuse(fmt::format("a {} has {} telescope bar", type, rule.telescope ? "a" : "no"), where,

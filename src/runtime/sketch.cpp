@@ -23,7 +23,8 @@ LimbPlaces places_of(const RobotDescription& robot, const Eigen::VectorXd& q) {
     const auto geometry = geometry_of<double, R>(robot);
     Posture<double, R> posture;
     if (posture_from_drives<double, R>(geometry, q, posture) != Status::ok)
-      throw Error("the pose to be drawn is out of reach or singular", robot.name, "check the lengths in the robot file");
+      throw Error("the pose to be drawn is out of reach or singular", robot.name,
+                  "check the lengths in the robot file");
     LimbPlaces places;
     for (int i = 0; i < R::kLimbs; ++i) {
       const auto& limb = posture.limbs[i];
@@ -41,7 +42,8 @@ LimbPlaces places_of(const RobotDescription& robot, const Eigen::VectorXd& q) {
 }
 
 /// The halves from their hinges to the limbs, and from hinge to hinge what joins them.
-void add_articulated_plate(const RobotDescription& robot, const LimbPlaces& at, SketchLines& halves, SketchLines& bars) {
+void add_articulated_plate(const RobotDescription& robot, const LimbPlaces& at, SketchLines& halves,
+                           SketchLines& bars) {
   for (std::size_t i = 0; i < robot.limbs.size(); ++i)
     halves.lines.emplace_back(at.centre + at.parts[static_cast<std::size_t>(robot.limbs[i].part)].p.value, at.plate[i]);
   const Vec first = at.parts[0].p.value, second = at.parts[1].p.value;
@@ -55,8 +57,8 @@ void add_articulated_plate(const RobotDescription& robot, const LimbPlaces& at, 
 std::vector<SketchLines> sketch_of(const RobotDescription& robot, const Eigen::VectorXd& q) {
   const LimbPlaces at = places_of(robot, q);
   const bool rails = robot.drive_kind == DriveKind::prismatic;
-  SketchLines base{"base"}, arms{rails ? "rails" : "upper arms"}, struts{"struts"}, plate{"plate"}, bars{"plate's bars"},
-      bar{"telescope bar"};
+  SketchLines base{"base"}, arms{rails ? "rails" : "upper arms"}, struts{"struts"}, plate{"plate"},
+      bars{"plate's bars"}, bar{"telescope bar"};
   const std::size_t limbs = robot.limbs.size();
   for (std::size_t i = 0; i < limbs; ++i) {
     const LimbGeometry<double>& limb = robot.limbs[i];

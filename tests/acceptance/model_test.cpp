@@ -43,7 +43,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Count{"Delta4WithoutTool", "irb360_6_1600.urdf", {"--without-tool"}, 34, 60},
                       Count{"Delta4IndividualLimbs", "irb360_6_1600.urdf", {"--individual-limbs"}, 59, 110},
                       Count{"Delta4OfMuJoCo", "mujoco_delta4.urdf", {}, 37, 70},
-                      Count{"Delta3", "delta3.urdf", {}, 18, 36}, Count{"DeltaRl5", "delta_rl5.urdf", {}, 18, 36}),
+                      Count{"Delta3", "delta3.urdf", {}, 18, 36}, Count{"DeltaRl5", "delta_rl5.urdf", {}, 18, 36},
+                      Count{"H4", "h4.urdf", {}, 25, 60}, Count{"I4", "i4.urdf", {}, 25, 50},
+                      Count{"Par4", "par4_quattro_like.urdf", {}, 25, 60},
+                      Count{"Par4IndividualLimbs", "par4_quattro_like.urdf", {"--individual-limbs"}, 59, 130}),
     [](const auto& one) { return one.param.name; });
 
 // --- create, info, prior ------------------------------------------------------------------------

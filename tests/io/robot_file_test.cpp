@@ -103,6 +103,7 @@ void expect_same(const RobotDescription& a, const RobotDescription& b) {
   EXPECT_EQ(a.type, b.type);
   EXPECT_EQ(a.drive_kind, b.drive_kind);
   EXPECT_EQ(a.parts.size(), b.parts.size());
+  EXPECT_EQ(a.plate.has_value(), b.plate.has_value());
   EXPECT_LT((a.gravity - b.gravity).norm(), 1e-12);
   ASSERT_EQ(a.limbs.size(), b.limbs.size());
   for (std::size_t i = 0; i < a.limbs.size(); ++i) {
@@ -363,9 +364,16 @@ TEST(RobotFile, MissingPartsAreNamed) {
 
 TEST(RobotFile, TheShippedRobotsAreRead) {
   const std::filesystem::path folder = std::filesystem::path(DELTADYN_SOURCE_DIR) / "data" / "robots";
-  const std::map<std::string, std::string> types = {
-      {"irb360_6_1600", "delta4"},        {"mujoco_delta4", "delta4"}, {"delta_rl5", "delta3"}, {"emps", "axis"},
-      {"linear_delta3", "linear-delta3"}, {"delta3", "delta3"}};
+  const std::map<std::string, std::string> types = {{"irb360_6_1600", "delta4"},
+                                                    {"mujoco_delta4", "delta4"},
+                                                    {"delta_rl5", "delta3"},
+                                                    {"emps", "axis"},
+                                                    {"linear_delta3", "linear-delta3"},
+                                                    {"delta3", "delta3"},
+                                                    {"linear_delta3_inclined", "linear-delta3"},
+                                                    {"h4", "h4"},
+                                                    {"i4", "i4"},
+                                                    {"par4_quattro_like", "par4"}};
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".urdf") continue;

@@ -1,8 +1,8 @@
 #include "deltadyn/kinematics/forward.hpp"
 
-#include <gtest/gtest.h>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "deltadyn/kinematics/inverse.hpp"

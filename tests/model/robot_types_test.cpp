@@ -12,7 +12,8 @@ using ::testing::ElementsAre;
 
 std::string class_of(std::string_view name, DriveKind drives) {
   return visit_robot_type(
-      name, drives, [](auto robot) { return std::string(decltype(robot)::kClass); }, [] { return std::string("none"); });
+      name, drives, [](auto robot) { return std::string(decltype(robot)::kClass); },
+      [] { return std::string("none"); });
 }
 
 TEST(RobotTypes, ANameAndAKindOfDrivesLeadToAType) {

@@ -11,8 +11,11 @@
 
 #include "deltadyn/dynamics/inverse_dynamics.hpp"
 #include "deltadyn/dynamics/mass_matrix.hpp"
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 
 #include "oracles/four_limbs.hpp"
+#include "support/descriptions.hpp"
 #include "support/drawing_of.hpp"
 #include "support/matchers.hpp"
 #include "support/random_robot.hpp"
@@ -125,6 +128,35 @@ TYPED_TEST(ArticulatedPlate, MovesAndWeighsAsItsBodies) {
       this->template expect_dynamics<Limbs::shared>();
     }
   }
+}
+
+// The torques of unit parameters over random states: as many of them are independent as the library has combinations.
+TYPED_TEST(ArticulatedPlate, ShowsAsManyCombinationsOfBodiesAsTheLibrarySays) {
+  using R = TypeParam;
+  using Layout = ParameterLayout<R, Limbs::shared>;
+  constexpr int kStates = 30, kBodyColumns = kInertialParameters * Layout::kBodies;
+  const RobotDescription robot = four_limb_description(R::kName, R::kDrive);
+  this->geometry = geometry_of<double, R>(robot);
+  this->in_bodies.emplace(drawing_of(this->geometry, *robot.plate));
+  Eigen::MatrixXd W(4 * kStates, kBodyColumns);
+  for (int k = 0; k < kStates; ++k) {
+    ASSERT_NO_FATAL_FAILURE(this->draw_state());
+    for (int column = 0; column < kBodyColumns; ++column) {
+      const Vector<double, Layout::kColumns> unit = Vector<double, Layout::kColumns>::Unit(column);
+      W.block<4, 1>(4 * k, column) =
+          oracles::bodies::drive_torque(this->in_bodies->system(), this->flight, load_of<R, Layout>(unit))
+              .template cast<double>();
+    }
+  }
+  const double largest = W.colwise().norm().maxCoeff();
+  for (int column = 0; column < kBodyColumns; ++column) {
+    const double size = W.col(column).norm();
+    W.col(column) *= size > 1e-9 * largest ? 1 / size : 0.0;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(1e-9);
+  const int friction = 2 * Layout::kFrictionJoints;
+  EXPECT_EQ(qr.compute(W).rank() + friction, find_base_parameters(*make_robot(robot)).count());
 }
 
 /// Rank of the joints' equations, with or without those that hold the drives.

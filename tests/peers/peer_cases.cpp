@@ -131,7 +131,8 @@ class Case {
     for (int k = Layout::kFriction; k < robot_->parameters(); ++k) {
       const bool rotor = k >= Layout::kRotorInertia;
       values_(k) = rotor ? random_.uniform(0.01, 0.05) : random_.uniform(0.5, 2);
-      if (R::kPlateTurns && (k == Layout::viscous(N) || k == Layout::coulomb(N))) values_(k) = random_.uniform(0.05, 0.2);
+      if (R::kPlateTurns && (k == Layout::viscous(N) || k == Layout::coulomb(N)))
+        values_(k) = random_.uniform(0.05, 0.2);
     }
     if (R::kTelescope) values_(Layout::kRotorInertia + N - 1) = 0.002;
     p_.setZero();
@@ -148,7 +149,9 @@ class Case {
     for (int i = 1; i <= N; ++i) add(fmt::format("M{}_", i));
     file.print("{}x,y,z", header);
     for (int i = 1; i <= R::kLimbs; ++i) file.print(",beta{0},gamma{0}", i);
-    file.print("{}\n", R::kTelescope ? ",bar_a,bar_b,bar_length" : (R::kPlateTurns ? ",theta,leader,half1_x,half1_y,half1_z,half2_x,half2_y,half2_z" : ""));
+    file.print("{}\n", R::kTelescope
+                           ? ",bar_a,bar_b,bar_length"
+                           : (R::kPlateTurns ? ",theta,leader,half1_x,half1_y,half1_z,half2_x,half2_y,half2_z" : ""));
     WorkspaceSampler sampler(*robot_);
     for (int state = 0; state < kStates; ++state) {
       Eigen::VectorXd q, qd, qdd, tau(N);

@@ -29,10 +29,12 @@ inline bool is_drawn(const std::string& part) {
   return std::find(parts.begin(), parts.end(), part) != parts.end();
 }
 
-/// Every effect meets every type: the numbers of both have no common divisor.
+/// Every effect meets every type: the numbers of both have no common divisor, and types of four limbs come twice, with
+/// arms and on rails.
 inline std::string drawn_type(int index) {
-  const char* types[] = {"delta4", "delta3", "axis", "linear-delta3", "delta4"};
-  return types[index % 5];
+  const char* types[] = {"delta4", "delta3", "axis", "linear-delta3", "h4", "delta4", "i4",
+                         "par4",   "delta3", "h4",   "par4"};
+  return types[index % 11];
 }
 
 inline void draw_paths(DrawnCase& c, int harmonics, Random& random) {
@@ -165,7 +167,7 @@ inline void add_sensors(const DrawnCase& c, int l, Log& log) {
   for (int j = 0; j < c.machine.robot.drives(); ++j) {
     const auto at = static_cast<std::size_t>(j);
     const double sigma = c.noise.torque_share * largest(j), rho = c.noise.correlation;
-    const double white = c.noise.encoder_rad * (j == 3 ? 10.0 : c.machine.turns(j) ? 1.0 : 0.3);
+    const double white = c.noise.encoder_rad * (c.machine.yaws(j) ? 10.0 : c.machine.turns(j) ? 1.0 : 0.3);
     const double step = c.encoder_step[at], phase = between(random, 0, 1);
     double e = sigma * normal(random);
     for (Eigen::Index k = 0; k < log.samples(); ++k) {

@@ -69,6 +69,8 @@ struct Machine {
 
   [[nodiscard]] bool plate() const { return !robot.parts.empty(); }
   [[nodiscard]] int limbs() const { return static_cast<int>(robot.limbs.size()); }
+  /// The drive of a telescope bar, which turns fast and light.
+  [[nodiscard]] bool yaws(int drive) const { return robot.telescope && drive == limbs(); }
   /// Does the drive turn, or slide?
   [[nodiscard]] bool turns(int drive) const { return robot.kind_of_drive(drive) == DriveKind::revolute; }
 };
@@ -96,16 +98,51 @@ inline RobotDescription draw_delta(const std::string& type, double& length, Rand
   return robot;
 }
 
+/// h4, i4 or par4 with arms or on rails, limbs in the diagonals, the plate of the size of its attachments.
+inline RobotDescription draw_four_limbs(const std::string& type, double& length, Random& random) {
+  const bool carriages = between(random, 0, 1) < 0.3;
+  RobotDescription robot =
+      testing_support::four_limb_description(type, carriages ? DriveKind::prismatic : DriveKind::revolute);
+  double base = 0, strut = 0;
+  if (carriages) {
+    strut = length = between(random, 0.4, 1.1);
+    base = strut * between(random, 0.45, 0.65);
+  } else {
+    length = between(random, 0.2, 0.6);
+    strut = length * between(random, 2.0, 2.5);
+    base = length * between(random, 0.4, 0.7);
+  }
+  const double plate = 0.1 * strut * between(random, 0.9, 1.5);
+  PlateShape shape = *robot.plate;
+  if (shape.spacing > 0) shape.spacing = plate * between(random, 1.1, 1.6);
+  if (shape.bar_spacing > 0) shape.bar_spacing = shape.spacing * between(random, 0.4, 0.7);
+  if (shape.pinion_radius > 0) shape.pinion_radius = plate * between(random, 0.35, 0.5);
+  shape.tool = ToolPlace::centre;
+  robot.set_plate(shape);
+  const double spacing = strut * between(random, 0.08, 0.15);
+  for (LimbGeometry<double>& limb : robot.limbs) {
+    const Vector3<double> radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
+    limb.p_WD = base * radial;
+    limb.p_BA = plate * radial - robot.parts[static_cast<std::size_t>(limb.part)].a;
+    limb.strut = strut;
+    limb.strut_spacing = spacing;
+    if (!carriages) limb.p_DE_0.x() = length;
+  }
+  return robot;
+}
+
 /// Height of the plate with the drives in the middle of their ranges.
 inline double home_height(const RobotDescription& robot, double length) {
   const LimbGeometry<double>& limb = robot.limbs.front();
   const bool carriages = robot.drive_kind == DriveKind::prismatic;
   constexpr double kArm = 0.35;  // rad below the horizontal
   const Eigen::Vector2d elbow =
-      limb.p_WD.x() * Eigen::Vector2d::UnitX() +
+      limb.p_WD.head<2>().norm() * Eigen::Vector2d::UnitX() +
       (carriages ? Eigen::Vector2d(0.4 * length * limb.axis_L.x(), 0.4 * length * limb.axis_L.z())
                  : Eigen::Vector2d(length * std::cos(kArm), -length * std::sin(kArm)));
-  const double out = elbow.x() - limb.p_BA.x();
+  const Eigen::Vector3d part =
+      robot.plate ? robot.parts[static_cast<std::size_t>(limb.part)].a : Eigen::Vector3d::Zero();
+  const double out = elbow.x() - (part + limb.p_BA).head<2>().norm();
   return elbow.y() - std::sqrt(std::max(0.01 * limb.strut * limb.strut, limb.strut * limb.strut - out * out));
 }
 
@@ -140,11 +177,11 @@ inline void draw_gears(Machine& m, double share, Random& random) {
     const bool in_arm = id.kind == ParameterKind::inertial && id.body == Body::upper_arm;
     if (in_arm && id.entry == (carriage ? 0 : 5)) arm = m.parameters(k);
     if (in_arm && !carriage && m.plate() && (id.entry == 5 || id.entry == 6)) m.parameters(k) += share * arm;
-    if (id.kind == ParameterKind::rotor_inertia) m.parameters(k) = (id.number == 4 ? 0.02 : 1.0) * share * arm;
+    if (id.kind == ParameterKind::rotor_inertia) m.parameters(k) = (m.yaws(id.number - 1) ? 0.02 : 1.0) * share * arm;
   }
 }
 
-/// \param type  "axis", "delta3", "delta4", "linear-delta3"
+/// \param type  "axis", "delta3", "delta4", "linear-delta3", "h4", "i4", "par4"
 inline Machine draw_machine(const std::string& type, Random& random) {
   Machine m;
   const bool geared = between(random, 0, 1) < 0.6;
@@ -156,10 +193,12 @@ inline Machine draw_machine(const std::string& type, Random& random) {
     if (turns) m.layout.rotor_inertia = {1};
     m.layout.offset = true;
   } else {
-    m.robot = draw_delta(type, m.length, random);
+    const bool four = type == "h4" || type == "i4" || type == "par4";
+    m.robot = four ? draw_four_limbs(type, m.length, random) : draw_delta(type, m.length, random);
     m.home_z = home_height(m.robot, m.length);
     if (geared && type == "delta4") m.layout.rotor_inertia = {4};
-    if (geared && type == "linear-delta3") m.layout.rotor_inertia = {1, 2, 3};
+    for (int j = 1; j <= m.limbs() && geared && m.robot.drive_kind == DriveKind::prismatic; ++j)
+      m.layout.rotor_inertia.push_back(j);
   }
   draw_gears(m, share, random);
   return m;
@@ -171,14 +210,15 @@ inline void draw_friction(Machine& m, Random& random) {
   const int drives = m.robot.drives();
   for (int j = 0; j < drives; ++j) {
     m.scale[static_cast<std::size_t>(j)].friction =
-        m.scale[static_cast<std::size_t>(j)].torque * (j == 3 ? between(random, 1.0, 4.0) : between(random, 0.12, 0.4));
+        m.scale[static_cast<std::size_t>(j)].torque *
+        (m.yaws(j) ? between(random, 1.0, 4.0) : between(random, 0.12, 0.4));
   }
   for (int k = 0; k < robot->parameters(); ++k) {
     const ParameterId& id = robot->parameter_ids()[static_cast<std::size_t>(k)];
     if (id.kind == ParameterKind::offset) m.parameters(k) = between(random, -0.5, 0.5) * m.scale[0].friction;
     if (!id.is_friction()) continue;
     if (id.number == 0) {
-      m.parameters(k) = between(random, 0.8, 3.0) * m.length / 0.5;
+      m.parameters(k) = (m.robot.plate ? 0.03 : 1.0) * between(random, 0.8, 3.0) * m.length / 0.5;
       continue;
     }
     const DriveScale& scale = m.scale[static_cast<std::size_t>(id.number - 1)];
@@ -207,7 +247,7 @@ inline void draw_dirt(Machine& m, Random& random) {
     const double largest = 3 * scale.torque + scale.friction;
     dirt.bristles.push_back({scale.range * between(random, 1e-3, 2.5e-3), between(random, -0.2, 0.5),
                              between(random, 0, 1) < 0.5 ? 0.0 : between(random, 1e-4, 1e-3)});
-    const double waves = j == 3 ? 9.0 : std::floor(between(random, 20, 48));
+    const double waves = m.yaws(j) ? 9.0 : std::floor(between(random, 20, 48));
     const double n = m.turns(j) ? waves : 2 * kPi * waves / (2 * scale.range);
     dirt.cogging.push_back({0.005 * largest * between(random, 0.7, 1.3), n, between(random, 0, 6)});
     dirt.torque_quantum.push_back(largest * std::pow(2.0, -std::floor(between(random, 9, 11.99))));

@@ -3,11 +3,12 @@
 /// \file
 /// Reference motions of the drawn robots: random Fourier paths, and pick and place.
 
-#include <Eigen/SVD>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "deltadyn/runtime/workspace.hpp"
 
 #include "studies/drawn_machine.hpp"
 
@@ -36,7 +37,8 @@ inline Eigen::VectorXd room_of(const Machine& m, double share) {
   }
   const bool carriages = m.robot.drive_kind == DriveKind::prismatic;
   for (int i = 0; i < n; ++i) {
-    room(i) = i == 3 ? 5.0 : m.length * (carriages ? (i < 2 ? 0.20 : 0.14) : (i < 2 ? 0.30 : 0.17));
+    const double yaw = m.robot.plate ? 0.4 * share * m.robot.plate_yaw_range() : 5.0;
+    room(i) = i == 3 ? yaw : m.length * (carriages ? (i < 2 ? 0.20 : 0.14) : (i < 2 ? 0.30 : 0.17));
   }
   room.head(3) *= share;  // a tool turns as far as it likes
   return room;
@@ -89,7 +91,7 @@ inline Path pick_path(const Machine& m, const PathOptions& o) {
   std::vector<double> wait;
   for (int k = 0; k < 200; ++k) {
     Eigen::VectorXd place(n);
-    for (int i = 0; i < n; ++i) place(i) = room(i) * (i == 3 ? 0.25 : 1.0) * between(random, -1, 1);
+    for (int i = 0; i < n; ++i) place(i) = room(i) * (i == 3 && !m.robot.plate ? 0.25 : 1.0) * between(random, -1, 1);
     if (n > 2) place(2) = room(2) * between(random, -1.0, -0.3);
     places.push_back(place);
     wait.push_back(o.cycle_s * between(random, 0.05, 0.3));
@@ -130,12 +132,11 @@ inline bool in_reach(const Machine& m, const Path& path, double duration_s) {
   for (double t = -1; t < duration_s + 0.1; t += 0.02) {
     if (robot->to_drives(path(t), q, qd, qdd) != Status::ok) return false;
     if (!m.plate()) continue;
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < m.limbs(); ++j) {
       if (m.turns(j) && (q(j) < -0.8 || q(j) > 1.4)) return false;
     }
     if (robot->jacobian(q, J) != Status::ok) return false;
-    const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(J.topLeftCorner(3, 3)).singularValues();
-    if (s(0) > 5 * s(2)) return false;
+    if (plate_condition(m.robot, J) > (m.robot.plate ? 9 : 5)) return false;
   }
   return true;
 }

@@ -68,7 +68,7 @@ class BristleWay {
 struct BuiltMachine {
   std::unique_ptr<Robot> robot;
   Eigen::VectorXd p;                     ///< limb by limb, without friction
-  std::vector<double> viscous, coulomb;  ///< drives, then the telescope's slide
+  std::vector<double> viscous, coulomb;  ///< drives, then the inner joint
 };
 
 /// Parameters of the user's layout in the plant's own, which has everything limb by limb.

@@ -177,6 +177,11 @@ class DrawnRun {
       load += (built_.viscous.back() * rate + built_.coulomb.back() * std::tanh(rate / 0.005)) *
               (J.topRows<3>().transpose() * along);
     }
+    if (const auto& plate = case_.machine.robot.plate) {
+      const double rate = (J * now.qd)(3) / plate->ratio;
+      load += (built_.viscous.back() * rate + built_.coulomb.back() * std::tanh(rate / 0.02)) / plate->ratio *
+              J.row(3).transpose();
+    }
     return true;
   }
 

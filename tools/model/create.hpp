@@ -16,6 +16,7 @@
 
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/plate_hold.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
@@ -62,33 +63,31 @@ class Create {
     c.add_option("type", type_, robot_type_names())->required()->type_name("TYPE");
     c.add_option("-o,--output", output_, "robot file to write [standard output]")->type_name("FILE");
     c.add_option("--name", name_, "name of the robot [its type]");
-    flag("--base-radius", base_radius_, "drive i at this distance from z, at the azimuth of its limb [m]",
-         kAll);
-    flag("--platform-radius", platform_radius_, "attachments of the limbs from the plate's centre (of an articulated plate: in its middle) [m]",
-         kAll);
+    flag("--base-radius", base_radius_, "drive i at this distance from z, at the azimuth of its limb [m]", kAll);
+    flag("--platform-radius", platform_radius_,
+         "attachments of the limbs from the plate's centre (of an articulated plate: in its middle) [m]", kAll);
     flag("--upper-arm", upper_arm_, "drive axis to elbow [m]", kWithArms);
     flag("--strut", strut_, "strut, ball centre to ball centre [m]", kAll);
-    flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1",
-         kAll);
+    flag("--strut-spacing", spacing_, "distance of the two struts of a limb [m], default 0.1", kAll);
     list("--limb-azimuth-rad", azimuths_,
          "azimuth of each limb [rad], default 0, 120, 240 deg; of four limbs 45, 135, 225, 315 deg", kAll);
     list("--limb-tilt-rad", tilts_, "tilt of the limb frames about their own x [rad], one for all or one a limb", kAll);
     flag("--drive-places-m", places_, "instead of --base-radius: x,y,z of each drive; x,y,z;x,y,z;... [m]", kAll);
     flag("--attachments-m", attachments_,
-         "instead of --platform-radius: x,y,z of each limb's attachment from the plate's centre, of an articulated plate "
+         "instead of --platform-radius: x,y,z of each limb's attachment from the plate's centre, of an articulated "
+         "plate "
          "from the hinge or middle of its half [m]",
          kAll);
-    flag("--elbow", elbow_, "outwards (default) or inwards; of carriages: above (default) or below",
-         kAll);
+    flag("--elbow", elbow_, "outwards (default) or inwards; of carriages: above (default) or below", kAll);
     list("--telescope-base-m", telescope_base_,
          "upper joint of the telescope bar from the base origin x,y,z [m], default 0,0,0", "delta4");
     list("--telescope-platform-m", telescope_platform_, "lower joint from the plate's centre x,y,z [m], default 0,0,0",
          "delta4");
     list("--rail-axis-limb", rail_axis_,
-         "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down",
-         kWithRails);
+         "rail direction x,y,z in the limb frame (x outwards, z up), default 0,0,-1: positive is down", kWithRails);
     flag("--rail-tilt-rad", rail_tilt_, "instead: rail down and tilted outwards by this angle [rad]", kWithRails);
-    flag("--plate-spacing", plate_.spacing, "between the hinges of the two halves of the plate [m]", types_needing(&PlateShape::spacing));
+    flag("--plate-spacing", plate_.spacing, "between the hinges of the two halves of the plate [m]",
+         types_needing(&PlateShape::spacing));
     flag("--plate-bar-spacing", plate_.bar_spacing, "between the two bars of the plate's parallelogram [m]",
          types_needing(&PlateShape::bar_spacing));
     flag("--pinion-radius", plate_.pinion_radius, "of the pinion that the halves turn [m]",
@@ -99,8 +98,8 @@ class Create {
          types_where([](auto type) { return decltype(type)::kToolOnAHalf; }));
     flag("--plate-azimuth-rad", plate_.azimuth,
          "of half plate 1 from the plate's centre [rad], default the middle of limbs 1 and 2", kFourLimbs);
-    flag("--plate-range-rad", plate_.range,
-         "largest turn of the plate to either side [rad], default 0.9; i4: 2.5", kFourLimbs);
+    flag("--plate-range-rad", plate_.range, "largest turn of the plate to either side [rad], default 0.9; i4: 2.5",
+         kFourLimbs);
     flag("--drive-kind", drive_kind_, "revolute (default) or prismatic", kFourLimbs + " axis");
     flag("--arm", arm_, "length of the arm on a revolute drive [m]", "axis");
     list("--axis-direction", axis_direction_,
@@ -165,6 +164,7 @@ class Create {
       robot.validate("");
       const auto closes = make_robot(robot);
       const WorkspaceSampler sampler(*closes);  // refuses lengths that do not close
+      warn_of_tipping(*closes, sampler.ball().centre);
     } catch (const Error& e) {
       // They are the flags here, not a file's.
       refuse_usage(e.problem(), e.mend().empty() ? "check the lengths and limits given" : e.mend());
@@ -177,6 +177,18 @@ class Create {
     }
     run.summary.add("type", robot.type);
     run.summary.add("drives", robot.drives());
+  }
+
+  static void warn_of_tipping(const Robot& robot, const Eigen::Vector3d& home) {
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
+    z.head<3>() = home;
+    if (robot.description().parts.empty() || robot.inverse_kinematics(z, q) != Status::ok) return;
+    if (tipping_margin(robot.description(), q) < kLeastTippingMargin)
+      fmt::print(
+          stderr,
+          "warning: in the home pose both halves of the plate may tip about the same axis, which its hinges do not "
+          "stop\n  a real h4 has its limbs in three directions, e.g. --limb-azimuth-rad 0,-1.5708,3.1416,-1.5708 "
+          "--plate-azimuth-rad 0 with places and attachments to match; level motion is described rightly\n");
   }
 
   static double required(const std::optional<double>& value, const std::string& name) {
@@ -231,8 +243,8 @@ class Create {
         },
         [] { return PlateShape(); });
     // In the middle of the first two limbs, by the shorter way.
-    shape.azimuth = plate_.azimuth.value_or(std::atan2(std::sin(azimuth[0]) + std::sin(azimuth[1]),
-                                                       std::cos(azimuth[0]) + std::cos(azimuth[1])));
+    shape.azimuth = plate_.azimuth.value_or(
+        std::atan2(std::sin(azimuth[0]) + std::sin(azimuth[1]), std::cos(azimuth[0]) + std::cos(azimuth[1])));
     const auto take = [&shape](const std::optional<double>& given, double PlateShape::*member, const char* flag) {
       if (std::isnan(shape.*member)) {
         shape.*member = required(given, flag);
@@ -276,7 +288,8 @@ class Create {
     robot.drive_kind = linear() ? DriveKind::prismatic : DriveKind::revolute;
     const std::size_t limbs = four_limbs() ? 4 : 3;
     const std::vector<double> azimuth = azimuths(limbs);
-    const std::vector<double> tilt = tilts_.empty() ? std::vector<double>(limbs, 0.0) : spread(tilts_, limbs, "--limb-tilt-rad");
+    const std::vector<double> tilt =
+        tilts_.empty() ? std::vector<double>(limbs, 0.0) : spread(tilts_, limbs, "--limb-tilt-rad");
     if (four_limbs()) {
       add_plate(robot, azimuth);
     } else {
@@ -285,7 +298,8 @@ class Create {
     std::vector<Eigen::Vector3d> places, ends;
     if (places_) places = points(*places_, limbs, "--drive-places-m");
     if (attachments_) ends = points(*attachments_, limbs, "--attachments-m");
-    if (places_ && base_radius_) refuse_usage("--base-radius and --drive-places-m exclude each other", "give one of them");
+    if (places_ && base_radius_)
+      refuse_usage("--base-radius and --drive-places-m exclude each other", "give one of them");
     if (attachments_ && platform_radius_)
       refuse_usage("--platform-radius and --attachments-m exclude each other", "give one of them");
     for (std::size_t i = 0; i < limbs; ++i) {
@@ -306,7 +320,8 @@ class Create {
         if (upper_arm_) refuse_usage("--upper-arm belongs to revolute drives", "leave it out");
         limb.axis_L = rail();
       } else {
-        if (!rail_axis_.empty() || rail_tilt_) refuse_usage("a rail belongs to prismatic drives", "leave it out, or give --drive-kind prismatic");
+        if (!rail_axis_.empty() || rail_tilt_)
+          refuse_usage("a rail belongs to prismatic drives", "leave it out, or give --drive-kind prismatic");
         limb.p_DE_0 = Eigen::Vector3d(required(upper_arm_, "--upper-arm"), 0, 0);
       }
       robot.limbs.push_back(limb);
@@ -400,8 +415,8 @@ class Create {
     return types_where([length](auto type) { return std::isnan(decltype(type)::usual().*length); });
   }
   inline static const std::string kFourLimbs = types_where([](auto) { return true; }),
-                                  kWithArms = "delta3 delta4 " + kFourLimbs,
-                                  kWithRails = "linear-delta3 " + kFourLimbs, kAll = "delta3 delta4 " + kWithRails;
+                                  kWithArms = "delta3 delta4 " + kFourLimbs, kWithRails = "linear-delta3 " + kFourLimbs,
+                                  kAll = "delta3 delta4 " + kWithRails;
   struct PlateFlags {
     std::optional<double> spacing, bar_spacing, pinion_radius, ratio, azimuth, range;
   };

@@ -14,9 +14,10 @@
 #include "deltadyn/identification/base_parameters.hpp"
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/report/plot.hpp"
+#include "deltadyn/runtime/plate_hold.hpp"
 #include "deltadyn/runtime/reach.hpp"
-#include "deltadyn/runtime/sketch.hpp"
 #include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/runtime/sketch.hpp"
 
 #include "layout_flags.hpp"
 #include "tool_support.hpp"
@@ -54,7 +55,8 @@ class Info {
       const auto name = [&](const char* key) { return fmt::format("limb{}_{}", i + 1, key); };
       fmt::print("  limb {}: azimuth {:.6g} deg,{} drive at ({:.6g}, {:.6g}, {:.6g}) m", i + 1,
                  limb.azimuth * 180 / std::numbers::pi,
-                 limb.tilt != 0 ? fmt::format(" tilt {:.6g} deg,", limb.tilt * 180 / std::numbers::pi) : "", limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
+                 limb.tilt != 0 ? fmt::format(" tilt {:.6g} deg,", limb.tilt * 180 / std::numbers::pi) : "",
+                 limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
       summary.add(name("azimuth"), limb.azimuth, "rad");
       summary.add(name("base_radius"), limb.p_WD.head<2>().norm(), "m");
       if (robot.drive_kind == DriveKind::prismatic) {
@@ -132,9 +134,19 @@ class Info {
         reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
     if (const double range = robot.description().plate_yaw_range(); range > 0) {
       fmt::print(
-          "  the plate turns the tool by {:.4g} deg to either side; with it turned that far {:.0f} % of this volume are "
+          "  the plate turns the tool by {:.4g} deg to either side; with it turned that far {:.0f} % of this volume "
+          "are "
           "left\n",
           range * 180 / std::numbers::pi, 100 * reach.share_at_full_turn);
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
+      z.head<3>() = reach.home;
+      if (robot.inverse_kinematics(z, q) == Status::ok) {
+        const double margin = tipping_margin(robot.description(), q);
+        summary.add("plate_tipping_margin", margin);
+        if (margin < kLeastTippingMargin)
+          fmt::print("  in the home pose both halves of the plate may tip about the same axis (margin {:.2g} of 1)\n",
+                     margin);
+      }
       summary.add("yaw_range", range, "rad");
       summary.add("workspace_share_at_full_turn", reach.share_at_full_turn);
     }

@@ -62,8 +62,8 @@ class Prior {
   }
 
   enum Part { arm, carriage, strut, platform, tool, telescope, halves, bars, any };
-  static constexpr const char* kPartNames[] = {"upper arm", "carriage", "struts", "rigid plate", "tool",
-                                              "telescope bar", "half plates", "crossbar", ""};
+  static constexpr const char* kPartNames[] = {
+      "upper arm", "carriage", "struts", "rigid plate", "tool", "telescope bar", "half plates", "crossbar", ""};
 
   /// A flag for a part that the robot does not have is a mistake, not a wish.
   [[nodiscard]] bool has(const RobotDescription& robot, Part part) const {

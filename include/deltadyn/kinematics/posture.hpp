@@ -87,10 +87,10 @@ void elbow(const LimbGeometry<T>& geometry, const T& q, LimbPosture<T, Robot::kD
 /// Pose of one part of a turning plate and its derivatives by the yaw psi.
 template <class T>
 struct PartPose {
-  PointCurve<T> p;  ///< origin from r, in W [m, m/rad]
-  SinCos<T> turned; ///< kappa theta
-  SinCos<T> angle;  ///< of the orientation, turn + kappa theta
-  T rate;           ///< d angle / d psi
+  PointCurve<T> p;   ///< origin from r, in W [m, m/rad]
+  SinCos<T> turned;  ///< kappa theta
+  SinCos<T> angle;   ///< of the orientation, turn + kappa theta
+  T rate;            ///< d angle / d psi
 };
 
 template <class T>

@@ -48,8 +48,8 @@ Status centre_on_three_limbs(const Geometry<T, Robot>& geometry, const Vector<T,
     const int i = k < left_out ? k : k + 1;
     LimbPosture<T, Robot::kDrives> limb;
     elbow<T, Robot>(geometry.limbs[i], q(i), limb);
-    centre[k] = geometry.limbs[i].p_WD + limb_frame(geometry.limbs[i]) * limb.p_DE.value -
-                attachment(geometry, i, psi).value;
+    centre[k] =
+        geometry.limbs[i].p_WD + limb_frame(geometry.limbs[i]) * limb.p_DE.value - attachment(geometry, i, psi).value;
     radius[k] = geometry.limbs[i].strut;
   }
   return lower_intersection(centre, radius, r);

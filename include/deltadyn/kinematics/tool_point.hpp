@@ -10,10 +10,10 @@ namespace deltadyn {
 /// A point of the machine that moves; in W.
 template <class T, int N>
 struct PointMotion {
-  Vector3<T> position = Vector3<T>::Zero();          ///< [m]
-  Vector3<T> velocity = Vector3<T>::Zero();          ///< [m/s]
-  Vector3<T> acceleration = Vector3<T>::Zero();      ///< [m/s^2]
-  Matrix<T, 3, N> J = Matrix<T, 3, N>::Zero();       ///< d position / dq
+  Vector3<T> position = Vector3<T>::Zero();      ///< [m]
+  Vector3<T> velocity = Vector3<T>::Zero();      ///< [m/s]
+  Vector3<T> acceleration = Vector3<T>::Zero();  ///< [m/s^2]
+  Matrix<T, 3, N> J = Matrix<T, 3, N>::Zero();   ///< d position / dq
 };
 
 /// Zero for a robot without a plate.

@@ -29,10 +29,11 @@ struct H4 : FourLimbs {
     shape.range = 0.9;
     return shape;
   }
-  static constexpr bool kGeared = true;         ///< a gear may stand between plate and tool
+  static constexpr bool kGeared = true;        ///< a gear may stand between plate and tool
   static constexpr bool kToolOnAHalf = false;  ///< the tool's axis may stand on a half plate
 
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
+    for (PlatePart<double>& part : parts) part = {};
     const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
     parts[0].a = hinge;
     parts[1].a = -hinge;

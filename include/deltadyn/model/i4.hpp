@@ -24,6 +24,7 @@ struct I4 : FourLimbs {
   static constexpr bool kToolOnAHalf = false;
 
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
+    for (PlatePart<double>& part : parts) part = {};
     // The rack of half 1 touches the pinion on the side of half 1.
     const Vector3<double> travel = shape.pinion_radius * cross_z<double>(shape.outwards());
     parts[0].b = travel;

@@ -25,6 +25,7 @@ struct Par4 : FourLimbs {
   static constexpr bool kToolOnAHalf = true;
 
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
+    for (PlatePart<double>& part : parts) part = {};
     const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
     const Vector3<double> bar = 0.5 * shape.bar_spacing * cross_z<double>(shape.outwards());
     parts[0].a = hinge;
