@@ -238,10 +238,10 @@ class Diagnose {
     for (Eigen::Index joint = 0; joint < known.presliding.size(); ++joint) {
       if (!(known.presliding(joint) > 0)) continue;
       const auto at = static_cast<int>(joint);
-      parts.push_back(fmt::format("friction of {} builds up over {:.3g} {}",
-                                  at < robot.drives() ? fmt::format("drive {}", at + 1)
-                                                      : fmt::format("the {}", robot.inner_joint()),
-                                  known.presliding(joint), tools::joint_turns(robot, at) ? "rad" : "m"));
+      parts.push_back(fmt::format(
+          "friction of {} builds up over {:.3g} {}",
+          at < robot.drives() ? fmt::format("drive {}", at + 1) : fmt::format("the {}", robot.inner_joint()),
+          known.presliding(joint), tools::joint_turns(robot, at) ? "rad" : "m"));
     }
     for (const Ripple& ripple : known.ripples) {
       parts.push_back(fmt::format("torque of drive {} ripples by {:.3g} {}", ripple.drive + 1,

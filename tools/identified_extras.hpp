@@ -52,8 +52,8 @@ inline void tell_extra_rows(const RobotDescription& robot, const Identification&
                                                     : std::string();
     fmt::print(
         "friction of {} builds up over {:.3g} +- {:.1g} {} after a reversal{}; its rows near reversals are used\n",
-        at < robot.drives() ? fmt::format("drive {}", at + 1) : fmt::format("the {}", robot.inner_joint()), found.displacement, found.std,
-        joint_turns(robot, at) ? "rad" : "m", damping);
+        at < robot.drives() ? fmt::format("drive {}", at + 1) : fmt::format("the {}", robot.inner_joint()),
+        found.displacement, found.std, joint_turns(robot, at) ? "rad" : "m", damping);
   }
   std::vector<int> count(static_cast<std::size_t>(robot.drives()), 0);
   for (const Ripple& ripple : result.processing.ripples) {

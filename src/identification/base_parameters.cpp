@@ -13,7 +13,7 @@ namespace deltadyn {
 namespace {
 
 constexpr double kNegligible = 1e-8;  // of a coefficient of B beside 1: rounding of the QR
-constexpr double kVanishing = 1e-12;   // of a column beside the largest of its unit
+constexpr double kVanishing = 1e-12;  // of a column beside the largest of its unit
 
 Eigen::MatrixXd random_regressor(const Robot& robot, const BaseParameterOptions& options) {
   const int n = robot.drives();

@@ -118,8 +118,8 @@ std::vector<char> unknown_start(const Eigen::Ref<const Eigen::VectorXd>& rate, d
 }
 
 /// Marks the samples at which the sign of a friction force in a drive's torque is uncertain: its own, and that of the
-/// inner joint in the drives that feel it (a telescope's length does not depend on psi). A joint whose friction builds up
-/// over a displacement needs no sign: there only rest is uncertain.
+/// inner joint in the drives that feel it (a telescope's length does not depend on psi). A joint whose friction builds
+/// up over a displacement needs no sign: there only rest is uncertain.
 void mark_reversals(const Robot& robot, const ProcessingOptions& options, const Eigen::VectorXd& sigma_qd,
                     PreparedLog& log) {
   const Eigen::MatrixXd rates = joint_rates(robot, log);

@@ -124,9 +124,12 @@ class Finder {
     for (const Limb& limb : parts_.limbs) drives.push_back(limb.drive);
     const std::string found = names(drives), all = names(children(base_));
     if (parts_.limbs.size() == 4)
-      refuse(fmt::format("four limbs found ({}); robots with four limbs (h4, i4, par4) are not supported yet", found),
-             tree_.at(tree_.body(base_).name),
-             fmt::format("if one of them is no limb, name the drives: --drives A,B,C out of {}", all));
+      refuse(
+          fmt::format("four limbs found ({}); how their plate is made is not told by the file", found),
+          tree_.at(tree_.body(base_).name),
+          fmt::format("make the robot file by delta-model create h4 (or i4, par4); if one of them is no limb, name the "
+                      "drives: --drives A,B,C out of {}",
+                      all));
     refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}",
                        drives.size(), drives.empty() ? "" : ": ", found),
            tree_.at(tree_.body(base_).name),

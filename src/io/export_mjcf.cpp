@@ -255,8 +255,9 @@ class Mjcf {
   }
 
   /// The halves only translate, which the parallelograms see to; the simulation takes it as given, because MuJoCo's
-  /// loops give way a little and a light half would turn. So one strut a limb would do; two halve the error. Half 1 carries the rest by joints that move with theta; a half
-  /// that bars join to it moves by itself, tied to the first bar.
+  /// loops give way a little and a light half would turn. So one strut a limb would do; two halve the error. Half 1
+  /// carries the rest by joints that move with theta; a half that bars join to it moves by itself, tied to the first
+  /// bar.
   void articulated_plate() {
     std::vector<robot_file::PlateBody> bodies = robot_file::plate_bodies(robot_);
     const auto bar = std::ranges::find(bodies, std::string(name(Body::crossbar)), &robot_file::PlateBody::shared);

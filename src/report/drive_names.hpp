@@ -23,10 +23,12 @@ inline std::string unbroken(std::string text) {
 /// A body or joint in plain words, e.g. "lower part of the telescope bar", "drive 2".
 inline std::string owner_in_words(const ParameterId& id) {
   if (id.kind != ParameterKind::inertial)
-    return id.number > 0 ? drive_name(id.number - 1) : id.inner == InnerJointKind::plate ? "joints of the plate" : "sliding joint of the telescope bar";
+    return id.number > 0                       ? drive_name(id.number - 1)
+           : id.inner == InnerJointKind::plate ? "joints of the plate"
+                                               : "sliding joint of the telescope bar";
   constexpr const char* kWords[] = {
       // Of Body
-      "upper arm", "strut", "platform", "tool", "upper part of the telescope bar", "lower part of the telescope bar",
+      "upper arm",  "strut",   "platform", "tool", "upper part of the telescope bar", "lower part of the telescope bar",
       "half plate", "crossbar"};
   return kWords[static_cast<int>(id.body)] + (id.number > 0 ? "\u00A0" + std::to_string(id.number) : "");
 }

@@ -46,12 +46,13 @@ std::optional<ParameterId> parameter_id(const std::string& name) {
   std::from_chars(owner.data() + owner.find_last_not_of("0123456789") + 1, end, id.number);
   for (int kind = 1; kind < static_cast<int>(std::size(kQuantities)); ++kind) {
     id.kind = static_cast<ParameterKind>(kind);
-    for (const InnerJointKind inner : {InnerJointKind::plate, InnerJointKind::telescope}) {
+    for (const InnerJointKind inner : {InnerJointKind::telescope, InnerJointKind::plate}) {
       id.inner = inner;
       if (parameter_name(id) == name) return id;
     }
   }
   id.kind = ParameterKind::inertial;
+  id.inner = InnerJointKind::telescope;
   for (std::size_t body = 0; body < std::size(kBodyNames); ++body) {
     id.body = static_cast<Body>(body);
     for (id.entry = 0; id.entry < kInertialParameters; ++id.entry)

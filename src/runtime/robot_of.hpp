@@ -61,9 +61,8 @@ class RobotOf final : public Robot {
       ids_.push_back(all[static_cast<std::size_t>(column)]);
       names_.push_back(parameter_name(ids_.back()));
       units_.push_back(parameter_unit(
-          ids_.back(),
-          ids_.back().number > 0 ? description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute
-                                 : ids_.back().inner == InnerJointKind::plate));
+          ids_.back(), ids_.back().number > 0 ? description.kind_of_drive(ids_.back().number - 1) == DriveKind::revolute
+                                              : ids_.back().inner == InnerJointKind::plate));
     }
   }
 

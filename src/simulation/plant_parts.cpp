@@ -102,10 +102,10 @@ class Builder {
     const int n = machine_.description.drives(), inner = parts_.mechanism->inner_joint();
     for (int j = 0; j < parts_.mechanism->joints(); ++j) {
       const auto own = [&](ParameterKind kind) {
-        return values_[{.kind = kind,
-                        .number = j < n ? j + 1 : 0,
-                        .inner = j == inner && machine_.description.plate ? InnerJointKind::plate
-                                                                          : InnerJointKind::telescope}];
+        return values_[{
+            .kind = kind,
+            .number = j < n ? j + 1 : 0,
+            .inner = j == inner && machine_.description.plate ? InnerJointKind::plate : InnerJointKind::telescope}];
       };
       if (j < n || j == inner) {
         parts_.laws.emplace_back(own(ParameterKind::viscous), own(ParameterKind::coulomb),

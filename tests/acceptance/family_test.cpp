@@ -1,4 +1,4 @@
-// Robots with four limbs through the installed tools: from lengths to an identified model, its exports, and a diagnosis.
+// Robots with four limbs through the installed tools: from lengths to an identified model and its exports.
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

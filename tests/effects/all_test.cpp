@@ -315,7 +315,7 @@ TEST_P(EveryEffect, ANumberOutOfRangeIsRefusedByFilesFlagsAndTheVirtualRobot) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, EveryEffect,
                          testing::Values("delta3", "delta4", "linear-delta3", "h4", "i4", "par4", "axis",
-                                                      "linear-axis"),
+                                         "linear-axis"),
                          [](const auto& tested) {
                            std::string name = tested.param;
                            std::erase(name, '-');

@@ -146,8 +146,7 @@ Outcome run_robot(int robot, T phase) {
     case 2: return run<T, Delta4>(phase);
     case 3: return run<T, Axis>(phase);
     case 4: return run<T, LinearAxis>(phase);
-    case 5: return run<T, I4>(phase);
-    case 6: return run<T, Par4>(phase);
+    case 5: return run<T, Par4>(phase);
     default: return Outcome();
   }
 }

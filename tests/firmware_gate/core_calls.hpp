@@ -22,9 +22,9 @@ struct Outcome {
   double largest_torque = 0.0;
 };
 
-inline constexpr int kRobots = 7;
-inline constexpr const char* kRobotNames[kRobots] = {"delta3", "linear_delta3", "delta4", "axis", "linear_axis",
-                                                     "i4",     "par4"};
+inline constexpr int kRobots = 6;
+inline constexpr const char* kRobotNames[kRobots] = {"delta3", "linear_delta3", "delta4",
+                                                     "axis",   "linear_axis",   "par4"};
 
 /// \param robot index into kRobotNames
 /// \param phase shifts the state, so that no call can be worked out at compile time [rad]

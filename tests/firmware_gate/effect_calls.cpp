@@ -99,8 +99,7 @@ EffectOutcome run_robot(int robot, long set_points) {
     case 2: return run<T, Delta4>(set_points);
     case 3: return run<T, Axis>(set_points);
     case 4: return run<T, LinearAxis>(set_points);
-    case 5: return run<T, I4>(set_points);
-    case 6: return run<T, Par4>(set_points);
+    case 5: return run<T, Par4>(set_points);
     default: return EffectOutcome();
   }
 }

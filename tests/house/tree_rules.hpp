@@ -40,8 +40,7 @@ inline constexpr int kMaxColumns = 120;
 inline const std::vector<std::string>& floors() {
   static const std::vector<std::string> names = {
       "core",       "model",      "kinematics",     "effects",   "dynamics",   "firmware", "runtime", "signal",
-      "trajectory", "excitation", "identification", "diagnosis", "simulation", "robots",
-      "io",         "report"};
+      "trajectory", "excitation", "identification", "diagnosis", "simulation", "robots",   "io",      "report"};
   return names;
 }
 
@@ -128,7 +127,7 @@ inline std::vector<Include> includes_of(const SourceFile& file) {
   return includes;
 }
 
-/// A folder includes only its own floor and those below it.
+/// A folder includes only its own floor and those below it; robots/, which only instantiates, also their insides.
 inline Findings check_floor_includes(const SourceFile& file) {
   Findings findings;
   const std::string folder = floor_of(file.path);
@@ -140,7 +139,9 @@ inline Findings check_floor_includes(const SourceFile& file) {
     std::smatch match;
     if (!std::regex_match(include.target, match, pattern)) {
       const auto resolved = (std::filesystem::path(file.path).parent_path() / include.target).lexically_normal();
-      if (include.target.find("..") != std::string::npos && floor_of(resolved.generic_string()) != folder) {
+      const std::string other = floor_of(resolved.generic_string());
+      const bool instantiates = folder == "robots" && floor_number(other) >= 0 && floor_number(other) < floor;
+      if (include.target.find("..") != std::string::npos && other != folder && !instantiates) {
         findings.push_back(
             {file.path, include.line, "includes '" + include.target + "' around the floors; write deltadyn/..."});
       }

@@ -136,7 +136,7 @@ TEST(BaseFrame, ADriveTurnedWronglyIsStillNamed) {
   const auto at = text.find("<joint name=\"drive2\"");
   const auto rpy = text.find("rpy=\"0 0 2.09", at);
   ASSERT_NE(rpy, std::string::npos);
-  text.replace(rpy, 11, "rpy=\"0.2 0 2");
+  text.replace(rpy, 11, "rpy=\"0 0.2 2");
   try {
     (void)robot_from_urdf(text, "robot.urdf");
     FAIL() << "accepted";

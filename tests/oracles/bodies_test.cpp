@@ -148,10 +148,10 @@ TYPED_TEST(ArticulatedPlate, ShowsAsManyCombinationsOfBodiesAsTheLibrarySays) {
               .template cast<double>();
     }
   }
-  const double largest = W.colwise().norm().maxCoeff();
+  const double widest = W.colwise().norm().maxCoeff();
   for (int column = 0; column < kBodyColumns; ++column) {
     const double size = W.col(column).norm();
-    W.col(column) *= size > 1e-9 * largest ? 1 / size : 0.0;
+    W.col(column) *= size > 1e-9 * widest ? 1 / size : 0.0;
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(1e-9);

@@ -76,8 +76,8 @@ TEST_P(EveryType, JointRatesAndTheirAccelerationsAreDerivatives) {
     EXPECT_LT((rate - now.rate).cwiseAbs().maxCoeff(), 1e-10 * (1 + rate.cwiseAbs().maxCoeff()));
     const Eigen::VectorXd bias = (after.rate - before.rate) / (2 * h);
     EXPECT_LT((bias - now.bias_rate).cwiseAbs().maxCoeff(), 1e-5 * (1 + bias.cwiseAbs().maxCoeff()));
-    if (pair.mechanism->telescope_joint() >= 0) {
-      const int bar = pair.mechanism->telescope_joint();
+    if (pair.mechanism->inner_joint() >= 0) {
+      const int bar = pair.mechanism->inner_joint();
       EXPECT_NEAR((after.position(bar) - before.position(bar)) / (2 * h), now.rate(bar), 1e-6);
     }
     const Eigen::Vector3d v = (after.r - before.r) / (2 * h), a = (after.v - before.v) / (2 * h);

@@ -105,10 +105,11 @@ class LimitFlags {
     if (yaw_velocity_) limits.zd(3) = *yaw_velocity_;
     if (yaw_acceleration_) limits.zdd(3) = *yaw_acceleration_;
     if (yaw_range_ && description.plate && *yaw_range_ > description.plate_yaw_range() * (1 + 1e-9))
-      throw Error(fmt::format("--yaw-range-rad asks for {:.6g} rad, but the plate turns the tool by {:.6g} rad to either "
-                              "side at most",
-                              *yaw_range_, description.plate_yaw_range()),
-                  "", "ask for less, or mend range_rad of <plate> in the robot file", ExitCode::usage);
+      throw Error(
+          fmt::format("--yaw-range-rad asks for {:.6g} rad, but the plate turns the tool by {:.6g} rad to either "
+                      "side at most",
+                      *yaw_range_, description.plate_yaw_range()),
+          "", "ask for less, or mend range_rad of <plate> in the robot file", ExitCode::usage);
     if (yaw_range_) {
       limits.z_lower(3) = -*yaw_range_;
       limits.z_upper(3) = *yaw_range_;

@@ -22,7 +22,7 @@ class EffectFeedForward {
   using Parameters = Vector<T, Layout::kColumns>;
   using Scene = EffectScene<T, Robot>;
 
-  static constexpr int kInnerJoint = Robot::kDrives;  ///< behind the drives, in set_friction and set_reversal_width
+  static constexpr int kInnerJoint = Robot::kDrives;      ///< behind the drives, in set_friction and set_reversal_width
   static constexpr int kPassiveJoints = Scene::kPassive;  ///< in set_reversal_width: all ball and universal joints
 
   EffectFeedForward(const Geometry<T, Robot>& geometry, const Parameters& p) : machine_(geometry), p_(p), given_(p) {}

@@ -29,9 +29,9 @@ struct EffectScene {
   static constexpr int kPassive = Robot::kDrives + 1;
   using Drives = Vector<T, Robot::kDrives>;
 
-  const Motion<T, Robot>& motion;  ///< of the machine as it is
+  const Motion<T, Robot>& motion;      ///< of the machine as it is
   const Geometry<T, Robot>& geometry;  ///< of the machine as it is
-  const Drives& q;  ///< as the encoders have it [rad | m]
+  const Drives& q;                     ///< as the encoders have it [rad | m]
   /// Rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
   const Drives& load;
   const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, telescope, passive joints [rad/s | m/s]

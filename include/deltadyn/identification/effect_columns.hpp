@@ -29,7 +29,7 @@ struct EffectSignals {
   Eigen::MatrixXd position, velocity, acceleration;  ///< N x 3, of the plate
   Eigen::MatrixXd J;                                 ///< N x 3n: d position / d q1, d position / d q2, ...
   Eigen::VectorXd inner_rate;                        ///< N, of the inner joint
-  Eigen::MatrixXd J_inner;                             ///< N x n
+  Eigen::MatrixXd J_inner;                           ///< N x n
   Eigen::MatrixXd bar;                               ///< N x 3
   Eigen::MatrixXd passive_rate;                      ///< N x m, of the different passive joints
   Eigen::MatrixXd J_passive;                         ///< N x m n: d rate 1 / d qd, d rate 2 / d qd, ...

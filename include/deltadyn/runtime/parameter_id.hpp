@@ -20,8 +20,8 @@ struct ParameterId {
   /// Inertial: of the limb's own body or half plate from 1, or 0 where all share one. Else of the drive from 1; 0: the
   /// inner joint.
   int number = 0;
-  Body body = Body::upper_arm;  ///< inertial
-  int entry = 0;                ///< inertial: place in kInertialNames
+  Body body = Body::upper_arm;                       ///< inertial
+  int entry = 0;                                     ///< inertial: place in kInertialNames
   InnerJointKind inner = InnerJointKind::telescope;  ///< of a joint with number 0
 
   friend bool operator==(const ParameterId&, const ParameterId&) = default;

@@ -9,12 +9,12 @@
 
 namespace deltadyn {
 
-/// Two struts with balls at both ends stop one turn of the part that they hold, about the normal of their parallelogram.
+/// Two struts with balls at both ends stop one turn of the part that they hold, about their parallelogram's normal.
 /// Two limbs thus leave a half one axis to tip about, and the rest of the plate must stop it: bars or a slide do, but a
 /// crossbar on upright hinges passes on the tipping itself. Then the axes of both halves must not be parallel as seen
 /// from above, or the halves tip together.
-/// \return sine of the angle between the two axes, seen from above; 1 where bars or a slide hold the halves, or the plate
-///         is rigid
+/// \return sine of the angle between the two axes, seen from above; 1 where bars or a slide hold the halves, or where
+///         the plate is rigid
 /// Throws deltadyn::Error if q is out of reach or singular.
 [[nodiscard]] double tipping_margin(const RobotDescription& robot, const Eigen::VectorXd& q);
 

@@ -23,8 +23,8 @@ struct Reach {
   /// Of an articulated plate: the part of the region's volume that is left with the plate turned as far as it goes, to
   /// the worse side; the rest is out of reach or near a singular pose of the plate there
   double share_at_full_turn = 1;
-  Eigen::MatrixX3d points;           ///< centres of the cells [m]
-  Eigen::VectorXd condition;         ///< at the centres
+  Eigen::MatrixX3d points;    ///< centres of the cells [m]
+  Eigen::VectorXd condition;  ///< at the centres
 };
 
 /// \param cells  of the grid along each of x, y, z

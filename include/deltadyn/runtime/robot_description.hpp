@@ -37,7 +37,7 @@ struct RobotDescription {
   [[nodiscard]] DriveKind kind_of_drive(int drive) const {
     return drive < static_cast<int>(limbs.size()) ? drive_kind : DriveKind::revolute;
   }
-  /// A joint with friction that is no drive: "telescope", its slide; "plate", the joints of an articulated plate; or "".
+  /// A joint with friction that is no drive: "telescope", its slide; "plate", the joints of an articulated one; or "".
   [[nodiscard]] const char* inner_joint() const { return telescope ? "telescope" : (plate ? "plate" : ""); }
   /// Whether friction of the inner joint acts on a drive: a telescope's slide does not turn with the bar.
   [[nodiscard]] bool feels_inner_joint(int drive) const {

@@ -13,11 +13,11 @@ namespace deltadyn {
 
 /// Lines of one kind; in W [m].
 struct SketchLines {
-  std::string label;                                                 ///< "upper arms", "struts", "plate", ...
+  std::string label;  ///< "upper arms", "struts", "plate", ...
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lines = {};
 };
 
-/// Base, arms or carriages on their rails, struts, the parts of the plate, and the telescope bar, at drive coordinates q.
+/// Base, arms or carriages on their rails, struts, parts of the plate, and the telescope bar, at drive coordinates q.
 /// Throws deltadyn::Error if the pose is out of reach or singular.
 [[nodiscard]] std::vector<SketchLines> sketch_of(const RobotDescription& robot, const Eigen::VectorXd& q);
 

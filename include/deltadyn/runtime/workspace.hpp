@@ -18,8 +18,8 @@ struct WorkspaceBall {
   double radius = 0.0;                               ///< [m]
 };
 
-/// Condition number of the plate's velocity by the drives', from dz/dq: how near a pose is to a singular one, of limbs or
-/// plate. The turn of an articulated plate counts by the path of its halves against one another, in metres as the rest.
+/// Condition number of the plate's velocity by the drives', from dz/dq: how near a pose is to a singular one of limbs
+/// or plate. The turn of an articulated plate counts by the path of its halves, in metres as the rest.
 [[nodiscard]] double plate_condition(const RobotDescription& robot, const Eigen::MatrixXd& J);
 
 /// Draws drive states (q, qd, qdd) whose task-space state is uniform in a ball, with poses that are near-singular left

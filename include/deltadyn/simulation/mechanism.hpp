@@ -57,7 +57,7 @@ class Mechanism {
   /// Drives, then the inner joint, then passive joints.
   [[nodiscard]] int joints() const { return static_cast<int>(multiplicity_.size()); }
   [[nodiscard]] int inner_joint() const { return inner_joint_; }  ///< -1 if there is none
-  /// How many equal joints of the robot an entry stands for: 1 for drives and the inner joint, e.g. 4 for the strut's turn
+  /// How many equal joints of the robot an entry stands for: 1 for drives and the inner joint, 4 for the strut's turn
   /// about its z.
   [[nodiscard]] double multiplicity(int joint) const { return multiplicity_[static_cast<std::size_t>(joint)]; }
 
