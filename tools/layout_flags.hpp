@@ -34,6 +34,9 @@ class LayoutFlags {
     ParameterOptions options;
     options.individual_limbs = individual_limbs_;
     options.tool = !without_tool_;
+    if (without_tool_ && robot.plate)
+      throw Error(fmt::format("--without-tool does not fit a robot of type {}, whose plate turns its tool", robot.type),
+                  "", "leave it out", ExitCode::usage);
     options.rotor_inertia = rotor_inertia_;
     if (offset_flag_ != nullptr) options.offset = offset_flag_->count() > 0 ? offset_ : robot.type == Axis::kName;
     return options;

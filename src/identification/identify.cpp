@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "deltadyn/identification/prediction.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/statistics.hpp"
 
 #include "encoder_uncertainty.hpp"
@@ -323,6 +325,21 @@ class Identifier {
     if (more.size() > 0) add_uncertainty(out_.base, more, out_.base_estimate);
   }
 
+  /// Name of a fitted body that no part of this robot can be; empty if there is none.
+  [[nodiscard]] std::string implausible_body() const {
+    for (Eigen::Index k = 0; k < out_.fit.p.size(); ++k) {
+      const ParameterId& id = robot_.parameter_ids()[static_cast<std::size_t>(k)];
+      if (id.kind != ParameterKind::inertial || id.entry != 0) continue;
+      try {
+        plausibility::require_body(robot_.description(), id.body, out_.fit.p.segment<kInertialParameters>(k),
+                                   owner_name(id), "");
+      } catch (const Error&) {
+        return owner_name(id);
+      }
+    }
+    return "";
+  }
+
   void fit(const Eigen::VectorXd& prior, const Eigen::VectorXd& prior_std) {
     ConsistentFitProblem problem;
     problem.parameters = robot_.parameter_ids();
@@ -330,7 +347,24 @@ class Identifier {
     problem.b = out_.base_estimate.b;
     problem.prior = prior;
     problem.prior_std = prior_std;
-    out_.fit = fit_consistent_parameters(problem, options_.fit);
+    ConsistentFitOptions options = options_.fit;
+    out_.fit = fit_consistent_parameters(problem, options);
+    // The largest lambda that costs the data nothing may be so small that a mass which no motion shows wanders beyond
+    // what a part can weigh. Such a file is refused by the next tool, and rightly.
+    constexpr int kTries = 6;
+    const double chosen = out_.fit.lambda;
+    std::string heavy = implausible_body();
+    for (int k = 0; k < kTries && !options_.fit.regularization && !heavy.empty(); ++k) {
+      options.regularization = 10 * out_.fit.lambda;
+      out_.fit = fit_consistent_parameters(problem, options);
+      const std::string still = implausible_body();
+      if (still.empty()) {
+        out_.fit.notes.push_back(fmt::format(
+            "lambda was raised from {:.3g} to {:.3g}: with the smaller one {} weighed more than such a part can",
+            chosen, out_.fit.lambda, heavy));
+      }
+      heavy = still;
+    }
     out_.base_from_fit = out_.base.B * out_.fit.p;
   }
 

@@ -258,6 +258,12 @@ class Reader {
           refuse(fmt::format("this joint of the plate stands at {}, but the lengths in <plate> put it at {}",
                              words(found->X_PJ.translation()), words(wanted->X_PJ.translation())),
                  tree_.at(*found), "mend the joint's origin and axis, or the numbers of <plate>");
+        if (std::abs(found->mimic_gain - wanted->mimic_gain) > kTolerance)
+          refuse(
+              fmt::format("this joint of the plate mimics another {:.6g}-fold, but by <plate> it moves {:.6g} times as "
+                          "much",
+                          found->mimic_gain, wanted->mimic_gain),
+              tree_.at(*found), "mend the multiplier of <mimic>, or the numbers of <plate>");
       }
     }
   }

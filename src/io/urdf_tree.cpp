@@ -257,6 +257,7 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
                          // A unit vector stays as written, to the last digit.
                          .axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized()),
                          .mimic = joint->mimic != nullptr,
+                         .mimic_gain = joint->mimic ? joint->mimic->multiplier : 0.0,
                          .floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR,
                          .limits = limits_of(*joint)};
       if (!(moving.floating && dialect == UrdfDialect::cad) && !moving.prismatic &&
@@ -288,6 +289,8 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
   }
   if (const XMLElement* plate = extension->FirstChildElement("plate")) {
     tree.plate.line = plate->GetLineNum();
+    if (const XMLElement* second = plate->NextSiblingElement("plate"))
+      refuse("a robot has one plate, but this is the second <plate>", at(tree.where, second), "remove one of the two");
     for (auto* entry = plate->FirstAttribute(); entry != nullptr; entry = entry->Next())
       tree.plate.attributes[entry->Name()] = entry->Value();
   }

@@ -27,6 +27,7 @@ struct Joint {
   Pose X_PJ = Pose::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the joint frame
   bool mimic = false;
+  double mimic_gain = 0;  ///< its multiplier
   bool floating = false;  ///< six (or, planar, three) degrees of freedom: holds nothing; CAD trees only
   DriveLimits limits;
 };

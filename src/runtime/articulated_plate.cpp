@@ -42,8 +42,13 @@ void require_length(double length, const char* what, const std::string& where) {
 /// \param geared  the tool may have a gear
 void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, const std::string& where) {
   if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
+  plausibility::require(plausibility::kAzimuth, shape.azimuth, "plate: the azimuth", where);
   const auto need = [&](double PlateShape::*length, const char* what) {
-    if (std::isnan(usual.*length)) require_length(shape.*length, what, where);
+    if (std::isnan(usual.*length)) {
+      require_length(shape.*length, what, where);
+    } else if (shape.*length != 0) {
+      refuse(fmt::format("plate: the {} is {} m, but this type has none", what, shape.*length), where, "leave it out");
+    }
   };
   need(&PlateShape::spacing, "distance between the hinges of the two halves");
   need(&PlateShape::bar_spacing, "distance between the two bars");
@@ -59,6 +64,7 @@ void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geare
   plausibility::require(plausibility::kGearRatio, std::abs(shape.ratio), "plate: the ratio of the tool's gear", where);
   if (!(shape.range > 0))
     refuse(fmt::format("plate: the range of theta is {} rad", shape.range), where, "give a positive angle in radians");
+  plausibility::require(plausibility::kPlateTurn, shape.range, "plate: the range of theta", where);
   if (std::isnan(usual.spacing) && shape.range > kHingeRange)
     refuse(fmt::format("plate: at theta = {:.4g} rad the parts of the plate collide: its hinges reach {} rad to either "
                        "side at most",
@@ -84,6 +90,28 @@ void validate_limbs(const RobotDescription& robot, const std::string& where) {
       refuse(fmt::format("the two parallelograms on half plate {} lie in the same direction, so the half could turn",
                          half + 1),
              where, "give the two limbs different azimuths");
+  }
+}
+
+/// The plate beside the struts that hold it, and each half on the side of its limbs.
+void require_one_size(const RobotDescription& robot, const std::string& where) {
+  const PlateShape& shape = *robot.plate;
+  const double strut = std::ranges::max(robot.limbs, {}, &LimbGeometry<double>::strut).strut;
+  const double largest = std::max({shape.spacing, shape.bar_spacing, 2 * shape.pinion_radius * shape.range});
+  if (largest > strut)
+    refuse(fmt::format("plate: a length or travel of {:.4g} m does not go with struts of {:.4g} m", largest, strut),
+           where,
+           "give all lengths in metres; the halves of an i4 travel by the pinion's radius times the range of theta");
+  for (const int half : {0, 1}) {
+    Vector3<double> side = Vector3<double>::Zero();
+    for (const auto& limb : robot.limbs)
+      if (limb.part == half) side += limb_frame(limb).col(0);
+    if (side.dot(shape.outwards()) * (half == 0 ? 1 : -1) < 0)
+      refuse(
+          fmt::format("half plate {} lies on the other side of the plate than its limbs, so the halves would cross",
+                      half + 1),
+          where,
+          "turn the plate's azimuth by 180 deg, or number the limbs so that 1 and 2 stand on the side of half plate 1");
   }
 }
 
@@ -117,6 +145,7 @@ void validate(const RobotDescription& robot, const std::string& where) {
     if constexpr (R::kPlateTurns) validate_shape(*robot.plate, R::usual(), R::kGeared, where);
   });
   validate_limbs(robot, where);
+  require_one_size(robot, where);
   require_theta_held(robot, where);
 }
 

@@ -180,6 +180,9 @@ const Rule kPlateAcceleration{0, 1500, "m/s^2", kMillimetres, "the record of a D
 const Rule kYawVelocity{0, 150, "rad/s", kDegrees, "no Delta turns its tool faster than 1400 rpm"};
 const Rule kYawAcceleration{0, 3000, "rad/s^2", kDegrees, "no Delta turns its tool that suddenly"};
 const Rule kTilt{-kPi, kPi, "rad", kDegrees, "a tilt is half a turn at most"};
+const Rule kAzimuth{-2 * kPi, 2 * kPi, "rad", kDegrees, "an azimuth is once round at most"};
+const Rule kLimbTilt{-1.55, 1.55, "rad", kDegrees, "a drive's axis tilts by less than 90 deg"};
+const Rule kPlateTurn{1e-3, 2 * kPi, "rad", kDegrees, "no plate turns further than once round"};
 const Rule kGearRatio{0.05, 100, "turns a turn", kNone, "no gear or belt of a plate does that"};
 const Rule kShare{1e-6, 10, "times the value", {"per cent", 0.01}, "that says nothing about the value"};
 const Rule kYaw{-100, 100, "rad", kDegrees,
@@ -200,6 +203,8 @@ void require_geometry(const RobotDescription& robot, const std::string& where) {
   for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
     const LimbGeometry<double>& limb = robot.limbs[i];
     const auto name = [i](const char* what) { return fmt::format("limb {}: the {}", i + 1, what); };
+    require(kAzimuth, limb.azimuth, name("azimuth"), where);
+    require(kLimbTilt, limb.tilt, name("tilt"), where);
     require(kOffset, limb.p_WD.norm(), name("distance of the drive from the base's origin"), where);
     if (limb.p_DE_0.norm() > 0) require(kLength, limb.p_DE_0.norm(), name("length of the upper arm"), where);
     if (!plate) continue;

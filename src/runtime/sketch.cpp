@@ -46,6 +46,20 @@ void add_articulated_plate(const RobotDescription& robot, const LimbPlaces& at, 
                            SketchLines& bars) {
   for (std::size_t i = 0; i < robot.limbs.size(); ++i)
     halves.lines.emplace_back(at.centre + at.parts[static_cast<std::size_t>(robot.limbs[i].part)].p.value, at.plate[i]);
+  const double radius = robot.plate->pinion_radius;
+  if (radius > 0) {
+    constexpr int kCorners = 24;
+    const auto corner = [&](int k) -> Vec {
+      const double angle = 6.283185307179586 * k / kCorners;
+      return at.centre + radius * Vec(std::cos(angle), std::sin(angle), 0);
+    };
+    for (int k = 0; k < kCorners; ++k) bars.lines.emplace_back(corner(k), corner(k + 1));
+    // The racks, where they touch the pinion
+    const Vec out = radius * robot.plate->outwards(), along = robot.plate->range * cross_z<double>(out);
+    for (const double side : {1.0, -1.0})
+      halves.lines.emplace_back(at.centre + side * out - along, at.centre + side * out + along);
+    return;
+  }
   const Vec first = at.parts[0].p.value, second = at.parts[1].p.value;
   const Vec side = cross_z<double>(robot.plate->outwards()) * robot.plate->bar_spacing / 2;
   for (const double sign : {1.0, -1.0})
@@ -58,7 +72,7 @@ std::vector<SketchLines> sketch_of(const RobotDescription& robot, const Eigen::V
   const LimbPlaces at = places_of(robot, q);
   const bool rails = robot.drive_kind == DriveKind::prismatic;
   SketchLines base{"base"}, arms{rails ? "rails" : "upper arms"}, struts{"struts"}, plate{"plate"},
-      bars{"plate's bars"}, bar{"telescope bar"};
+      bars{robot.plate && robot.plate->pinion_radius > 0 ? "pinion" : "plate's bars"}, bar{"telescope bar"};
   const std::size_t limbs = robot.limbs.size();
   for (std::size_t i = 0; i < limbs; ++i) {
     const LimbGeometry<double>& limb = robot.limbs[i];

@@ -121,7 +121,7 @@ class Builder {
         const EffectPlace place = effect_kind(effect.id).place;
         const bool here = effect.joint >= 0                      ? j == effect.joint
                           : place == EffectPlace::passive_joints ? passive
-                          : place == EffectPlace::telescope      ? j == inner
+                          : place == EffectPlace::telescope      ? j == inner && machine_.description.telescope
                                                                  : acts_on_all(effect.id, j, machine_.description);
         if (here) parts_.laws[static_cast<std::size_t>(j)].add(effect, parts_.mechanism->multiplicity(j));
       }

@@ -164,6 +164,7 @@ class Create {
       robot.validate("");
       const auto closes = make_robot(robot);
       const WorkspaceSampler sampler(*closes);  // refuses lengths that do not close
+      (void)robot_from_urdf(robot_to_urdf(robot), "");
       warn_of_tipping(*closes, sampler.ball().centre);
     } catch (const Error& e) {
       // They are the flags here, not a file's.
@@ -306,7 +307,7 @@ class Create {
       LimbGeometry<double> limb;
       limb.azimuth = azimuth[i];
       limb.tilt = tilt[i];
-      plausibility::require(plausibility::kTilt, limb.tilt, "--limb-tilt-rad", "", ExitCode::usage);
+      plausibility::require(plausibility::kLimbTilt, limb.tilt, "--limb-tilt-rad", "", ExitCode::usage);
       limb.part = four_limbs() && i >= 2 ? 1 : 0;
       const Eigen::Vector3d radial(std::cos(limb.azimuth), std::sin(limb.azimuth), 0);
       limb.p_WD = places_ ? places[i] : Eigen::Vector3d(required(base_radius_, "--base-radius") * radial);

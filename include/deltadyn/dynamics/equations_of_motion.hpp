@@ -16,7 +16,7 @@ struct EquationsOfMotion {
   Matrix<T, N, N> M;  ///< symmetric; positive definite for physically consistent parameters
   Matrix<T, N, N> C;  ///< of the Christoffel symbols of M: C + C^T = Mdot, so Mdot - 2C is skew-symmetric
   Vector<T, N> g;     ///< gravity, the gradient of the potential energy
-  Vector<T, N> f;     ///< friction of drives and telescope bar, and the drives' offsets
+  Vector<T, N> f;     ///< friction of drives and inner joint, and the drives' offsets
 };
 
 /// The terms in drive coordinates. The accelerations of `motion` do not matter.

@@ -25,7 +25,7 @@ struct EffectRow {
 /// One set point as effects see it.
 template <class T, class Robot>
 struct EffectScene {
-  /// Place of the passive joints in `width`, behind drives and telescope
+  /// Place of the passive joints in `width`, behind drives and inner joint
   static constexpr int kPassive = Robot::kDrives + 1;
   using Drives = Vector<T, Robot::kDrives>;
 
@@ -34,7 +34,7 @@ struct EffectScene {
   const Drives& q;                     ///< as the encoders have it [rad | m]
   /// Rigid torque without the drives' own friction, rotor inertia and offset [N m | N]
   const Drives& load;
-  const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, telescope, passive joints [rad/s | m/s]
+  const Vector<T, kPassive + 1>& width;  ///< of a reversal: drives, inner joint, passive joints [rad/s | m/s]
   T time;                                ///< [s]
 
   [[nodiscard]] JointInput<T> at_drive(int drive) const {

@@ -36,7 +36,7 @@ struct ProcessingOptions {
   double period_s = 0;                ///< used if periods is `given`
   /// A rate below this share of the joint's largest one has no certain sign, nor one in its noise
   double reversal_floor = 0.003;
-  /// Of each joint with friction (drives, then the telescope) the displacement over which its friction builds up after
+  /// Of each joint with friction (drives, then the inner one) the displacement over which its friction builds up after
   /// a reversal [rad | m] (effects/bristle.hpp); 0 or absent: Coulomb's law, whose sign is uncertain near reversals.
   Eigen::VectorXd presliding;
   Eigen::VectorXd presliding_damping_s;  ///< of the same joints' bristles; 0 or absent: none

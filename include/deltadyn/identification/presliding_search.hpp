@@ -22,7 +22,7 @@ struct PreslidingJoint {
   double damping_std_s = 0;  ///< at the displacement found
 };
 
-/// One value a joint with friction: drives, then the telescope. The first pass rests on rows away from reversals, the
+/// One value a joint with friction: drives, then the inner joint. The first pass rests on rows away from reversals, the
 /// next ones on all rows; amplitudes and base parameters are fitted along.
 /// \param processing  with the cut-off of the fit; its presliding is not used
 /// Throws deltadyn::Error as prepare_log and estimate_base_parameters do.

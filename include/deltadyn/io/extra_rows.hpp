@@ -21,7 +21,7 @@ namespace deltadyn {
 /// Name of that row.
 [[nodiscard]] std::string presliding_name(const RobotDescription& robot, int joint);
 
-/// Damping of the bristles of each joint [s], drives first, then the telescope; 0 where the file says nothing.
+/// Damping of the bristles of each joint [s], drives first, then the inner joint; 0 where the file says nothing.
 /// Throws Error(bad_input) for a joint that the robot does not have and for a negative damping.
 [[nodiscard]] Eigen::VectorXd presliding_damping_of(const ParameterTable& table, const RobotDescription& robot);
 /// Name of that row.

@@ -61,7 +61,7 @@ class Plant {
   [[nodiscard]] DriveVector qdd() const;
   /// Torque of the drives at the present instant [N m | N].
   [[nodiscard]] DriveVector torque() const;
-  /// Direction of each joint: +1, -1, 0 stuck. Drives, telescope, passive joints.
+  /// Direction of each joint: +1, -1, 0 stuck. Drives, inner joint, passive joints.
   [[nodiscard]] std::vector<int> directions() const;
   [[nodiscard]] const PlantCounts& counts() const;
   /// Work of the drives and losses in friction, springs' dampers, drag and hoses since start() [J].

@@ -60,12 +60,22 @@ void add_orders(const RobotDescription& robot, std::vector<PositionHypothesis>& 
     for (const int j : order) columns += fmt::format("{}{}", columns.empty() ? "" : ", ", j + 1);
     h.words =
         fmt::format("the positions are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
-    h.mend = "put the position columns in the order of the limbs, counter-clockwise from above (limb 1 on +x)";
+    h.mend = robot.plate
+                 ? "put the position columns in the order of the limbs in the robot file"
+                 : "put the position columns in the order of the limbs, counter-clockwise from above (limb 1 on +x)";
     h.changes = moved;
     out.push_back(h);
-    if (order.size() == robot.limbs.size() || order.back() == n - 1) continue;
+    // Three limbs alike move by the same equations in any order; on the halves of a plate it matters where a limb is.
+    if (!robot.plate && (order.size() == robot.limbs.size() || order.back() == n - 1)) continue;
     h.key = "drive_order";
     h.drives_moved = true;
+    if (robot.plate) {
+      h.words =
+          fmt::format("the drives are in another order: drives 1 to {} are in the columns of drives {}", n, columns);
+      h.mend = "put positions and torques in the order of the limbs in the robot file";
+      out.push_back(std::move(h));
+      continue;
+    }
     h.words = fmt::format(
         "the drives are in another order: the drive that turns the tool is in the columns of drive {}, the limbs, "
         "counted from any of them, in those of drives {}",
