@@ -16,23 +16,14 @@
 
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
-#include "deltadyn/runtime/plate_hold.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
+#include "model/plate_flags.hpp"
 #include "tool_support.hpp"
 
 namespace deltadyn::tools {
-
-/// Is `word` one of the words?
-inline bool has_word(const std::string& words, const std::string& word) {
-  return (" " + words + " ").find(" " + word + " ") != std::string::npos;
-}
-
-[[noreturn]] inline void refuse_usage(const std::string& what, const std::string& mend) {
-  throw Error(what, "", mend, ExitCode::usage);
-}
 
 inline Eigen::Vector3d vector_of(const std::vector<double>& values, const std::string& flag) {
   if (values.size() != 3)
@@ -94,7 +85,7 @@ class Create {
          types_needing(&PlateShape::pinion_radius));
     flag("--tool-ratio", plate_.ratio, "turns of the tool for a turn of the plate, by gear or belt, default 1; par4: 4",
          types_where([](auto type) { return decltype(type)::kGeared; }));
-    flag("--tool-on", tool_on_, "centre (default) or half_plate: where the tool's axis stands",
+    flag("--tool-on", plate_.tool_on, "centre (default) or half_plate: where the tool's axis stands",
          types_where([](auto type) { return decltype(type)::kToolOnAHalf; }));
     flag("--plate-azimuth-rad", plate_.azimuth,
          "of half plate 1 from the plate's centre [rad], default the middle of limbs 1 and 2", kFourLimbs);
@@ -180,26 +171,6 @@ class Create {
     run.summary.add("drives", robot.drives());
   }
 
-  static void warn_of_tipping(const Robot& robot, const Eigen::Vector3d& home) {
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
-    z.head<3>() = home;
-    if (robot.description().parts.empty() || robot.inverse_kinematics(z, q) != Status::ok) return;
-    if (tipping_margin(robot.description(), q) < kLeastTippingMargin)
-      fmt::print(
-          stderr,
-          "warning: in the home pose both halves of the plate may tip about the same axis, which its hinges do not "
-          "stop\n  a real h4 has its limbs in three directions, e.g. --limb-azimuth-rad 0,-1.5708,3.1416,-1.5708 "
-          "--plate-azimuth-rad 0 with places and attachments to match; level motion is described rightly\n");
-  }
-
-  static double required(const std::optional<double>& value, const std::string& name) {
-    if (!value) refuse_usage(fmt::format("{} is needed for this type", name), "give it in metres");
-    if (!(std::isfinite(*value) && *value >= 0))
-      refuse_usage(fmt::format("{} is {} m", name, *value), "give a positive length");
-    plausibility::require(plausibility::kOffset, *value, name, "", ExitCode::usage);
-    return *value;
-  }
-
   double elbow() const {
     const std::string word = elbow_.value_or("outwards");
     if (word == "outwards" || word == "above") return 1;
@@ -234,37 +205,6 @@ class Create {
     return azimuths_.empty() ? all : spread(azimuths_, limbs, "--limb-azimuth-rad");
   }
 
-  void add_plate(RobotDescription& robot, const std::vector<double>& azimuth) const {
-    PlateShape shape = visit_robot_type(
-        type_, robot.drive_kind,
-        [](auto type) -> PlateShape {
-          using R = decltype(type);
-          if constexpr (R::kPlateTurns) return R::usual();
-          return {};
-        },
-        [] { return PlateShape(); });
-    // In the middle of the first two limbs, by the shorter way.
-    shape.azimuth = plate_.azimuth.value_or(
-        std::atan2(std::sin(azimuth[0]) + std::sin(azimuth[1]), std::cos(azimuth[0]) + std::cos(azimuth[1])));
-    const auto take = [&shape](const std::optional<double>& given, double PlateShape::*member, const char* flag) {
-      if (std::isnan(shape.*member)) {
-        shape.*member = required(given, flag);
-      } else {
-        shape.*member = given.value_or(shape.*member);
-      }
-    };
-    take(plate_.spacing, &PlateShape::spacing, "--plate-spacing");
-    take(plate_.bar_spacing, &PlateShape::bar_spacing, "--plate-bar-spacing");
-    take(plate_.pinion_radius, &PlateShape::pinion_radius, "--pinion-radius");
-    take(plate_.ratio, &PlateShape::ratio, "--tool-ratio");
-    take(plate_.range, &PlateShape::range, "--plate-range-rad");
-    const std::string tool = tool_on_.value_or("centre");
-    if (tool != "centre" && tool != "half_plate")
-      refuse_usage(fmt::format("--tool-on {} is not known", tool), "use centre or half_plate");
-    shape.tool = tool == "centre" ? ToolPlace::centre : ToolPlace::half_plate;
-    robot.set_plate(shape);
-  }
-
   /// Points x,y,z;x,y,z;... of each limb.
   static std::vector<Eigen::Vector3d> points(const std::string& text, std::size_t limbs, const std::string& flag) {
     std::vector<Eigen::Vector3d> all;
@@ -292,7 +232,7 @@ class Create {
     const std::vector<double> tilt =
         tilts_.empty() ? std::vector<double>(limbs, 0.0) : spread(tilts_, limbs, "--limb-tilt-rad");
     if (four_limbs()) {
-      add_plate(robot, azimuth);
+      robot.set_plate(plate_.shape_for(robot, azimuth));
     } else {
       robot.parts.emplace_back();
     }
@@ -400,33 +340,14 @@ class Create {
     set(linear ? effort_N_ : effort_Nm_, "--drive-effort", &DriveLimits::effort);
   }
 
-  /// Names of the types with an articulated plate for which `is` holds, with spaces between.
-  template <class Is>
-  static std::string types_where(const Is& is) {
-    std::string names;
-    for_each_robot_type([&](auto type) {
-      using R = decltype(type);
-      if constexpr (R::kPlateTurns) {
-        if (is(type) && !has_word(names, R::kName)) names += (names.empty() ? "" : " ") + std::string(R::kName);
-      }
-    });
-    return names;
-  }
-  static std::string types_needing(double PlateShape::*length) {
-    return types_where([length](auto type) { return std::isnan(decltype(type)::usual().*length); });
-  }
   inline static const std::string kFourLimbs = types_where([](auto) { return true; }),
                                   kWithArms = "delta3 delta4 " + kFourLimbs, kWithRails = "linear-delta3 " + kFourLimbs,
                                   kAll = "delta3 delta4 " + kWithRails;
-  struct PlateFlags {
-    std::optional<double> spacing, bar_spacing, pinion_radius, ratio, azimuth, range;
-  };
-
   CLI::App* command_ = nullptr;
   std::vector<Flag> flags_;
   std::string type_, output_, name_;
   std::optional<double> base_radius_, platform_radius_, upper_arm_, strut_, spacing_, rail_tilt_, arm_;
-  std::optional<std::string> elbow_, drive_kind_, range_rad_, range_m_, places_, attachments_, tool_on_;
+  std::optional<std::string> elbow_, drive_kind_, range_rad_, range_m_, places_, attachments_;
   PlateFlags plate_;
   std::vector<double> azimuths_, tilts_;
   std::vector<double> telescope_base_, telescope_platform_, rail_axis_, axis_direction_;
