@@ -66,8 +66,8 @@ class FamilyMember : public ::testing::TestWithParam<Member> {
   }
   [[nodiscard]] Words noise() const {
     if (robot_->description().drive_kind == DriveKind::prismatic)
-      return {"--torque-noise-n-m", "0.3", "--encoder-step-m", "1e-6"};
-    return {"--torque-noise-n-m", "0.1", "--encoder-bits", "20"};
+      return {"--torque-noise-n-m", "0.04", "--encoder-step-m", "1e-7"};
+    return {"--torque-noise-n-m", "0.02", "--encoder-bits", "22"};
   }
 
   [[nodiscard]] Words identify() const {

@@ -2,7 +2,6 @@
 
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/kinematics/forward.hpp"
-#include "deltadyn/model/cast_geometry.hpp"
 #include "deltadyn/model/robot_types.hpp"
 
 namespace deltadyn::firmware_gate {
@@ -12,13 +11,14 @@ template <class T, class Robot>
 Geometry<T, Robot> plausible_geometry() {
   Geometry<T, Robot> geometry;
   if constexpr (Robot::kPlateTurns) {
-    PlateShape shape;
-    shape.spacing = shape.pinion_radius = 0.04;
-    shape.bar_spacing = 0.06;
-    Geometry<double, Robot> placed;
-    Robot::place_parts(shape, placed.parts);
-    geometry = cast_geometry<T>(placed);
-    geometry.yaw_ratio = T(2);
+    // A Par4 in numbers, as a converted header has it: nothing is to be worked out in double.
+    const T side[] = {T(1), T(-1)};
+    for (int k = 0; k < 2; ++k) {
+      geometry.parts[k].a = Vector3<T>(T(0), side[k] * T(0.02), T(0));
+      geometry.parts[2 + k].c = Vector3<T>(side[k] * T(0.03), T(0), T(0));
+      geometry.parts[2 + k].kappa = T(1);
+    }
+    geometry.parts[4].kappa = geometry.yaw_ratio = T(2);
   }
   for (int i = 0; i < Robot::kLimbs; ++i) {
     LimbGeometry<T>& limb = geometry.limbs[i];
