@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "--limb-azimuth-rad", "0.2,2.0,4.5", "--limb-tilt-rad", "0.4,-0.3,0.2"}},
         Member{"InclinedRails",
                {"linear-delta3", "--base-radius", "0.45", "--platform-radius", "0.04", "--strut", "0.35",
-                "--rail-axis-limb=-0.7071067811865476,0,-0.7071067811865476"}}),
+                "--rail-axis-limb=-0.7071067811865476,0,-0.7071067811865476", "--drive-range-m", "0.1,0.5"}}),
     [](const auto& one) { return std::string(one.param.name); });
 
 // --- what is refused ----------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,7 @@ inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, const Syn
     task.z.head<3>() += sampler.ball().centre;
     if (robot.to_drives(task, q, qd, qdd) != Status::ok || task.z.head<3>().norm() < 0.3) {
       scale *= 0.8;  // out of reach: begin again with a smaller motion
+      if (scale < 1e-3) throw std::runtime_error("the home pose of this robot lies too near to the origin");
       k = 0;
       continue;
     }
