@@ -257,7 +257,8 @@ ExportedModel export_header(const Robot& robot, const Eigen::VectorXd& p, const 
       "//\n//   auto model = {0}::feed_forward<float>();\n//   if (model.from_drives(q, qd, qdd, tau) == "
       "deltadyn::Status::ok) "
       "...\n\n"
-      "#include <deltadyn/firmware/{3}feed_forward.hpp>\n#include <deltadyn/model/robot_types.hpp>\n\nnamespace {0} {{\n\nusing Robot = deltadyn::{1};\n"
+      "#include <deltadyn/firmware/{3}feed_forward.hpp>\n"
+      "#include <deltadyn/model/robot_types.hpp>\n\nnamespace {0} {{\n\nusing Robot = deltadyn::{1};\n"
       "inline constexpr deltadyn::Limbs kSharing = deltadyn::Limbs::{2};\n"
       "using Layout = deltadyn::ParameterLayout<Robot, kSharing>;\n\n",
       space, type, options.individual_limbs ? "individual" : "shared", parts.effects.empty() ? "" : "effect_");

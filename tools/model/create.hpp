@@ -132,7 +132,7 @@ class Create {
 
   void execute(ToolRun& run) {
     if ((", " + robot_type_names() + ",").find(", " + type_ + ",") == std::string::npos)
-      refuse_usage(fmt::format("'{}' is not a robot type", type_), "use one of " + robot_type_names());
+      refuse_usage(fmt::format("'{}' is not a robot type", type_), "use " + robot_type_names());
     for (const Flag& f : flags_)
       if (f.option->count() > 0 && !has_word(f.types, type_))
         refuse_usage(fmt::format("{} does not belong to a {}", f.name, type_), "leave it out; it is for " + f.types);
