@@ -97,7 +97,7 @@ void plate_part_motion(const Geometry<T, Robot>& geometry, int k, const Motion<T
     const Vector3<T>& second = part.p.second;
     body.a += first * motion.zdd(3) + second * (motion.zd(3) * motion.zd(3));
     body.J_v += first * motion.posture.J_plate.row(3);
-    const Matrix3<T> R_BW = rot_z(part.angle).transpose();
+    const Matrix3<T> R_BW = rot_z(SinCos<T>(T(-part.angle.sin), part.angle.cos));
     body.a = Vector3<T>(R_BW * body.a);
     body.J_v = Matrix<T, 3, Robot::kDrives>(R_BW * body.J_v);
     body.w.z() = part.rate * motion.zd(3);
