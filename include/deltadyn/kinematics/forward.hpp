@@ -60,7 +60,6 @@ class PlateLoops {
   /// \param steps  how many it took
   /// \return unreachable if it does not come to rest, singular if it runs into a singular pose; then `y` is of no use
   Status solve(Plate& y, int& steps) const {
-    using std::abs;
     using std::sqrt;
     // Convergence is quadratic: a step of this size leaves nothing to do.
     const T enough = sqrt(Eigen::NumTraits<T>::epsilon()) / T(8);

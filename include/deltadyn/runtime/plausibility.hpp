@@ -49,9 +49,9 @@ extern const Rule kTilt;               ///< of a rail against the vertical [rad]
 extern const Rule kAzimuth;            ///< of a limb or half plate [rad]
 extern const Rule kLimbTilt;           ///< of a limb frame about its own x [rad]
 extern const Rule kPlateTurn;          ///< of an articulated plate to either side [rad]
-extern const Rule kGearRatio;
-extern const Rule kShare;  ///< a standard deviation as a share of the value
-extern const Rule kYaw;    ///< angle of the tool to either side [rad]
+extern const Rule kGearRatio;          ///< between the turn of an articulated plate and its tool
+extern const Rule kShare;              ///< a standard deviation as a share of the value
+extern const Rule kYaw;                ///< angle of the tool to either side [rad]
 
 /// Throws deltadyn::Error with `code` if the value is not finite or outside the rule.
 /// \param what   the quantity in words, e.g. "--upper-arm" or "limb 2: the strut length"
