@@ -79,7 +79,7 @@ class Excite {
     check_files(run);
     const RobotDescription description = read_robot_file(robot_file_);
     const auto robot = make_robot(description, layout_.options(description));
-    ExcitationOptions options = search_.options(run.seed);
+    ExcitationOptions options = search_.options(run.seed, description.plate.has_value());
     const NominalParameters nominal = nominal_parameters(*robot, PartShapes(description));
     const NominalParameters model = torque_.has_model() ? torque_.model(*robot) : nominal;
     MotionLimits limits = limits_.limits(*robot, torque_.has_model() ? &model.value : nullptr);

@@ -120,7 +120,9 @@ class Simulate {
     for (const std::string& text : effects_) tools::add_effect(text, description, given);
     std::move(given.begin(), given.end(), std::back_inserter(effects));
     complete_options(description, run);
-    const ReferenceMotion reference(read_trajectory(trajectory_file_, *robot), repeats_);
+    const TrajectorySamples motion = read_trajectory(trajectory_file_, *robot);
+    tell_of_the_plate(description, motion);
+    const ReferenceMotion reference(motion, repeats_);
     Plant plant(description, robot->parameter_names(), p, effects, options_.plant);
 
     std::unique_ptr<Robot> model;
@@ -139,6 +141,17 @@ class Simulate {
     }
     write_log(output_, result.log, description);
     tell(description, result, run);
+  }
+
+  /// The virtual robot knows no stops; a machine would run into them.
+  static void tell_of_the_plate(const RobotDescription& robot, const TrajectorySamples& motion) {
+    if (!robot.plate) return;
+    const double farthest = motion.z.col(3).cwiseAbs().maxCoeff(), range = robot.plate_yaw_range();
+    if (farthest > range * (1 + 1e-9))
+      fmt::print(stderr,
+                 "warning: the motion turns the tool to {:.4g} rad, but the plate allows {:.4g} rad to either "
+                 "side\n",
+                 farthest, range);
   }
 
   static Eigen::VectorXd matched(const ParameterTable& table, const Robot& robot) {

@@ -208,36 +208,40 @@ void DesignProblem::evaluate(const VectorXd& v, bool derivatives, Evaluation& ou
   const RowMatrix G_A = (2 * settings_.share / samples_real) * (at.A * criterion.by_M);
   at.drive_jacobian.assign(static_cast<std::size_t>(count), MatrixXd(3 * n, 3 * n));
   if (torque) at.tau_jacobian.assign(static_cast<std::size_t>(count), MatrixXd(n, 3 * n));
-  MatrixXd G = MatrixXd::Zero(n, regressor.parameters());
+  MatrixXd G, gradients;
   VectorXd g(3 * n);
+  std::vector<int> loaded;  // drives whose torque counts at an instant
   for (Index i = 0; i < count; ++i) {
     x = at.x.col(i);
+    loaded.clear();
+    for (Index k = 0; torque && k < limits; ++k) {
+      const Limit& limit = list_[static_cast<std::size_t>(k)];
+      if (limit.quantity == LimitedQuantity::tau && std::abs(weight(k, i)) >= kNegligibleWeight)
+        loaded.push_back(limit.index);
+    }
+    const auto sums = static_cast<Index>(1 + loaded.size());
+    G.setZero(sums * n, regressor.parameters());
+    gradients.resize(3 * n, sums);
     for (Index k = 0; k < p; ++k) {
-      G.col(space_.base_columns[static_cast<std::size_t>(k)]) =
+      G.col(space_.base_columns[static_cast<std::size_t>(k)]).head(n) =
           G_A.col(k).segment(i * n, n).cwiseQuotient(space_.torque_scale) / space_.column_scale(k);
     }
+    for (Index k = 1; k < sums; ++k)
+      G.row(k * n + loaded[static_cast<std::size_t>(k - 1)]) = limits_.parameters.transpose();
     MatrixXd& jacobian = at.drive_jacobian[static_cast<std::size_t>(i)];
-    if (regressor.differentiate(x, sign_width_, G, g, jacobian) != Status::ok) {
+    if (regressor.differentiate(x, sign_width_, G, gradients, jacobian) != Status::ok) {
       out.regular = false;
       return;
     }
+    g = gradients.col(0);
+    for (Index k = 1; k < sums; ++k)
+      at.tau_jacobian[static_cast<std::size_t>(i)].row(loaded[static_cast<std::size_t>(k - 1)]) =
+          gradients.col(k).transpose();
     if (settings_.velocity_weight != 0 && rms > 0) {
       const VectorXd by_qd = share_of_limit.col(i).cwiseQuotient(rate_unit_) / (rms * samples_real);
       g += settings_.velocity_weight * jacobian.middleRows(n, n).transpose() * by_qd;
     }
     chain(at, i, g, out.gradient);
-    if (torque) {
-      MatrixXd unused(3 * n, 3 * n);
-      MatrixXd row = MatrixXd::Zero(n, regressor.parameters());
-      for (Index k = 0; k < limits; ++k) {
-        const Limit& limit = list_[static_cast<std::size_t>(k)];
-        if (limit.quantity != LimitedQuantity::tau || std::abs(weight(k, i)) < kNegligibleWeight) continue;
-        row.setZero();
-        row.row(limit.index) = limits_.parameters.transpose();
-        if (regressor.differentiate(x, sign_width_, row, g, unused) != Status::ok) continue;
-        at.tau_jacobian[static_cast<std::size_t>(i)].row(limit.index) = g.transpose();
-      }
-    }
     Index window = 0;
     while (i >= (window + 1) * count / windows) ++window;
     for (Index k = 0; k < limits; ++k) {

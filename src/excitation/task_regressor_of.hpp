@@ -60,18 +60,41 @@ class TaskRegressorOf final : public TaskRegressor {
   }
 
   Status differentiate(Vec x, Vec sign_width, const Eigen::Ref<const Eigen::MatrixXd>& G_columns,
-                       Eigen::Ref<Eigen::VectorXd> gradient, Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
+                       Eigen::Ref<Eigen::MatrixXd> gradients, Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
     Motion<Jet, R> motion;
     const Status status = jet_motion(x, motion);
     if (status != Status::ok) return status;
-    Full G = Full::Zero();
-    for (std::size_t k = 0; k < columns_.size(); ++k) G.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k));
-
-    State sum = State::Zero();
+    const auto full = [&](Eigen::Index sum) {
+      Full G = Full::Zero();
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        G.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k)).template segment<N>(sum * N);
+      return G;
+    };
+    std::vector<Full> G;
+    for (Eigen::Index sum = 0; sum < gradients.cols(); ++sum) {
+      G.push_back(full(sum));
+      gradients.col(sum) = joints_gradient(motion, sign_width, G.back());
+    }
     for_each_body(jet_geometry_, motion, [&](Body kind, int index, int count, const BodyMotion<Jet, N>& body) {
-      sum += count * body_gradient(body, G.template middleCols<kInertialParameters>(kInertialParameters *
-                                                                                    Layout::body(kind, index)));
+      const int first = kInertialParameters * Layout::body(kind, index);
+      for (std::size_t sum = 0; sum < G.size(); ++sum)
+        gradients.col(static_cast<Eigen::Index>(sum)) +=
+            count * body_gradient(body, G[sum].template middleCols<kInertialParameters>(first));
     });
+    for (int i = 0; i < N; ++i) {
+      jacobian.row(i) = motion.posture.q(i).slope.transpose();
+      jacobian.row(N + i) = motion.qd(i).slope.transpose();
+      jacobian.row(2 * N + i) = motion.qdd(i).slope.transpose();
+    }
+    return Status::ok;
+  }
+
+ private:
+  using Vec3 = deltadyn::Vector3<double>;
+
+  /// Share of friction and rotors in the gradient.
+  static State joints_gradient(const Motion<Jet, R>& motion, Vec sign_width, const Full& G) {
+    State sum = State::Zero();
     for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
       const auto f = friction_joint(motion, joint);
       const double v = f.rate.value, w = sign_width.size() > 0 ? sign_width(joint) : 0.0;
@@ -87,17 +110,8 @@ class TaskRegressorOf final : public TaskRegressor {
       sum += by_rate * f.rate.slope;
     }
     for (int i = 0; i < N; ++i) sum += G(i, Layout::kRotorInertia + i) * motion.qdd(i).slope;
-    gradient = sum;
-    for (int i = 0; i < N; ++i) {
-      jacobian.row(i) = motion.posture.q(i).slope.transpose();
-      jacobian.row(N + i) = motion.qd(i).slope.transpose();
-      jacobian.row(2 * N + i) = motion.qdd(i).slope.transpose();
-    }
-    return Status::ok;
+    return sum;
   }
-
- private:
-  using Vec3 = deltadyn::Vector3<double>;
 
   /// The motion of a task-space state with its derivatives by all of the state.
   Status jet_motion(Vec x, Motion<Jet, R>& motion) const {

@@ -137,6 +137,7 @@ class Gate {
     residual_ = judgement.sound ? 0.0 : judgement.as_given.residual;
     if (judgement.winners.empty()) {
       add(std::move(limits));
+      add(plate_findings(robot_, out_.logs));
       tell_unexplained(judgement);
       return;
     }

@@ -41,7 +41,10 @@ std::string place(const PreparedLog& log, Index sample) {
   std::string angles;
   for (Index j = 0; j < q.size(); ++j) angles += fmt::format("{}{:.4g}", j > 0 ? ", " : "", q(j));
   throw Error(fmt::format("{} at drive positions ({})", message(status), angles), place(log, sample),
-              "check that the robot file belongs to this machine, and zero, sign and unit of the drive positions");
+              status == Status::ambiguous
+                  ? "keep the motion away from the rim of the workspace, where the plate may snap over"
+                  : "check that the robot file belongs to this machine, and zero, sign and unit of the drive "
+                    "positions");
 }
 
 /// Rates of the joints with friction at every sample: N x friction joints. Refuses poses that the robot cannot have.

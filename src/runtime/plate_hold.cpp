@@ -1,9 +1,7 @@
 #include "deltadyn/runtime/plate_hold.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "deltadyn/kinematics/forward.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
@@ -27,7 +25,7 @@ double tipping_margin(const RobotDescription& robot, const Eigen::VectorXd& q) {
   return with_robot_type(robot, [&](auto type) {
     using R = decltype(type);
     if constexpr (R::kPlateTurns) {
-      if (std::count(std::begin(R::kParts), std::end(R::kParts), Body::crossbar) != 1) return 1.0;
+      if (!halves_turn_apart<R>()) return 1.0;
       Posture<double, R> posture;
       if (posture_from_drives<double, R>(geometry_of<double, R>(robot), q, posture) != Status::ok)
         throw Error("the pose is out of reach or singular", robot.name, "check the lengths in the robot file");

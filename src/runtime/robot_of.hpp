@@ -191,13 +191,9 @@ class RobotOf final : public Robot {
     Motion<double, R> motion;
     Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
     if (status != Status::ok) return status;
-    if constexpr (R::kPlateTurns) {
-      return Status::out_of_range;  // not described yet
-    } else {
-      JointReactions<double, R> found;
-      status = deltadyn::joint_reactions<Layout>(geometry_, motion, all_columns(p), found);
-      if (status == Status::ok) reactions = named_reactions(found);
-    }
+    JointReactions<double, R> found;
+    status = deltadyn::joint_reactions<Layout>(geometry_, motion, all_columns(p), found);
+    if (status == Status::ok) reactions = named_reactions(found);
     return status;
   }
 
@@ -216,7 +212,7 @@ class RobotOf final : public Robot {
     return full;
   }
 
-  static std::vector<JointReaction> named_reactions(const JointReactions<double, R>& loads) {
+  std::vector<JointReaction> named_reactions(const JointReactions<double, R>& loads) const {
     std::vector<JointReaction> out;
     const auto add = [&out](const std::string& joint, const std::string& from, const std::string& onto,
                             const JointLoad<double>& load, double axial = 0) {
@@ -229,9 +225,11 @@ class RobotOf final : public Robot {
       for (int k = 0; k < (kHasPlate<R> ? 2 : 0); ++k) {
         const std::string strut = name(Body::strut) + number + (k == 0 ? 'a' : 'b');
         add(strut + ".elbow", arm, strut, limb.elbow[k]);
-        add(strut + ".plate", strut, name(Body::platform), limb.plate[k], limb.axial[k]);
+        add(strut + ".plate", strut, part_name(geometry_.limbs[i].part), limb.plate[k], limb.axial[k]);
       }
     }
+    for (int k = 0; k < (R::kPlateTurns ? 2 : 0); ++k)
+      add(part_name(k) + ".joints", "plate", part_name(k), loads.half_plate[k]);
     if constexpr (R::kTelescope) {
       const char *upper = name(Body::telescope_upper), *lower = name(Body::telescope_lower), *tool = name(Body::tool);
       add("telescope.base", "base", upper, loads.telescope_base);
@@ -240,6 +238,11 @@ class RobotOf final : public Robot {
       add("tool.bearing", name(Body::platform), tool, loads.tool_bearing);
     }
     return out;
+  }
+
+  /// Of a part of the plate that limbs hold.
+  static std::string part_name(int part) {
+    return name(R::kParts[part]) + (R::kPlateTurns ? std::to_string(part + 1) : std::string());
   }
 
   RobotDescription description_;

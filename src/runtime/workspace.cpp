@@ -1,7 +1,10 @@
 #include "deltadyn/runtime/workspace.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -24,6 +27,16 @@ double middle(const DriveLimits& limits) {
 double move_size(const RobotDescription& robot) {
   const LimbGeometry<double>& limb = robot.limbs.front();
   return robot.drive_kind == DriveKind::revolute ? 0.5 * limb.p_DE_0.norm() : 0.25 * limb.strut;
+}
+
+/// Between the azimuths of neighbouring limbs [rad].
+double widest_gap(const std::vector<LimbGeometry<double>>& limbs) {
+  std::vector<double> azimuths;
+  for (const auto& limb : limbs) azimuths.push_back(std::remainder(limb.azimuth, 2 * std::numbers::pi));
+  std::ranges::sort(azimuths);
+  double widest = azimuths.front() + 2 * std::numbers::pi - azimuths.back();
+  for (std::size_t i = 1; i < azimuths.size(); ++i) widest = std::max(widest, azimuths[i] - azimuths[i - 1]);
+  return widest;
 }
 
 }  // namespace
@@ -55,7 +68,11 @@ WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : rob
     found = regular(q);
   }
   if (!found || robot.forward_kinematics(q, z) != Status::ok) {
-    throw Error("no regular pose of the robot was found", description.name, "check the lengths in the robot file");
+    throw Error("no regular pose of the robot was found", description.name,
+                widest_gap(description.limbs) > 0.99 * std::numbers::pi
+                    ? "all limbs stand on one side of the plate, which then nothing holds: spread them around it, so "
+                      "that neighbours are less than 180 deg apart"
+                    : "check the lengths in the robot file");
   }
   ball_.centre = z.head<3>();
   ball_.radius = move_size(description);

@@ -10,8 +10,7 @@ namespace {
 
 TEST(StatusMessage, TellsEveryStatusApart) {
   std::set<std::string> messages;
-  for (const Status s :
-       {Status::ok, Status::unreachable, Status::singular, Status::no_convergence, Status::out_of_range}) {
+  for (const Status s : {Status::ok, Status::unreachable, Status::singular, Status::ambiguous, Status::out_of_range}) {
     messages.insert(message(s));
   }
   EXPECT_EQ(messages.size(), 5U);

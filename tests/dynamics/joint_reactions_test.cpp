@@ -24,7 +24,8 @@ class Reactions : public ::testing::Test {
   DrawnMotion<R> drawn{61};
   JointReactions<double, R> loads;
 };
-using Robots = ::testing::Types<Delta3, LinearDelta3, Delta4, Axis, LinearAxis>;
+using Robots =
+    ::testing::Types<Delta3, LinearDelta3, Delta4, H4, LinearH4, I4, LinearI4, Par4, LinearPar4, Axis, LinearAxis>;
 TYPED_TEST_SUITE(Reactions, Robots);
 
 // Principle of virtual power on one side, Newton and Euler on the other: the drives' share of the bearings' loads is
@@ -44,7 +45,7 @@ TYPED_TEST(Reactions, HoldTheDriveTorques) {
                      d.p(Layout::kRotorInertia + i) * d.motion.qdd(i) + d.p(Layout::kOffset + i);
     }
     for (int i = 0; i < R::kLimbs; ++i) {
-      const Vector3<double> axis = rot_z(SinCos<double>(d.geometry.limbs[i].azimuth)) * d.geometry.limbs[i].axis_L;
+      const Vector3<double> axis = limb_frame(d.geometry.limbs[i]) * d.geometry.limbs[i].axis_L;
       const auto& load = this->loads.limbs[i].drive;
       found(i) = axis.dot(R::kDrive == DriveKind::revolute ? load.moment : load.force);
     }
@@ -101,7 +102,7 @@ TYPED_TEST(Reactions, BalanceEveryBody) {
         add(limb.elbow[k], -1, balance[in_a_limb * i]);
         add(limb.elbow[k], 1, balance[in_a_limb * i + 1 + k]);
         add(limb.plate[k], -1, balance[in_a_limb * i + 1 + k]);
-        add(limb.plate[k], 1, balance[plate]);
+        add(limb.plate[k], 1, balance[plate + static_cast<std::size_t>(d.geometry.limbs[static_cast<int>(i)].part)]);
         EXPECT_EQ(limb.plate[k].moment, Vector3<double>::Zero());  // ball joints
       }
     }
@@ -123,8 +124,27 @@ TYPED_TEST(Reactions, BalanceEveryBody) {
       EXPECT_NEAR(this->loads.telescope_slide.force.dot(d.motion.posture.telescope.e), friction,
                   1e-9 * (1 + std::abs(friction)));
     }
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const Needed need = needed(bodies[b], load.bodies[b], d.geometry.gravity);
+    std::vector<Needed> needs;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      needs.push_back(needed(bodies[b], load.bodies[b], d.geometry.gravity));
+    if constexpr (R::kPlateTurns) {
+      // All that stands between the halves counts as one body.
+      for (std::size_t b = bodies.size() - 1; b > plate + 2; --b) {
+        needs[plate + 2].force += needs[b].force;
+        needs[plate + 2].moment += needs[b].moment;
+        needs.pop_back();
+      }
+      for (std::size_t k = 0; k < 2; ++k) {
+        add(this->loads.half_plate[k], 1, balance[plate + k]);
+        add(this->loads.half_plate[k], -1, balance[plate + 2]);
+      }
+      // Friction and gear of a hinge give the same to both halves; where the halves are parallel, nothing says so.
+      if (halves_turn_apart<R>()) {
+        EXPECT_NEAR(this->loads.half_plate[0].moment.z(), this->loads.half_plate[1].moment.z(), 1e-9);
+      }
+    }
+    for (std::size_t b = 0; b < needs.size(); ++b) {
+      const Needed& need = needs[b];
       const double size = 1 + d.p.norm() * (d.motion.qdd.norm() + d.motion.qd.squaredNorm());
       EXPECT_THAT(balance[b].force, IsNear(need.force, 1e-9 * size)) << "state " << state << ", body " << b;
       EXPECT_THAT(balance[b].moment, IsNear(need.moment, 1e-9 * size)) << "state " << state << ", body " << b;

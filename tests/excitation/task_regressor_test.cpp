@@ -101,18 +101,21 @@ TYPED_TEST(TaskRegressorTest, ColumnsAreThoseOfTheRobot) {
 }
 
 TYPED_TEST(TaskRegressorTest, DerivativesAreThoseOfAutomaticDifferentiation) {
-  Eigen::VectorXd gradient(3 * TestFixture::N), expected;
-  Eigen::MatrixXd jacobian(3 * TestFixture::N, 3 * TestFixture::N), expected_jacobian;
+  constexpr int n = TestFixture::N;
+  Eigen::VectorXd expected;
+  Eigen::MatrixXd gradients(3 * n, 2), jacobian(3 * n, 3 * n), expected_jacobian;
   for (int k = 0; k < 20; ++k) {
     const double width = k % 2 == 0 ? 0.3 : 0.0;
     const Eigen::VectorXd x = this->random_state(),
                           widths = Eigen::VectorXd::Constant(this->regressor->friction_joints(), width);
-    Eigen::MatrixXd G(TestFixture::N, this->robot->parameters());
+    Eigen::MatrixXd G(2 * n, this->robot->parameters());
     for (Eigen::Index i = 0; i < G.size(); ++i) G(i) = this->random.uniform(-1, 1);
-    ASSERT_EQ(this->regressor->differentiate(x, widths, G, gradient, jacobian), Status::ok);
-    this->automatic(x, G, width, expected, expected_jacobian);
-    EXPECT_THAT(gradient, IsNear(expected, 1e-9 * (1 + expected.cwiseAbs().maxCoeff())));
-    EXPECT_THAT(jacobian, IsNear(expected_jacobian, 1e-9 * (1 + expected_jacobian.cwiseAbs().maxCoeff())));
+    ASSERT_EQ(this->regressor->differentiate(x, widths, G, gradients, jacobian), Status::ok);
+    for (int sum = 0; sum < 2; ++sum) {
+      this->automatic(x, G.middleRows(sum * n, n), width, expected, expected_jacobian);
+      EXPECT_THAT(gradients.col(sum).eval(), IsNear(expected, 1e-9 * (1 + expected.cwiseAbs().maxCoeff())));
+      EXPECT_THAT(jacobian, IsNear(expected_jacobian, 1e-9 * (1 + expected_jacobian.cwiseAbs().maxCoeff())));
+    }
   }
 }
 

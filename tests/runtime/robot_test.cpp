@@ -103,6 +103,20 @@ TEST(Robot, GivesTheTermsOfTheEquationsOfMotion) {
   EXPECT_EQ(reactions.back().onto, "tool");
 }
 
+TEST(Robot, NamesTheJointsOfAnArticulatedPlate) {
+  const auto robot = make_robot(four_limb_description("par4"));
+  Eigen::VectorXd q(4), qd(4), qdd(4);
+  const Eigen::Vector4d z(0.02, 0.01, -0.7, 0.3), zd(0.1, 0.2, -0.1, 1), zdd(1, -2, 1, 5);
+  ASSERT_EQ(robot->to_drives({z, zd, zdd}, q, qd, qdd), Status::ok);
+  std::vector<JointReaction> reactions;
+  ASSERT_EQ(robot->joint_reactions(q, qd, qdd, Eigen::VectorXd::Ones(robot->parameters()), reactions), Status::ok);
+  ASSERT_EQ(reactions.size(), 4U * 5U + 2U);
+  EXPECT_EQ(reactions[2].joint, "strut1a.plate");
+  EXPECT_EQ(reactions[2].onto, "half_plate1");
+  EXPECT_EQ(reactions.back().joint, "half_plate2.joints");
+  EXPECT_EQ(reactions.back().onto, "half_plate2");
+}
+
 TEST(Robot, NamesItsColumnsInTheOrderOfTheRegressor) {
   const auto axis = make_robot(axis_description(DriveKind::revolute));
   EXPECT_THAT(axis->parameter_names(),

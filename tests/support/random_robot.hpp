@@ -10,6 +10,7 @@
 #include "deltadyn/core/rotation.hpp"
 #include "deltadyn/model/cast_geometry.hpp"
 #include "deltadyn/model/geometry.hpp"
+#include "deltadyn/model/h4.hpp"
 #include "deltadyn/model/i4.hpp"
 #include "deltadyn/model/par4.hpp"
 #include "deltadyn/model/parameter_layout.hpp"

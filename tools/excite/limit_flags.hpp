@@ -114,6 +114,10 @@ class LimitFlags {
       limits.z_lower(3) = -*yaw_range_;
       limits.z_upper(3) = *yaw_range_;
     }
+    if (description.plate && !(yaw_velocity_ && yaw_acceleration_))
+      fmt::print(
+          "note: without --yaw-velocity-rad-s and --yaw-acceleration-rad-s2 the tool turns as fast as the drives "
+          "can\n");
     if (!plate) return;
     if (!plate_velocity_.empty()) limits.zd.head<3>() = spread_vector(plate_velocity_, 3, "--platform-velocity-m-s");
     if (!plate_acceleration_.empty())

@@ -135,7 +135,9 @@ class Create {
       refuse_usage(fmt::format("'{}' is not a robot type", type_), "use " + robot_type_names());
     for (const Flag& f : flags_)
       if (f.option->count() > 0 && !has_word(f.types, type_))
-        refuse_usage(fmt::format("{} does not belong to a {}", f.name, type_), "leave it out; it is for " + f.types);
+        refuse_usage(fmt::format("{} does not belong to {} {}", f.name,
+                                 std::string("aeiouh").find(type_.front()) == std::string::npos ? "a" : "an", type_),
+                     "leave it out; it is for " + f.types);
     run.check_files({output_}, {});
     RobotDescription robot;
     robot.type = type_;

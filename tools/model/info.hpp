@@ -144,8 +144,9 @@ class Info {
         const double margin = tipping_margin(robot.description(), q);
         summary.add("plate_tipping_margin", margin);
         if (margin < kLeastTippingMargin)
-          fmt::print("  in the home pose both halves of the plate may tip about the same axis (margin {:.2g} of 1)\n",
-                     margin);
+          fmt::print(
+              "  in the home pose both halves of the plate may tip about the same axis (margin {:.2g} of 1)\n    {}\n",
+              margin, kTippingMend);
       }
       summary.add("yaw_range", range, "rad");
       summary.add("workspace_share_at_full_turn", reach.share_at_full_turn);

@@ -95,11 +95,10 @@ inline void warn_of_tipping(const Robot& robot, const Eigen::Vector3d& home) {
   z.head<3>() = home;
   if (robot.description().parts.empty() || robot.inverse_kinematics(z, q) != Status::ok) return;
   if (tipping_margin(robot.description(), q) < kLeastTippingMargin)
-    fmt::print(
-        stderr,
-        "warning: in the home pose both halves of the plate may tip about the same axis, which its hinges do not "
-        "stop\n  a real h4 has its limbs in three directions, e.g. --limb-azimuth-rad 0,-1.5708,3.1416,-1.5708 "
-        "--plate-azimuth-rad 0 with places and attachments to match; level motion is described rightly\n");
+    fmt::print(stderr,
+               "warning: in the home pose both halves of the plate may tip about the same axis, which its hinges do "
+               "not stop\n  {}\n",
+               kTippingMend);
 }
 
 }  // namespace deltadyn::tools

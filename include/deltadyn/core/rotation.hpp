@@ -24,6 +24,12 @@ struct SinCos {
   SinCos(const T& sine, const T& cosine) : sin(sine), cos(cosine) {}
 };
 
+/// rot_z(a) v without the matrix.
+template <class T>
+Vector3<T> turned_z(const SinCos<T>& a, const Vector3<T>& v) {
+  return Vector3<T>(a.cos * v.x() - a.sin * v.y(), a.sin * v.x() + a.cos * v.y(), v.z());
+}
+
 template <class T>
 Matrix3<T> rot_x(const SinCos<T>& a) {
   Matrix3<T> R;

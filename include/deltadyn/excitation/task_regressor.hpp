@@ -32,14 +32,15 @@ class TaskRegressor {
                                         const Eigen::Ref<const Eigen::VectorXd>& sign_width,
                                         Eigen::Ref<Eigen::MatrixXd> Y, Eigen::Ref<Eigen::VectorXd> drives) const = 0;
 
-  /// Gradient of sum_ij G_ij Y_ij(x) by x, and the Jacobian of the drive motion.
-  /// \param G          N x parameters
-  /// \param gradient   3 N
+  /// Gradients of sums sum_ij G_ij Y_ij(x) by x, and the Jacobian of the drive motion. Nearly all of the work is the
+  /// motion, which all sums share.
+  /// \param G          N x parameters of each sum, one below the other
+  /// \param gradients  3 N of each sum, side by side
   /// \param jacobian   3 N x 3 N: d(q, qd, qdd) / dx
   [[nodiscard]] virtual Status differentiate(const Eigen::Ref<const Eigen::VectorXd>& x,
                                              const Eigen::Ref<const Eigen::VectorXd>& sign_width,
                                              const Eigen::Ref<const Eigen::MatrixXd>& G,
-                                             Eigen::Ref<Eigen::VectorXd> gradient,
+                                             Eigen::Ref<Eigen::MatrixXd> gradients,
                                              Eigen::Ref<Eigen::MatrixXd> jacobian) const = 0;
 };
 

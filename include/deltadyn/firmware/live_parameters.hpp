@@ -64,7 +64,7 @@ class LiveParameters {
 
  private:
   static constexpr Body kCarrierBody =
-      kHasTool<Robot> ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
+      kHasInnerJoint<Robot> ? Body::tool : (kHasPlate<Robot> ? Body::platform : Body::upper_arm);
   static constexpr int kCarrier = kInertialParameters * Layout::body(kCarrierBody, 0);
 
   /// Has a body of this mass such moments? Each is at most the sum of the two others, and without mass there are none.

@@ -51,10 +51,10 @@ Status inverse_kinematics(const Geometry<T, Robot>& geometry, const Vector<T, Ro
   q = z;
   if constexpr (kHasPlate<Robot>) {
     const T psi = Robot::kPlateTurns ? z(kPlateCoordinates<Robot> - 1) : T(0);
+    const Attachments<T, Robot> attachments(geometry, psi);
     for (int i = 0; i < Robot::kLimbs; ++i) {
       const LimbGeometry<T>& limb = geometry.limbs[i];
-      const Vector3<T> p_DA =
-          limb_frame(limb).transpose() * (z.template head<3>() + attachment(geometry, i, psi).value - limb.p_WD);
+      const Vector3<T> p_DA = limb_frame(limb).transpose() * (z.template head<3>() + attachments(i).value - limb.p_WD);
       const Status status = Robot::kDrive == DriveKind::revolute ? revolute_drive_angle(limb, p_DA, q(i))
                                                                  : prismatic_drive_position(limb, p_DA, q(i));
       if (status != Status::ok) return status;

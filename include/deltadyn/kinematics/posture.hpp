@@ -73,7 +73,9 @@ template <class T, class Robot>
 void elbow(const LimbGeometry<T>& geometry, const T& q, LimbPosture<T, Robot::kDrives>& limb) {
   if constexpr (Robot::kDrive == DriveKind::revolute) {
     limb.q = SinCos<T>(q);
-    const Vector3<T> d = rot_y(limb.q) * geometry.p_DE_0;
+    const Vector3<T>& d_0 = geometry.p_DE_0;
+    const Vector3<T> d(limb.q.cos * d_0.x() + limb.q.sin * d_0.z(), d_0.y(),
+                       limb.q.cos * d_0.z() - limb.q.sin * d_0.x());  // Ry(q) d_0
     limb.p_DE.value = d;
     limb.p_DE.first = Vector3<T>(d.z(), T(0), -d.x());  // e_y x d
     limb.p_DE.second = Vector3<T>(-d.x(), T(0), -d.z());
@@ -84,47 +86,84 @@ void elbow(const LimbGeometry<T>& geometry, const T& q, LimbPosture<T, Robot::kD
   }
 }
 
+/// The elbow alone, from the origin of W.
+template <class T, class Robot>
+Vector3<T> elbow_place(const LimbGeometry<T>& geometry, const T& q) {
+  LimbPosture<T, Robot::kDrives> limb;
+  elbow<T, Robot>(geometry, q, limb);
+  return geometry.p_WD + limb_frame(geometry) * limb.p_DE.value;
+}
+
+/// Origin of one part of a turning plate from r, in W, and its derivatives by the yaw psi.
+/// \param gain  d theta / d psi
+template <class T>
+PointCurve<T> part_place(const PlatePart<T>& part, const T& theta, const SinCos<T>& turn, const T& gain) {
+  const Vector3<T> turned = turned_z(turn, part.a);
+  PointCurve<T> p;
+  p.value = part.c + turned + theta * part.b;
+  p.first = gain * (cross_z(turned) + part.b);
+  p.second = gain * gain * cross_z<T>(cross_z(turned));
+  return p;
+}
+
 /// Pose of one part of a turning plate and its derivatives by the yaw psi.
 template <class T>
 struct PartPose {
-  PointCurve<T> p;   ///< origin from r, in W [m, m/rad]
-  SinCos<T> turned;  ///< kappa theta
-  SinCos<T> angle;   ///< of the orientation, turn + kappa theta
-  T rate;            ///< d angle / d psi
+  PointCurve<T> p;  ///< origin from r, in W [m, m/rad]
+  SinCos<T> angle;  ///< of the orientation, turn + kappa theta
+  T rate;           ///< d angle / d psi
 };
 
 template <class T>
 PartPose<T> part_pose(const PlatePart<T>& part, const T& psi, const T& yaw_ratio) {
-  const T gain = T(1) / yaw_ratio;  // d theta / d psi
+  const T gain = T(1) / yaw_ratio;
   const T theta = gain * psi;
-  const Vector3<T> turned = rot_z(SinCos<T>(theta)) * part.a;
-  PartPose<T> pose;
-  pose.p.value = part.c + turned + theta * part.b;
-  pose.p.first = gain * (cross_z(turned) + part.b);
-  pose.p.second = gain * gain * cross_z<T>(cross_z(turned));
-  pose.turned = SinCos<T>(T(part.kappa * theta));
-  pose.angle = SinCos<T>(T(part.turn + part.kappa * theta));
-  pose.rate = gain * part.kappa;
-  return pose;
+  return {part_place(part, theta, SinCos<T>(theta), gain), SinCos<T>(T(part.turn + part.kappa * theta)),
+          gain * part.kappa};
 }
 
-/// Attachment of limb i relative to r, in W, as a function of psi.
+/// Attachments of all limbs relative to r, in W, as functions of psi. What limbs of one part share is computed once.
 template <class T, class Robot>
-PointCurve<T> attachment(const Geometry<T, Robot>& geometry, int i, const T& psi) {
-  const LimbGeometry<T>& limb = geometry.limbs[i];
-  PointCurve<T> p;
-  if constexpr (Robot::kPlateTurns) {
-    const PartPose<T> part = part_pose(geometry.parts[limb.part], psi, geometry.yaw_ratio);
-    const Vector3<T> arm = rot_z(part.turned) * limb.p_BA;
-    p.value = part.p.value + arm;
-    p.first = part.p.first + part.rate * cross_z(arm);
-    p.second = part.p.second + part.rate * part.rate * cross_z<T>(cross_z(arm));
-  } else {
-    (void)psi;
-    p.value = geometry.parts[limb.part].c + geometry.parts[limb.part].a + limb.p_BA;
+class Attachments {
+ public:
+  Attachments(const Geometry<T, Robot>& geometry, const T& psi) : geometry_(geometry) {
+    if constexpr (Robot::kPlateTurns) {
+      const T gain = T(1) / geometry.yaw_ratio, theta = gain * psi;
+      const SinCos<T> turn(theta);
+      for (int k = 0; k < kParts; ++k) {
+        const PlatePart<T>& part = geometry.parts[k];
+        place_[k] = part_place(part, theta, turn, gain);
+        turned_[k] = SinCos<T>(T(part.kappa * theta));
+        rate_[k] = gain * part.kappa;
+      }
+    } else {
+      (void)psi;
+    }
   }
-  return p;
-}
+
+  [[nodiscard]] PointCurve<T> operator()(int i) const {
+    const LimbGeometry<T>& limb = geometry_.limbs[i];
+    PointCurve<T> p;
+    if constexpr (Robot::kPlateTurns) {
+      const T& rate = rate_[limb.part];
+      const Vector3<T> arm = turned_z(turned_[limb.part], limb.p_BA);
+      p = place_[limb.part];
+      p.value += arm;
+      p.first += rate * cross_z(arm);
+      p.second += rate * rate * cross_z<T>(cross_z(arm));
+    } else {
+      p.value = geometry_.parts[limb.part].c + geometry_.parts[limb.part].a + limb.p_BA;
+    }
+    return p;
+  }
+
+ private:
+  static constexpr int kParts = Robot::kPlateTurns ? 2 : 1;  // limbs end on the halves, which come first
+  const Geometry<T, Robot>& geometry_;
+  PointCurve<T> place_[kParts];
+  SinCos<T> turned_[kParts];
+  T rate_[kParts] = {};
+};
 
 /// Fills `posture` from consistent q and z: joint angles and every Jacobian. The two must belong together (see
 /// forward.hpp, inverse.hpp).

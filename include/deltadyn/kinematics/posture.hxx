@@ -71,10 +71,11 @@ Status assemble_posture(const Geometry<T, Robot>& geometry, const Vector<T, Robo
     Matrix<T, P, P> loops;    // rows u_i^T dA_i/dy
     Vector<T, P> drive_gain;  // u_i^T dE_i/dq_i
     Matrix3<T> R_LW[Robot::kLimbs];
+    const Attachments<T, Robot> attachments(geometry, psi);
     for (int i = 0; i < Robot::kLimbs; ++i) {
       auto& limb = posture.limbs[i];
       R_LW[i] = limb.R_WL.transpose();
-      const PointCurve<T> p = attachment(geometry, i, psi);
+      const PointCurve<T> p = attachments(i);
       limb.p_BA.value = R_LW[i] * p.value;
       limb.p_BA.first = R_LW[i] * p.first;
       limb.p_BA.second = R_LW[i] * p.second;

@@ -37,19 +37,17 @@ Status lower_intersection(const Vector3<T> (&c)[3], const T (&radius)[3], Vector
   return Status::ok;
 }
 
-/// Plate centre that three limbs allow with the plate turned by psi.
+/// Plate centre that three limbs allow.
+/// \param elbows    of all limbs, in W
 /// \param left_out  the limb, from 0, that is not one of them
 template <class T, class Robot>
-Status centre_on_three_limbs(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>& q, const T& psi,
-                             Vector3<T>& r, int left_out) {
+Status centre_on_three_limbs(const Geometry<T, Robot>& geometry, const Vector3<T> (&elbows)[Robot::kLimbs],
+                             const Attachments<T, Robot>& attachments, Vector3<T>& r, int left_out) {
   Vector3<T> centre[3];
   T radius[3];
   for (int k = 0; k < 3; ++k) {
     const int i = k < left_out ? k : k + 1;
-    LimbPosture<T, Robot::kDrives> limb;
-    elbow<T, Robot>(geometry.limbs[i], q(i), limb);
-    centre[k] =
-        geometry.limbs[i].p_WD + limb_frame(geometry.limbs[i]) * limb.p_DE.value - attachment(geometry, i, psi).value;
+    centre[k] = elbows[i] - attachments(i).value;
     radius[k] = geometry.limbs[i].strut;
   }
   return lower_intersection(centre, radius, r);

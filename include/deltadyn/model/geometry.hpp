@@ -67,7 +67,8 @@ struct Geometry {
   PlatePart<T> parts[Robot::kPlateParts > 0 ? Robot::kPlateParts : 1];
   T yaw_ratio = T(1);    ///< psi = yaw_ratio theta: turns of the tool a turn of theta
   T theta_range = T(1);  ///< largest theta to either side [rad]
-  /// Sign of the loops' determinant in the assembly mode of a plate that turns, see plate_mode()
+  /// The loops' determinant in the middle of the workspace of a plate that turns, see plate_mode(); its sign is the
+  /// assembly mode
   T mode = T(0);
   TelescopeGeometry<T> telescope;
   Vector3<T> gravity = Vector3<T>(T(0), T(0), T(-9.81));  ///< in W [m/s^2]

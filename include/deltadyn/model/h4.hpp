@@ -4,18 +4,9 @@
 /// Four limbs and a plate in the shape of an H (Pierrot, Company 1999): limbs 1 and 2 hold one side bar, 3 and 4 the
 /// other, and a crossbar joins them by two hinges.
 
-#include "deltadyn/model/plate_shape.hpp"
+#include "deltadyn/model/four_limbs.hpp"
 
 namespace deltadyn {
-
-/// What the robots with an articulated plate have in common.
-struct FourLimbs {
-  static constexpr int kLimbs = 4;
-  static constexpr int kDrives = 4;
-  static constexpr bool kTelescope = false;
-  static constexpr bool kPlateTurns = true;
-  static constexpr DriveKind kDrive = DriveKind::revolute;
-};
 
 struct H4 : FourLimbs {
   static constexpr const char* kName = "h4";
@@ -34,13 +25,10 @@ struct H4 : FourLimbs {
 
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
     for (PlatePart<double>& part : parts) part = {};
-    const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
-    parts[0].a = hinge;
-    parts[1].a = -hinge;
+    hinge_halves(shape, parts);
     parts[2].kappa = 1;
+    parts[2].turn = shape.azimuth;
     parts[3].kappa = shape.ratio;
-    parts[0].turn = parts[2].turn = shape.azimuth;
-    parts[1].turn = shape.azimuth + 3.14159265358979323846;  // the same part, the other way round
   }
 };
 

@@ -4,7 +4,7 @@
 /// Four limbs and a plate of two halves that slide on each other (Krut et al. 2003): limbs 1 and 2 hold one, 3 and 4
 /// the other, and racks on both turn a pinion with the tool.
 
-#include "deltadyn/model/h4.hpp"
+#include "deltadyn/model/four_limbs.hpp"
 
 namespace deltadyn {
 
@@ -30,8 +30,7 @@ struct I4 : FourLimbs {
     parts[0].b = travel;
     parts[1].b = -travel;
     parts[2].kappa = 1;
-    parts[0].turn = shape.azimuth;
-    parts[1].turn = shape.azimuth + 3.14159265358979323846;
+    face(shape, parts, 0, 1);
   }
 };
 

@@ -4,7 +4,7 @@
 /// Four limbs and a plate that is a planar parallelogram (Pierrot, Nabat et al. 2009): limbs 1 and 2 hold one half, 3
 /// and 4 the other, two bars join them by four hinges, and a gear or belt turns the tool faster than the bars.
 
-#include "deltadyn/model/h4.hpp"
+#include "deltadyn/model/four_limbs.hpp"
 
 namespace deltadyn {
 
@@ -26,17 +26,14 @@ struct Par4 : FourLimbs {
 
   static void place_parts(const PlateShape& shape, PlatePart<double> (&parts)[kPlateParts]) {
     for (PlatePart<double>& part : parts) part = {};
-    const Vector3<double> hinge = 0.5 * shape.spacing * shape.outwards();
+    hinge_halves(shape, parts);
     const Vector3<double> bar = 0.5 * shape.bar_spacing * cross_z<double>(shape.outwards());
-    parts[0].a = hinge;
-    parts[1].a = -hinge;
     parts[2].c = bar;
     parts[3].c = -bar;
     parts[2].kappa = parts[3].kappa = 1;
+    face(shape, parts, 2, 3);
     parts[4].kappa = shape.ratio;
-    if (shape.tool == ToolPlace::half_plate) parts[4].a = hinge;
-    parts[0].turn = parts[2].turn = shape.azimuth;
-    parts[1].turn = parts[3].turn = shape.azimuth + 3.14159265358979323846;  // the same parts, the other way round
+    if (shape.tool == ToolPlace::half_plate) parts[4].a = parts[0].a;
   }
 };
 

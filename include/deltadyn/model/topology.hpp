@@ -76,12 +76,17 @@ constexpr int tool_part() {
 }
 
 /// Has a joint with friction that is no drive: the telescope bar's slide, or the joints of an articulated plate, which
-/// all move with theta and so count as one.
+/// all move with theta and so count as one. Such a robot turns its tool, which is a body of its own.
 template <class Robot>
 inline constexpr bool kHasInnerJoint = Robot::kTelescope || Robot::kPlateTurns;
 
-/// Has a tool that turns by itself, in the body `tool`.
+/// A single crossbar leaves each half of the plate a turn about its hinge (H4), which the struts must prevent; two bars
+/// or a slide keep the halves parallel.
 template <class Robot>
-inline constexpr bool kHasTool = Robot::kTelescope || Robot::kPlateTurns;
+constexpr bool halves_turn_apart() {
+  int crossbars = 0;
+  for (const Body part : Robot::kParts) crossbars += part == Body::crossbar ? 1 : 0;
+  return crossbars == 1;
+}
 
 }  // namespace deltadyn

@@ -21,4 +21,10 @@ namespace deltadyn {
 /// Below it a plate has visible play.
 inline constexpr double kLeastTippingMargin = 0.05;
 
+/// What to do then: flags of delta-model create.
+inline constexpr const char* kTippingMend =
+    "a real h4 has its limbs in three directions: --limb-azimuth-rad 0,-1.5708,3.1416,-1.5708 --plate-azimuth-rad 0 "
+    "with, for hinges 0.12 m apart, --drive-places-m '0.2,0,0;0.06,-0.2,0;-0.2,0,0;-0.06,-0.2,0' --attachments-m "
+    "'0.03,0,0;0,-0.05,0;-0.03,0,0;0,-0.05,0'; level motion is described rightly as it is";
+
 }  // namespace deltadyn

@@ -21,7 +21,8 @@ enum class ControlLaw {
 
 struct ControllerOptions {
   ControlLaw law = ControlLaw::pd_feedforward;
-  /// Of the closed loop: kp = (2 pi b)^2, kd = 2 z 2 pi b, times the drive's inertia in Kp and Kd
+  /// Of the closed loop: kp = (2 pi b)^2, kd = 2 z 2 pi b, times the drive's inertia in Kp and Kd, or less of it where
+  /// coupled drives have far less in some direction
   double bandwidth_hz = 12;
   double damping_ratio = 0.9;  ///< z
   /// One a drive [N m/rad | N/m], [N m s/rad | N s/m]; computed torque [1/s^2], [1/s]; empty: above

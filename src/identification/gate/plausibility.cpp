@@ -27,8 +27,9 @@ constexpr double kSpread = 0.5;
 // Times the effort of the robot file: drives reach three times their rated torque for moments
 constexpr double kFaultEffort = 5.0;
 constexpr double kWarnEffort = 1.5;
-constexpr double kFarTooFast = 10.0;  // times the velocity limit
-constexpr double kFarBeyond = 3.0;    // times the position limits
+constexpr double kFarTooFast = 10.0;   // times the velocity limit
+constexpr double kFarBeyond = 3.0;     // times the position limits
+constexpr double kBeyondPlate = 1.03;  // times the plate's range: encoders and zero positions are a little off
 
 double beyond(double ratio, double prior_std, double base, double trust) {
   return std::abs(std::log(std::max(ratio, 1e-12))) - base - trust * prior_std;
@@ -232,6 +233,32 @@ std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std:
     }
   }
   return out;
+}
+
+std::vector<LogFinding> plate_findings(const Robot& robot, const std::vector<Log>& logs) {
+  const double range = robot.description().plate_yaw_range();
+  if (!(range > 0)) return {};
+  double farthest = 0;
+  std::string file;
+  Eigen::VectorXd z(robot.drives());
+  for (const Log& log : logs) {
+    const Index stride = std::max<Index>(1, log.samples() / 5000);
+    for (Index k = 0; k < log.samples(); k += stride) {
+      if (robot.forward_kinematics(log.q.row(k).transpose(), z) != Status::ok || std::abs(z(3)) <= farthest) continue;
+      farthest = std::abs(z(3));
+      file = log.file;
+    }
+  }
+  if (farthest <= kBeyondPlate * range) return {};
+  return {{.level = FindingLevel::warning,
+           .key = "plate_range",
+           .file = file,
+           .value = farthest,
+           .unit = "rad",
+           .text = fmt::format("the tool turns to {:.4g} rad, but its plate allows {:.4g} rad to either side", farthest,
+                               range),
+           .mend = "check the zero positions and the order of the drives; or mend range_rad of <plate> in the robot "
+                   "file"}};
 }
 
 }  // namespace deltadyn::gate

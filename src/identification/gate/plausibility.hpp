@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "deltadyn/runtime/robot_description.hpp"
+#include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/signal/log.hpp"
 
 #include "torque_scale.hpp"
@@ -19,5 +19,8 @@ namespace deltadyn::gate {
 /// \param moving  the rows follow one another in time
 [[nodiscard]] std::vector<LogFinding> limit_findings(const RobotDescription& robot, const std::vector<Log>& logs,
                                                      bool moving);
+
+/// An articulated plate that would turn farther than its parts let it.
+[[nodiscard]] std::vector<LogFinding> plate_findings(const Robot& robot, const std::vector<Log>& logs);
 
 }  // namespace deltadyn::gate

@@ -7,6 +7,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "deltadyn/identification/base_parameters.hpp"
+#include "deltadyn/runtime/robot.hpp"
+
+#include "rows.hpp"
+
 namespace deltadyn::gate {
 
 struct Ratio {
