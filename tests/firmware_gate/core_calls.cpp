@@ -82,17 +82,15 @@ void run_dynamics(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& mo
   keep_larger(largest<T>(qdd - motion.qdd) / largest<T>(motion.qdd), outcome.acceleration_gap);
   keep_larger(largest<T>(sum - tau) / scale, outcome.equations_gap);
   keep_larger(largest<T>(slopes.by_qdd - M), outcome.slope_gap);
-  if constexpr (!Robot::kPlateTurns) {  // the joints inside an articulated plate are not described
-    JointReactions<T, Robot> loads;
-    outcome.ok = outcome.ok && joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok;
-    // What the first drive's joint carries, and what its motor takes beside that.
-    const Vector3<T> axis = motion.posture.limbs[0].R_WL * geometry.limbs[0].axis_L;
-    const T carried =
-        axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
-    const T motor =
-        friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
-    keep_larger(largest<T>(Vector<T, 1>(carried + motor - tau(0))) / scale, outcome.reaction_gap);
-  }
+  JointReactions<T, Robot> loads;
+  outcome.ok = outcome.ok && joint_reactions<Layout>(geometry, motion, p, loads) == Status::ok;
+  // What the first drive's joint carries, and what its motor takes beside that.
+  const Vector3<T> axis = motion.posture.limbs[0].R_WL * geometry.limbs[0].axis_L;
+  const T carried =
+      axis.dot(Robot::kDrive == DriveKind::revolute ? loads.limbs[0].drive.moment : loads.limbs[0].drive.force);
+  const T motor =
+      friction_torque_of_drive<Layout>(motion, p, 0) + p(Layout::kRotorInertia) * motion.qdd(0) + p(Layout::kOffset);
+  keep_larger(largest<T>(Vector<T, 1>(carried + motor - tau(0))) / scale, outcome.reaction_gap);
   keep_larger(largest<T>(tau_task - tau) / scale, outcome.feed_forward_gap);
   keep_larger(largest<T>(tau_drives - tau) / scale, outcome.feed_forward_gap);
 }
