@@ -170,7 +170,9 @@ TYPED_TEST(ForwardKinematicsOfFourLimbs, FindsThePoseFromNothing) {
     // Two poses of one mode may belong to the same drives, at the rim; then the plate's last pose decides.
     const Status status = forward_kinematics<double, R>(geometry, q, z);
     unsure += status != Status::ok;
-    if (status == Status::ok) ASSERT_LT((z - truth).cwiseAbs().maxCoeff(), 1e-9) << truth.transpose();
+    if (status == Status::ok) {
+      ASSERT_LT((z - truth).cwiseAbs().maxCoeff(), 1e-9) << truth.transpose();
+    }
   }
   EXPECT_GT(poses, 10000);
   EXPECT_LE(unsure, poses / 10000);
@@ -212,7 +214,9 @@ TYPED_TEST(ForwardKinematicsOfFourLimbs, IsNeverWrongFromFarAway) {
     ++poses;
     const Status status = forward_kinematics_from<double, R>(geometry, q, start, z);
     unsure += status != Status::ok;
-    if (status == Status::ok) ASSERT_LT((z - truth).cwiseAbs().maxCoeff(), 1e-9) << truth.transpose();
+    if (status == Status::ok) {
+      ASSERT_LT((z - truth).cwiseAbs().maxCoeff(), 1e-9) << truth.transpose();
+    }
   }
   EXPECT_GT(poses, 3000);
   EXPECT_LE(unsure, poses / 3000);
