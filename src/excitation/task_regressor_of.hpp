@@ -71,16 +71,16 @@ class TaskRegressorOf final : public TaskRegressor {
       return G;
     };
     std::vector<Full> G;
-    for (Eigen::Index sum = 0; sum < gradients.cols(); ++sum) {
-      G.push_back(full(sum));
-      gradients.col(sum) = joints_gradient(motion, sign_width, G.back());
-    }
+    for (Eigen::Index sum = 0; sum < gradients.cols(); ++sum) G.push_back(full(sum));
+    gradients.setZero();
     for_each_body(jet_geometry_, motion, [&](Body kind, int index, int count, const BodyMotion<Jet, N>& body) {
       const int first = kInertialParameters * Layout::body(kind, index);
       for (std::size_t sum = 0; sum < G.size(); ++sum)
         gradients.col(static_cast<Eigen::Index>(sum)) +=
             count * body_gradient(body, G[sum].template middleCols<kInertialParameters>(first));
     });
+    for (std::size_t sum = 0; sum < G.size(); ++sum)
+      add_joints(motion, sign_width, G[sum], gradients.col(static_cast<Eigen::Index>(sum)));
     for (int i = 0; i < N; ++i) {
       jacobian.row(i) = motion.posture.q(i).slope.transpose();
       jacobian.row(N + i) = motion.qd(i).slope.transpose();
@@ -93,8 +93,9 @@ class TaskRegressorOf final : public TaskRegressor {
   using Vec3 = deltadyn::Vector3<double>;
 
   /// Share of friction and rotors in the gradient.
-  static State joints_gradient(const Motion<Jet, R>& motion, Vec sign_width, const Full& G) {
-    State sum = State::Zero();
+  static void add_joints(const Motion<Jet, R>& motion, Vec sign_width, const Full& G,
+                         Eigen::Ref<Eigen::VectorXd> gradient) {
+    State sum = gradient;
     for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
       const auto f = friction_joint(motion, joint);
       const double v = f.rate.value, w = sign_width.size() > 0 ? sign_width(joint) : 0.0;
@@ -110,7 +111,7 @@ class TaskRegressorOf final : public TaskRegressor {
       sum += by_rate * f.rate.slope;
     }
     for (int i = 0; i < N; ++i) sum += G(i, Layout::kRotorInertia + i) * motion.qdd(i).slope;
-    return sum;
+    gradient = sum;
   }
 
   /// The motion of a task-space state with its derivatives by all of the state.

@@ -22,8 +22,19 @@ double largest_angle_between_limbs(const std::vector<LimbGeometry<double>>& limb
   return largest;
 }
 
+double widest_gap(const std::vector<LimbGeometry<double>>& limbs) {
+  std::vector<double> azimuths;
+  for (const auto& limb : limbs) azimuths.push_back(std::remainder(limb.azimuth, 2 * std::numbers::pi));
+  std::ranges::sort(azimuths);
+  double widest = azimuths.front() + 2 * std::numbers::pi - azimuths.back();
+  for (std::size_t i = 1; i < azimuths.size(); ++i) widest = std::max(widest, azimuths[i] - azimuths[i - 1]);
+  return widest;
+}
+
 namespace articulated_plate {
 namespace {
+
+constexpr double kOneSide = 1.2 * std::numbers::pi;  // gap between neighbours; a real H4 has one of 180 deg
 
 constexpr double kHingeRange = 1.4;  // [rad] beyond it the bars and halves of a hinged plate lie on one another
 
@@ -74,6 +85,9 @@ void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geare
 
 /// Which limb is on which half: two on each, and each pair locks its half.
 void validate_limbs(const RobotDescription& robot, const std::string& where) {
+  if (widest_gap(robot.limbs) > kOneSide)
+    refuse("all limbs stand on one side of the plate, which then nothing holds", where,
+           "spread them around it, so that neighbours are no more than 180 deg apart");
   for (std::size_t i = 0; i < robot.limbs.size(); ++i)
     if (robot.limbs[i].part != 0 && robot.limbs[i].part != 1)
       refuse(fmt::format("limb {} does not end on a half plate; two parallelograms hold a part level, but a part that "

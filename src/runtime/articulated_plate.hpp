@@ -17,6 +17,9 @@ inline constexpr double kParallel = 1e-6;
 /// parallelogram stops the turn about its own direction, so parallel ones leave the part loose.
 [[nodiscard]] double largest_angle_between_limbs(const std::vector<LimbGeometry<double>>& limbs, int part);
 
+/// Between the azimuths of neighbouring limbs [rad].
+[[nodiscard]] double widest_gap(const std::vector<LimbGeometry<double>>& limbs);
+
 namespace articulated_plate {
 
 /// Throws deltadyn::Error with the rule that is broken.

@@ -1,14 +1,14 @@
 #include "deltadyn/runtime/workspace.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
+
+#include "articulated_plate.hpp"
 
 namespace deltadyn {
 
@@ -27,16 +27,6 @@ double middle(const DriveLimits& limits) {
 double move_size(const RobotDescription& robot) {
   const LimbGeometry<double>& limb = robot.limbs.front();
   return robot.drive_kind == DriveKind::revolute ? 0.5 * limb.p_DE_0.norm() : 0.25 * limb.strut;
-}
-
-/// Between the azimuths of neighbouring limbs [rad].
-double widest_gap(const std::vector<LimbGeometry<double>>& limbs) {
-  std::vector<double> azimuths;
-  for (const auto& limb : limbs) azimuths.push_back(std::remainder(limb.azimuth, 2 * std::numbers::pi));
-  std::ranges::sort(azimuths);
-  double widest = azimuths.front() + 2 * std::numbers::pi - azimuths.back();
-  for (std::size_t i = 1; i < azimuths.size(); ++i) widest = std::max(widest, azimuths[i] - azimuths[i - 1]);
-  return widest;
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"PlateTurnedAside", kH4 + Words{"0.12", "--plate-azimuth-rad", "0"}, "do not hold the plate's turn"},
         Wrong{"AllLimbsOneWay", kH4 + Words{"0.12", "--limb-azimuth-rad", "1,1,2,4"}, "could turn"},
         Wrong{"LimbsOnOneSide", kPar4 + Words{"0.06", "--limb-azimuth-rad", "0.2,0.6,1,1.4"},
-              "less than 180 deg apart"},
+              "all limbs stand on one side"},
         Wrong{"FiveLimbs", kH4 + Words{"0.12", "--limb-azimuth-rad", "0,1,2,3,4"}, "--limb-azimuth-rad has 5"},
         Wrong{"ToolOnTheLeft", kPar4 + Words{"0.06", "--tool-on", "left"}, "--tool-on left is not known"},
         Wrong{"ArmOfACarriage", kH4 + Words{"0.12", "--drive-kind", "prismatic"},

@@ -42,8 +42,8 @@ struct Dual {
     return Dual(a.value * b.value, a.value * b.slope + b.value * a.slope);
   }
   friend Dual operator/(const Dual& a, const Dual& b) {
-    const T inverse = T(1) / b.value, ratio = a.value / b.value;  // one division in place of N
-    return Dual(ratio, inverse * a.slope - (inverse * ratio) * b.slope);
+    const T ratio = a.value / b.value;
+    return Dual(ratio, (a.slope - ratio * b.slope) / b.value);
   }
 
   friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
@@ -57,7 +57,7 @@ struct Dual {
   friend Dual sqrt(const Dual& a) {
     using std::sqrt;
     const T root = sqrt(a.value);
-    return Dual(root, (T(0.5) / root) * a.slope);
+    return Dual(root, a.slope / (T(2) * root));
   }
   friend Dual sin(const Dual& a) {
     using std::cos;
