@@ -4,6 +4,7 @@
 /// Flags that say which parameters a robot has: limbs alike or not, tool, rotors, offsets.
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ class LayoutFlags {
   [[nodiscard]] ParameterOptions options(const RobotDescription& robot) const {
     ParameterOptions options;
     options.individual_limbs = individual_limbs_;
+    if (!individual_limbs_ && !robot.limbs_are_alike())
+      fmt::print(
+          "note: arms or struts of the limbs differ in length, but all limbs share one set of parameters; "
+          "--individual-limbs gives each its own\n");
     options.tool = !without_tool_;
     if (without_tool_ && robot.plate)
       throw Error(fmt::format("--without-tool does not fit a robot of type {}, whose plate turns its tool", robot.type),

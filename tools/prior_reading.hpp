@@ -41,10 +41,6 @@ inline Prior read_prior(const Robot& robot, const std::string& file) {
                      : (share > 0 && out.value(k) != 0 ? share * std::abs(out.value(k)) : nominal.std(k));
   }
   for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
-  if (!match.missing.empty()) {
-    fmt::print("note: {}: {} parameters are not in the file and count as 0: {}\n", file, match.missing.size(),
-               fmt::join(match.missing, " "));
-  }
   return out;
 }
 

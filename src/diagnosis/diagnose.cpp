@@ -337,7 +337,8 @@ Diagnosis diagnose(const Robot& robot, const std::vector<Log>& logs, const Log* 
   if (holdout != nullptr) refuse_training_log(logs, *holdout);
   const detail::ValidatedLogs training(robot, logs),
       held(robot, holdout != nullptr ? std::vector<Log>{*holdout} : std::vector<Log>());
-  const detail::DiagnosisInput input{robot, logs, holdout, p, p_std, known, options, training, held};
+  const detail::GivenModel given(robot, held, detail::written_model(p, known, options.processing), options);
+  const detail::DiagnosisInput input{robot, logs, holdout, p, p_std, known, options, training, given};
   double wider_hz = 0;
   const auto search = [&](double cutoff_hz) {
     Diagnosis out;

@@ -266,6 +266,7 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
   VectorXd whole = p, without = p;
   const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot_) : std::vector<Index>{};
   EffectState state;
+  PathPose path;
   VectorXd tau(n);
   for (Index k = 0; k < N; ++k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
@@ -273,9 +274,9 @@ EffectSignals EffectModel::signals(const PreparedLog& log, const VectorXd& p, bo
       whole(coulomb[joint]) = log.coulomb_share(k, static_cast<Index>(joint)) * p(coulomb[joint]);
     without = whole;
     for (const int column : own_friction_) without(column) = 0;
-    if (const Status status = states_->at(q, qd, qdd, state); status != Status::ok) refuse(log, k, status);
+    if (const Status status = states_->at(q, qd, qdd, state, &path); status != Status::ok) refuse(log, k, status);
     for (const auto& [parameters, torque] : {std::pair(&whole, &out.torque), {&without, &out.load}}) {
-      if (const Status status = robot_.inverse_dynamics(q, qd, qdd, *parameters, tau); status != Status::ok)
+      if (const Status status = robot_.inverse_dynamics(q, qd, qdd, *parameters, tau, &path); status != Status::ok)
         refuse(log, k, status);
       torque->row(k) = tau.transpose();
     }
@@ -334,7 +335,9 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
   in_parallel(N, [&](Index k) {
     VectorXd q = out.q.row(k), qd = out.qd.row(k), qdd = out.qdd.row(k), at(n), lagged(n);
     MatrixXd M(n, n);
-    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at) != Status::ok || robot_.mass_matrix(q, p, M) != Status::ok)
+    PathPose path;
+    if (robot_.inverse_dynamics(q, qd, qdd, smooth, at, &path) != Status::ok ||
+        robot_.mass_matrix(q, p, M, &path) != Status::ok)
       return;
     for (Index j = 0; j < n; ++j) out.coupling.row(k).segment(n * j, n) = M.col(j).transpose();
     const auto along = [&](Index j, double step, double lag, double lag_d, double lag_dd, MatrixXd& to) {
@@ -342,7 +345,7 @@ void EffectModel::add_lags(const VectorXd& p, const EffectSignals* near, EffectS
       q(j) += step * lag;
       qd(j) += step * lag_d;
       qdd(j) += step * lag_dd;
-      if (robot_.inverse_dynamics(q, qd, qdd, smooth, lagged) == Status::ok)
+      if (robot_.inverse_dynamics(q, qd, qdd, smooth, lagged, &path) == Status::ok)
         to.row(k) = (lagged - at).transpose() / step;
       q(j) = q_j;
       qd(j) = qd_j;
@@ -364,9 +367,11 @@ void EffectModel::add_differences(const PreparedLog& log, const VectorXd& p, Eff
   in_parallel(N, [&](Index k) {
     const VectorXd q = log.q.row(k), qd = log.qd.row(k), qdd = log.qdd.row(k);
     VectorXd plus(n), minus(n);
+    PathPose path;  // the changes are small: from one machine to the next the plate hardly moves
     const auto torque = [&](const MachineDifference::Side& side, VectorXd& tau) {
       // Right at the edge of the reach a changed length may not close: then the column says nothing there.
-      if (side.robot->inverse_dynamics(q + side.home_offset, qd, qdd, p, tau) != Status::ok) tau = out.torque.row(k);
+      if (side.robot->inverse_dynamics(q + side.home_offset, qd, qdd, p, tau, &path) != Status::ok)
+        tau = out.torque.row(k);
     };
     for (std::size_t d = 0; d < differences_.size(); ++d) {
       torque(differences_[d].plus, plus);

@@ -51,8 +51,9 @@ std::string place(const PreparedLog& log, Index sample) {
 Eigen::MatrixXd joint_rates(const Robot& robot, const PreparedLog& log) {
   Eigen::MatrixXd rates(log.t_s.size(), robot.friction_joints());
   Eigen::VectorXd v(robot.friction_joints());
+  PathPose path;
   for (Index k = 0; k < log.t_s.size(); ++k) {
-    const Status status = robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v);
+    const Status status = robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v, &path);
     if (status != Status::ok) refuse_pose(log, k, status);
     rates.row(k) = v.transpose();
   }
@@ -324,37 +325,54 @@ bool left_out(const PreparedLog& log, int drive, Index first, Index count) {
          (log.torque_out.size() > 0 && log.torque_out.col(drive).segment(first, count).any());
 }
 
-void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
-  const int n = robot.drives();
-  const Index P = robot.parameters();
-  const Index reach = log.low_pass ? log.low_pass->half_width() : 0;
-  const Index step = log.low_pass ? 1 : log.stride;  // the filter needs every sample, without it only those of the rows
-  const Index first_sample = sample_of_row(log, first_row) - reach;
-  const Index last_sample = sample_of_row(log, first_row + count - 1) + reach;
-  const Index samples = (last_sample - first_sample) / step + 1;
+namespace {
 
-  const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
-  // Y of drive 1, of drive 2, ..., then the torques, and those of the ripples if there are any.
-  Eigen::MatrixXd raw(samples, n * (P + (log.ripple.size() > 0 ? 2 : 1)));
-  Eigen::MatrixXd Y(n, P);
-  for (Index k = 0; k < samples; ++k) {
-    const Index at = first_sample + k * step;
-    const Status status =
-        robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y);
-    if (status != Status::ok) refuse_pose(log, at, status);
-    for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
-      Y.col(coulomb[joint]) *= log.coulomb_share(at, static_cast<Index>(joint));
-    for (int j = 0; j < n; ++j) raw.row(k).segment(j * P, P) = Y.row(j);
-    raw.row(k).segment(n * P, n) = log.tau.row(at);
-    if (log.ripple.size() > 0) raw.row(k).tail(n) = log.ripple.row(at);
+Index reach_of(const PreparedLog& log) {
+  return log.low_pass ? log.low_pass->half_width() : 0;
+}
+
+/// Regressor and torques of the samples that rows are filtered from.
+struct UnfilteredRows {
+  Index first_sample = 0, step = 1;
+  Eigen::MatrixXd
+      values;  ///< Y of drive 1, of drive 2, ..., then the torques, and those of the ripples if there are any
+
+  /// \param reach  samples on either side of a row that its filter needs
+  UnfilteredRows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, Index reach)
+      : first_sample(sample_of_row(log, first_row) - reach) {
+    const int n = robot.drives();
+    const Index P = robot.parameters();
+    if (!log.low_pass) step = log.stride;  // the filter needs every sample, without it only those of the rows
+    const Index last_sample = sample_of_row(log, first_row + count - 1) + reach;
+    const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
+    values.resize((last_sample - first_sample) / step + 1, n * (P + (log.ripple.size() > 0 ? 2 : 1)));
+    Eigen::MatrixXd Y(n, P);
+    PathPose path;
+    for (Index k = 0; k < values.rows(); ++k) {
+      const Index at = first_sample + k * step;
+      const Status status =
+          robot.regressor(log.q.row(at).transpose(), log.qd.row(at).transpose(), log.qdd.row(at).transpose(), Y, &path);
+      if (status != Status::ok) refuse_pose(log, at, status);
+      for (std::size_t joint = 0; joint < coulomb.size(); ++joint)
+        Y.col(coulomb[joint]) *= log.coulomb_share(at, static_cast<Index>(joint));
+      for (int j = 0; j < n; ++j) values.row(k).segment(j * P, P) = Y.row(j);
+      values.row(k).segment(n * P, n) = log.tau.row(at);
+      if (log.ripple.size() > 0) values.row(k).tail(n) = log.ripple.row(at);
+    }
   }
-  Eigen::MatrixXd rows;
-  if (log.low_pass) {
-    rows.resize(count, raw.cols());
-    log.low_pass->apply(raw, rows);
-  } else {
-    rows.swap(raw);
+
+  /// The rows under the low pass of `log`.
+  [[nodiscard]] Eigen::MatrixXd rows(const PreparedLog& log, Index first_row, Index count) const {
+    const Index from = (sample_of_row(log, first_row) - reach_of(log) - first_sample) / step;
+    if (!log.low_pass) return values.middleRows(from, count);
+    Eigen::MatrixXd out(count, values.cols());
+    log.low_pass->apply(values.middleRows(from, log.low_pass->inputs(count)), out);
+    return out;
   }
+};
+
+void fill_block(const PreparedLog& log, Index first_row, const Eigen::MatrixXd& rows, int n, RowBlock& block) {
+  const Index P = rows.cols() / n - (log.ripple.size() > 0 ? 2 : 1), reach = reach_of(log), count = rows.rows();
   block.first_row = first_row;
   block.Y.resize(static_cast<std::size_t>(n));
   for (int j = 0; j < n; ++j) block.Y[static_cast<std::size_t>(j)] = rows.middleCols(j * P, P);
@@ -373,6 +391,20 @@ void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Inde
         block.use(k, j) = RowUse::unusable;
     }
   }
+}
+
+}  // namespace
+
+void read_rows(const Robot& robot, const PreparedLog& log, Index first_row, Index count, RowBlock& block) {
+  const UnfilteredRows unfiltered(robot, log, first_row, count, reach_of(log));
+  fill_block(log, first_row, unfiltered.rows(log, first_row, count), robot.drives(), block);
+}
+
+void read_rows(const Robot& robot, const PreparedLog& log, const PreparedLog& other, Index first_row, Index count,
+               RowBlock& block, RowBlock& other_block) {
+  const UnfilteredRows unfiltered(robot, log, first_row, count, std::max(reach_of(log), reach_of(other)));
+  fill_block(log, first_row, unfiltered.rows(log, first_row, count), robot.drives(), block);
+  fill_block(other, first_row, unfiltered.rows(other, first_row, count), robot.drives(), other_block);
 }
 
 }  // namespace deltadyn

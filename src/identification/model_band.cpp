@@ -94,8 +94,7 @@ struct BandRows {
     narrow_down(wide, narrow, options.torque_cutoff_ratio * low_hz);
     if (wide.rows == 0) return;
     RowBlock above, below;
-    read_rows(robot, wide, 0, wide.rows, above);
-    read_rows(robot, narrow, 0, narrow.rows, below);
+    read_rows(robot, wide, narrow, 0, wide.rows, above, below);
     for (std::size_t j = 0; j < above.Y.size(); ++j)
       Y.emplace_back((above.Y[j] - below.Y[j])(Eigen::all, base.independent));
     tau = above.tau - below.tau;

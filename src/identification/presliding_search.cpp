@@ -110,11 +110,13 @@ class Search {
     VectorXd v(robot_.friction_joints());
     for (SearchLog& log : searched_) {
       const Index samples = log.prepared.t_s.size();
+      PathPose path;
       log.rates.resize(samples, robot_.friction_joints());
       log.direction.assign(coulomb_.size(), MatrixXd::Zero(samples, robot_.drives()));
       for (Index k = 0; k < samples; ++k) {
         const VectorXd q = log.prepared.q.row(k), qd = log.prepared.qd.row(k), qdd = log.prepared.qdd.row(k);
-        if (robot_.friction_joint_rates(q, qd, v) != Status::ok || robot_.regressor(q, qd, qdd, Y) != Status::ok)
+        if (robot_.friction_joint_rates(q, qd, v, &path) != Status::ok ||
+            robot_.regressor(q, qd, qdd, Y, &path) != Status::ok)
           continue;
         log.rates.row(k) = v.transpose();
         for (std::size_t joint = 0; joint < coulomb_.size(); ++joint)

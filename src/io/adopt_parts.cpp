@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 #include <set>
 
+#include "deltadyn/runtime/geometry_of.hpp"
+
 namespace deltadyn::cad {
 namespace {
 
@@ -127,9 +129,9 @@ class Finder {
       refuse(
           fmt::format("four limbs found ({}); how their plate is made is not told by the file", found),
           tree_.at(tree_.body(base_).name),
-          fmt::format("make the robot file by delta-model create h4 (or i4, par4); if one of them is no limb, name the "
-                      "drives: --drives A,B,C out of {}",
-                      all));
+          fmt::format("make the robot file by delta-model create, type {}; if one of them is no limb, name the drives: "
+                      "--drives A,B,C out of {}",
+                      articulated_type_names(), all));
     refuse(fmt::format("three limbs expected (a joint on the base whose link carries struts), but {} found{}{}",
                        drives.size(), drives.empty() ? "" : ": ", found),
            tree_.at(tree_.body(base_).name),

@@ -252,6 +252,9 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
                                          place(table.file, entry.line), entry.name));
   }
+  if (!match.missing.empty())
+    match.warnings.push_back(fmt::format("{}: not in the file and counted as 0 ({}): {}", table.file,
+                                         match.missing.size(), fmt::join(match.missing, " ")));
   return match;
 }
 

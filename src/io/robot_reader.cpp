@@ -10,6 +10,7 @@
 
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 
 #include "plate_tree.hpp"
@@ -214,7 +215,9 @@ class Reader {
         [] { return false; });
     if (!known)
       refuse("a robot with four limbs, but no word on how its plate is made", tree_.where,
-             "write <deltadyn type=\"h4\"> (or i4, par4) with a <plate> as delta-model create h4 does");
+             fmt::format("write its type (one of {}) into <deltadyn type=\"...\"> with a <plate> as delta-model create "
+                         "does",
+                         articulated_type_names()));
     return tree_.declared_type;
   }
 
@@ -248,8 +251,14 @@ class Reader {
     };
     for (const robot_file::PlateBody& body : robot_file::plate_bodies(robot_)) {
       for (const robot_file::PlateJoint* one : {&body.swing, &body.level}) {
-        if (!one->moves()) continue;
         const auto wanted = find(made, one->name), found = find(tree_, one->name);
+        if (!one->moves()) {
+          if (found != tree_.joints.end())
+            refuse("this joint of the plate moves, but by the lengths and the ratio in <plate> it does not",
+                   tree_.at(*found),
+                   "mend the numbers of <plate> (a missing ratio is 1), or make the joint a fixed one");
+          continue;
+        }
         if (found == tree_.joints.end())
           refuse(fmt::format("joint {} of the plate is missing", one->name), tree_.where,
                  "write the plate's joints as delta-model create does");
@@ -264,6 +273,14 @@ class Reader {
                           "much",
                           found->mimic_gain, wanted->mimic_gain),
               tree_.at(*found), "mend the multiplier of <mimic>, or the numbers of <plate>");
+        const DriveLimits &has = found->limits, &needs = wanted->limits;
+        const auto differ = [](double one_limit, double other) {
+          return std::isfinite(one_limit) && std::isfinite(other) && std::abs(one_limit - other) > kTolerance;
+        };
+        if (differ(has.lower, needs.lower) || differ(has.upper, needs.upper))
+          refuse(fmt::format("this joint of the plate goes from {:.6g} to {:.6g}, but by <plate> from {:.6g} to {:.6g}",
+                             has.lower, has.upper, needs.lower, needs.upper),
+                 tree_.at(*found), "mend range_rad of <plate>, which counts, and the limits of the plate's joints");
       }
     }
   }

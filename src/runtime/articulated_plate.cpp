@@ -50,8 +50,10 @@ void require_length(double length, const char* what, const std::string& where) {
 
 /// The lengths of the plate itself.
 /// \param usual  of its type: which lengths it needs
-/// \param geared  the tool may have a gear
-void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, const std::string& where) {
+/// \param geared     the tool may have a gear
+/// \param on_a_half  its axis may stand on a half
+void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, bool on_a_half,
+                    const std::string& where) {
   if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
   plausibility::require(plausibility::kAzimuth, shape.azimuth, "plate: the azimuth", where);
   const auto need = [&](double PlateShape::*length, const char* what) {
@@ -64,6 +66,9 @@ void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geare
   need(&PlateShape::spacing, "distance between the hinges of the two halves");
   need(&PlateShape::bar_spacing, "distance between the two bars");
   need(&PlateShape::pinion_radius, "radius of the pinion");
+  if (!on_a_half && shape.tool == ToolPlace::half_plate)
+    refuse("plate: the tool of this type stands in the plate's centre, not on a half", where,
+           "leave out tool=\"half_plate\" (--tool-on)");
   if (!geared && shape.ratio != 1)
     refuse(fmt::format("plate: the tool sits on the pinion, but the ratio of its gear is {}", shape.ratio), where,
            "leave the ratio out, and choose the radius of the pinion");
@@ -156,7 +161,7 @@ void require_theta_held(const RobotDescription& robot, const std::string& where)
 void validate(const RobotDescription& robot, const std::string& where) {
   with_robot_type(robot, [&](auto type) {
     using R = decltype(type);
-    if constexpr (R::kPlateTurns) validate_shape(*robot.plate, R::usual(), R::kGeared, where);
+    if constexpr (R::kPlateTurns) validate_shape(*robot.plate, R::usual(), R::kGeared, R::kToolOnAHalf, where);
   });
   validate_limbs(robot, where);
   require_one_size(robot, where);

@@ -5,6 +5,8 @@
 #include "deltadyn/kinematics/tool_point.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 
+#include "posture_along.hpp"
+
 namespace deltadyn {
 
 namespace {
@@ -15,9 +17,10 @@ class EffectStatesOf final : public EffectStates {
   using Drives = Vector<double, R::kDrives>;
   explicit EffectStatesOf(const RobotDescription& description) : geometry_(geometry_of<double, R>(description)) {}
 
-  Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state) const override {
+  Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state,
+            PathPose* path) const override {
     Motion<double, R> motion;
-    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    const Status status = detail::motion_along(geometry_, Drives(q), Drives(qd), Drives(qdd), path, motion);
     if (status != Status::ok) return status;
     state.J_inner.setZero(R::kDrives);
     const auto tool = tool_point(geometry_, motion);

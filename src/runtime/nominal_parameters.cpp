@@ -37,8 +37,8 @@ void require_not_negative(double value, const std::string& what) {
            "give 0 or more, or leave it to the default");
 }
 
-double arm_length(const RobotDescription& robot) {
-  const double length = robot.limbs.front().p_DE_0.norm();
+double arm_length(const LimbGeometry<double>& limb) {
+  const double length = limb.p_DE_0.norm();
   return length > 0 ? length : 0.1;  // an axis without an arm: a short stub
 }
 
@@ -87,14 +87,13 @@ Ten round(double mass, double outer_diameter, double inner_diameter, const Vec& 
   return shapes::hollow_cylinder<double>(mass, outer_diameter / 2, inner_diameter / 2, from, to);
 }
 
-Ten upper_arm(const RobotDescription& robot, const PartShapes& s) {
-  const LimbGeometry<double>& limb = robot.limbs.front();
+Ten upper_arm(const RobotDescription& robot, const LimbGeometry<double>& limb, const PartShapes& s) {
   if (robot.drive_kind == DriveKind::prismatic) {
     const Vec half = 0.5 * s.carriage_length * limb.axis_L;
     return round(s.carriage_mass, s.carriage_diameter, 0, -half, half, "carriage");
   }
   Ten p = tube(s.upper_arm_density, s.upper_arm_outer_diameter, s.upper_arm_wall, Vec::Zero(),
-               Vec(arm_length(robot), 0, 0), "upper arm");
+               Vec(arm_length(limb), 0, 0), "upper arm");
   require_not_negative(s.upper_arm_hub_mass, "the mass of the upper arm's hub");
   if (s.upper_arm_hub_mass > 0) {
     const Vec half(0, s.upper_arm_hub_width / 2, 0);
@@ -103,8 +102,7 @@ Ten upper_arm(const RobotDescription& robot, const PartShapes& s) {
   return p;
 }
 
-Ten strut(const RobotDescription& robot, const PartShapes& s) {
-  const double length = robot.limbs.front().strut;
+Ten strut(double length, const PartShapes& s) {
   Ten p = tube(s.strut_density, s.strut_outer_diameter, s.strut_wall, Vec::Zero(), Vec(length, 0, 0), "strut");
   require_not_negative(s.strut_sockets_mass, "the mass of the strut's sockets");
   if (s.strut_sockets_mass > 0) {
@@ -118,21 +116,24 @@ Ten strut(const RobotDescription& robot, const PartShapes& s) {
 }
 
 /// From one limb's attachment to the other's.
-Ten half_plate(const RobotDescription& robot, const PartShapes& s) {
+Ten half_plate(const RobotDescription& robot, int part, const PartShapes& s) {
   std::vector<Vec> ends;
+  const double turn = robot.parts[static_cast<std::size_t>(part)].turn;
   for (const auto& limb : robot.limbs)
-    if (limb.part == 0) ends.push_back(Eigen::AngleAxisd(-robot.parts[0].turn, Vec::UnitZ()) * limb.p_BA);
+    if (limb.part == part) ends.push_back(Eigen::AngleAxisd(-turn, Vec::UnitZ()) * limb.p_BA);
   return round(s.half_plate_mass, s.half_plate_diameter, 0, ends.front(), ends.back(), "half plate");
 }
 
-Ten body_of(Body body, const RobotDescription& robot, const PartShapes& s) {
-  if (body == Body::upper_arm) return upper_arm(robot, s);
-  if (body == Body::strut) return strut(robot, s);
+/// \param number  of the limb or half from 1; 0: all have the parameters of the first
+Ten body_of(Body body, int number, const RobotDescription& robot, const PartShapes& s) {
+  const int first = std::max(number - 1, 0);
+  if (body == Body::upper_arm) return upper_arm(robot, robot.limbs[static_cast<std::size_t>(first)], s);
+  if (body == Body::strut) return strut(robot.limbs[static_cast<std::size_t>(first)].strut, s);
   if (body == Body::platform) {
     const Vec half(0, 0, s.platform_thickness / 2);
     return round(s.platform_mass, s.platform_diameter, 0, -half, half, "platform");
   }
-  if (body == Body::half_plate) return half_plate(robot, s);
+  if (body == Body::half_plate) return half_plate(robot, first, s);
   if (body == Body::crossbar) {
     const Vec half(robot.plate->spacing / 2, 0, 0);
     return round(s.crossbar_mass, s.crossbar_diameter, 0, -half, half, "crossbar");
@@ -161,10 +162,10 @@ double friction_of(int drive, bool viscous, const RobotDescription& robot, const
 PartShapes::PartShapes(const RobotDescription& robot) {
   const LimbGeometry<double>& limb = robot.limbs.front();
   const bool prismatic = robot.drive_kind == DriveKind::prismatic;
-  const double arm = arm_length(robot) / kPaperArm;
+  const double arm = arm_length(limb) / kPaperArm;
   const double rod = limb.strut / kPaperStrut;
   const double plate = std::max(plate_radius(robot), 0.2 * kPaperPlate) / kPaperPlate;
-  const double bar = (arm_length(robot) + limb.strut) / (kPaperArm + kPaperStrut);
+  const double bar = (arm_length(limb) + limb.strut) / (kPaperArm + kPaperStrut);
 
   upper_arm_outer_diameter = 0.056 * arm;
   upper_arm_wall = 0.003 * arm;
@@ -232,7 +233,7 @@ NominalParameters nominal_parameters(const Robot& robot, const PartShapes& shape
   for (int column = 0; column < robot.parameters();) {
     const ParameterId& id = robot.parameter_ids()[static_cast<std::size_t>(column)];
     if (id.kind == ParameterKind::inertial) {  // a body's ten parameters stand together, the mass first
-      const Ten p = body_of(id.body, robot.description(), shapes);
+      const Ten p = body_of(id.body, id.number, robot.description(), shapes);
       if (!is_physically_consistent<double>(p))
         refuse(fmt::format("the shapes of {} make no physically consistent body", owner_name(id)),
                "give every part a thickness");

@@ -1,5 +1,6 @@
 #include "deltadyn/runtime/robot_description.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -98,18 +99,37 @@ void validate_limits(const DriveLimits& limits, std::size_t number, const std::s
   positive(limits.effort, "effort");
 }
 
+/// Names of the types that `counts`, each once.
+template <class Counts>
+std::string type_names(const Counts& counts) {
+  std::string names;
+  for_each_robot_type([&](auto type) {
+    const std::string name = decltype(type)::kName;
+    if (!counts(type) || (", " + names + ",").find(", " + name + ",") != std::string::npos) return;
+    names += (names.empty() ? "" : ", ") + name;
+  });
+  return names;
+}
+
 }  // namespace
 
 DriveLimits::DriveLimits()
     : lower(-kInfinity), upper(kInfinity), velocity(kInfinity), acceleration(kInfinity), effort(kInfinity) {}
 
 std::string robot_type_names() {
-  std::string names;
-  for_each_robot_type([&names](auto type) {
-    const std::string name = decltype(type)::kName;
-    if ((", " + names + ",").find(", " + name + ",") == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+  return type_names([](auto) { return true; });
+}
+
+std::string articulated_type_names() {
+  return type_names([](auto type) { return decltype(type)::kPlateTurns; });
+}
+
+bool RobotDescription::limbs_are_alike() const {
+  constexpr double kAlike = 1e-6;  // of a length
+  return std::ranges::all_of(limbs, [&](const LimbGeometry<double>& limb) {
+    const auto alike = [](double one, double other) { return std::abs(one - other) <= kAlike * std::abs(other); };
+    return alike(limb.strut, limbs.front().strut) && alike(limb.p_DE_0.norm(), limbs.front().p_DE_0.norm());
   });
-  return names;
 }
 
 void RobotDescription::set_plate(const PlateShape& shape) {
@@ -121,7 +141,7 @@ void RobotDescription::set_plate(const PlateShape& shape) {
       R::place_parts(shape, placed);
       return {std::begin(placed), std::end(placed)};
     } else {
-      refuse(fmt::format("the plate of a {} is one part", type), name, "use one of h4, i4, par4");
+      refuse(fmt::format("the plate of a {} is one part", type), name, "use one of " + articulated_type_names());
     }
   });
 }

@@ -16,6 +16,8 @@
 #include "deltadyn/runtime/layout_columns.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "posture_along.hpp"
+
 namespace deltadyn::detail {
 
 /// Every column of a layout, in order.
@@ -79,9 +81,9 @@ class RobotOf final : public Robot {
     return status;
   }
 
-  Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z) const override {
+  Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z, PathPose* path) const override {
     Drives out;
-    const Status status = deltadyn::forward_kinematics(geometry_, Drives(q), out);
+    const Status status = pose_along(geometry_, Drives(q), path, out);
     if (status == Status::ok) z = out;
     return status;
   }
@@ -112,10 +114,10 @@ class RobotOf final : public Robot {
     return status;
   }
 
-  Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
-                   Eigen::Ref<Eigen::MatrixXd> Y) const override {
+  Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, Eigen::Ref<Eigen::MatrixXd> Y,
+                   PathPose* path) const override {
     Motion<double, R> motion;
-    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    const Status status = motion_along(geometry_, Drives(q), Drives(qd), Drives(qdd), path, motion);
     if (status != Status::ok) return status;
     Matrix<double, N, Layout::kColumns> full;
     deltadyn::regressor<Layout>(geometry_, motion, full);
@@ -124,16 +126,17 @@ class RobotOf final : public Robot {
   }
 
   Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, const ConstRef& p,
-                          Eigen::Ref<Vector> tau) const override {
+                          Eigen::Ref<Vector> tau, PathPose* path) const override {
     Motion<double, R> motion;
-    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(qdd), motion);
+    const Status status = motion_along(geometry_, Drives(q), Drives(qd), Drives(qdd), path, motion);
     if (status == Status::ok) tau = deltadyn::inverse_dynamics<Layout>(geometry_, motion, all_columns(p));
     return status;
   }
 
-  Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M) const override {
+  Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M,
+                     PathPose* path) const override {
     Posture<double, R> posture;
-    const Status status = posture_from_drives(geometry_, Drives(q), posture);
+    const Status status = posture_along(geometry_, Drives(q), path, posture);
     if (status == Status::ok) M = deltadyn::mass_matrix<Layout>(geometry_, posture, all_columns(p));
     return status;
   }
@@ -197,9 +200,10 @@ class RobotOf final : public Robot {
     return status;
   }
 
-  Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates) const override {
+  Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates,
+                              PathPose* path) const override {
     Motion<double, R> motion;
-    const Status status = motion_from_drives(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), motion);
+    const Status status = motion_along(geometry_, Drives(q), Drives(qd), Drives(Drives::Zero()), path, motion);
     if (status != Status::ok) return status;
     for (int j = 0; j < Layout::kFrictionJoints; ++j) rates(j) = friction_joint(motion, j).rate;
     return status;

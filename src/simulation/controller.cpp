@@ -66,7 +66,9 @@ Controller::Controller(const Robot& robot, const Eigen::VectorXd& p, const Contr
   if (options.law != ControlLaw::computed_torque) {
     Eigen::MatrixXd M(n, n);
     if (robot.mass_matrix(home, p, M) != Status::ok) throw Error("the motion starts out of reach", "controller", "");
-    inertia = M.diagonal() * std::min(1.0, least_inertia_share(robot, p) / kLeastShare);
+    const bool by_default = options.kp.empty() || options.kd.empty();
+    const double share = by_default ? least_inertia_share(robot, p) : kLeastShare;
+    inertia = M.diagonal() * std::min(1.0, share / kLeastShare);
   }
   kp_ = omega * omega * inertia;
   kd_ = 2 * options.damping_ratio * omega * inertia;

@@ -88,7 +88,8 @@ TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
                        {"kg", "kg", "kg*m^2", "N*m*s/rad", "N*m"});
   EXPECT_EQ(match.value, (Eigen::VectorXd(5) << 1.5, 2.5, 0.1, 3, 0).finished());
   EXPECT_THAT(match.missing, ElementsAre("drive1.coulomb"));
-  EXPECT_THAT(match.warnings, ElementsAre(::testing::AllOf(HasSubstr("line 6"), HasSubstr("gripper.m"))));
+  EXPECT_THAT(match.warnings, ElementsAre(::testing::AllOf(HasSubstr("line 6"), HasSubstr("gripper.m")),
+                                          HasSubstr("counted as 0 (1): drive1.coulomb")));
   EXPECT_EQ(values(table, {"strut.Ixx"})(0), 0.1);
 }
 

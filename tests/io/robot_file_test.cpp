@@ -387,6 +387,23 @@ TEST(RobotFile, TheShippedRobotsAreRead) {
   EXPECT_EQ(files, types.size());
 }
 
+// What the file says twice about a plate must be the same: a person edits one of both.
+TEST(RobotFile, EditedPlatesAreRefused) {
+  const std::string par4 = robot_to_urdf(testing_support::four_limb_description("par4"));
+  const auto edited = [&](const std::string& from, const std::string& to) {
+    const auto at = par4.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return std::string(par4).replace(at, from.size(), to);
+  };
+  ASSERT_NO_THROW((void)robot_from_urdf(par4, "memory"));
+  expect_refused(edited(" ratio=\"4\"", ""), {"tool_turn", "does not"});
+  expect_refused(edited(" ratio=\"4\"", " ratio=\"1\""), {"tool_turn", "does not"});
+  expect_refused(edited(" ratio=\"4\"", " ratio=\"5\""), {"mimics another"});
+  expect_refused(edited("range_rad=\"0.9\"", "range_rad=\"0.5\""), {"-0.9 to 0.9", "-0.5 to 0.5", "range_rad"});
+  expect_refused(edited("lower=\"-0.9\" upper=\"0.9\"", "lower=\"-0.5\" upper=\"0.5\""),
+                 {"by <plate> from -0.9 to 0.9"});
+}
+
 TEST(RobotFile, ASerialArmIsNotADelta) {
   const std::string limit = "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/>";
   expect_refused(

@@ -72,6 +72,25 @@ TEST(NominalParameters, BodiesAreConsistentAndNoUncertaintyIsZero) {
     }
 }
 
+// Limbs with parameters of their own have them from their own lengths.
+TEST(NominalParameters, EachLimbHasItsOwnLength) {
+  RobotDescription uneven = delta4(1);
+  EXPECT_TRUE(uneven.limbs_are_alike());
+  uneven.limbs[2].strut *= 1.2;
+  uneven.limbs[1].p_DE_0 *= 0.9;
+  EXPECT_FALSE(uneven.limbs_are_alike());
+  ParameterOptions options;
+  options.individual_limbs = true;
+  const auto robot = make_robot(uneven, options);
+  const NominalParameters nominal = nominal_parameters(*robot, PartShapes(uneven));
+  const auto of = [&](const char* name) { return value(*robot, nominal, name); };
+  EXPECT_EQ(of("strut1.m"), of("strut2.m"));
+  EXPECT_GT(of("strut3.m"), 1.05 * of("strut1.m"));
+  EXPECT_GT(of("strut3.Iyy"), 1.3 * of("strut1.Iyy"));
+  EXPECT_LT(of("upper_arm2.mcx"), 0.95 * of("upper_arm1.mcx"));
+  EXPECT_EQ(of("upper_arm3.mcx"), of("upper_arm1.mcx"));
+}
+
 TEST(NominalParameters, StandardDeviationsScaleWithTheShare) {
   const auto robot = make_robot(delta4(1));
   PartShapes shapes(robot->description());

@@ -64,6 +64,7 @@ const DescriptionFault kFaults[] = {
     {"Hinges", "h4", [](auto& r) { r.plate->spacing = 0; }, "distance between the hinges of the two halves is 0"},
     {"Bars", "par4", [](auto& r) { r.plate->bar_spacing = -1; }, "distance between the two bars"},
     {"Pinion", "i4", [](auto& r) { r.plate->pinion_radius = kNaN; }, "radius of the pinion"},
+    {"ToolOnAHalf", "h4", [](auto& r) { r.plate->tool = ToolPlace::half_plate; }, "not on a half"},
     {"Millimetres", "h4", [](auto& r) { r.plate->spacing = 120; }, "millimetres"},
     {"Collides", "par4", [](auto& r) { r.plate->range = 1.6; }, "the parts of the plate collide"},
     {"NoRange", "i4", [](auto& r) { r.plate->range = 0; }, "range of theta"},

@@ -46,6 +46,7 @@ class TorqueFlags {
   [[nodiscard]] NominalParameters model(const Robot& robot) const {
     const ParameterMatch match = match_parameters(read_parameters(params_file_, robot.description()),
                                                   robot.parameter_names(), robot.parameter_units());
+    for (const std::string& warning : match.warnings) fmt::print("note: {}\n", warning);
     NominalParameters model{match.value, match.std};
     const Eigen::VectorXd usual = ConsistentFitOptions{}.prior_relative_std * match.value.cwiseAbs();
     model.std = model.std.array().isFinite().select(model.std, usual);

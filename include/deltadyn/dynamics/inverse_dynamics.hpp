@@ -8,13 +8,19 @@
 
 namespace deltadyn {
 
-/// Drive torques [N m | N] that friction takes: f(qd) of (1), paper (6), (7).
+/// Friction [N m | N] of a joint against its own rate: paper (6), (7).
+template <class Layout, class T>
+T joint_friction(const Vector<T, Layout::kColumns>& p, int joint, const T& rate) {
+  return p(Layout::viscous(joint)) * rate + p(Layout::coulomb(joint)) * sign_of(rate);
+}
+
+/// Drive torques [N m | N] that friction takes: f(qd) of (1).
 template <class Layout, class T, class Robot>
 Vector<T, Robot::kDrives> friction_torque(const Motion<T, Robot>& motion, const Vector<T, Layout::kColumns>& p) {
   Vector<T, Robot::kDrives> tau = Vector<T, Robot::kDrives>::Zero();
   for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
     const auto f = friction_joint(motion, joint);
-    tau += (p(Layout::viscous(joint)) * f.rate + p(Layout::coulomb(joint)) * sign_of(f.rate)) * f.J.transpose();
+    tau += joint_friction<Layout>(p, joint, f.rate) * f.J.transpose();
   }
   return tau;
 }

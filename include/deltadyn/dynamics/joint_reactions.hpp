@@ -31,6 +31,12 @@ struct JointLoad {
   Vector3<T> place = Vector3<T>::Zero();  ///< of the joint's centre from W [m]
   Vector3<T> force = Vector3<T>::Zero();
   Vector3<T> moment = Vector3<T>::Zero();
+
+  /// Takes over a share of what acts at another joint of the same body.
+  void add(const JointLoad& other, const T& share) {
+    force += share * other.force;
+    moment += share * (other.moment + Vector3<T>(other.place - place).cross(other.force));
+  }
 };
 
 /// Strut 0 stands at +y of the limb frame, strut 1 at -y.
@@ -75,7 +81,7 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
   const T both = turning.dot(e) / n.dot(e);
   const Vector3<T> bending = turning - both * n;
   const T rate = motion.telescope.length_d;
-  const T friction = p(Layout::viscous(Robot::kDrives)) * rate + p(Layout::coulomb(Robot::kDrives)) * sign_of(rate);
+  const T friction = joint_friction<Layout>(p, Robot::kDrives, rate);
   // Of the tool on the bar
   const Vector3<T> at_lower = bending.cross(-e) / bar.length + (lower.force.dot(e) - friction) * e;
   const T mu_lower = -tool.moment.z() / n.z();
@@ -94,9 +100,7 @@ void telescope_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Rob
 template <class Layout, class T, class Robot>
 T moment_on_a_half(const Geometry<T, Robot>& geometry, const Motion<T, Robot>& motion,
                    const Vector<T, Layout::kColumns>& p, const Need<T>& tool) {
-  const InnerJoint<T, Robot> inner = inner_joint(motion);
-  const T friction =
-      p(Layout::viscous(Robot::kDrives)) * inner.rate + p(Layout::coulomb(Robot::kDrives)) * sign_of(inner.rate);
+  const T friction = joint_friction<Layout>(p, Robot::kDrives, inner_joint(motion).rate);
   return T(0.5) * (friction - (T(1) - geometry.yaw_ratio) * tool.moment.z());
 }
 
@@ -135,10 +139,7 @@ PlateBalance<T, Robot> balance_of_parts(const Geometry<T, Robot>& geometry, cons
     }
   }
   if constexpr (Robot::kPlateTurns) {
-    const T gain = motion.posture.theta_gain;
-    const InnerJoint<T, Robot> inner = inner_joint(motion);
-    balance.along(3) += gain * (p(Layout::viscous(Robot::kDrives)) * inner.rate +
-                                p(Layout::coulomb(Robot::kDrives)) * sign_of(inner.rate));
+    balance.along(3) += motion.posture.theta_gain * joint_friction<Layout>(p, Robot::kDrives, inner_joint(motion).rate);
     if constexpr (PlateBalance<T, Robot>::kHinged)
       balance.turning(3) -= moment_on_a_half<Layout>(geometry, motion, p, parts[tool_part<Robot>()]);
   }
@@ -206,10 +207,7 @@ void half_plate_reactions(const Geometry<T, Robot>& geometry, const Need<T>* par
     load = {parts[k].place, parts[k].force, parts[k].moment};
     for (int i = 0; i < Robot::kLimbs; ++i) {
       if (geometry.limbs[i].part != k) continue;
-      for (const JointLoad<T>& ball : out.limbs[i].plate) {
-        load.force -= ball.force;
-        load.moment -= Vector3<T>(ball.place - load.place).cross(ball.force);
-      }
+      for (const JointLoad<T>& ball : out.limbs[i].plate) load.add(ball, T(-1));
     }
   }
 }
@@ -248,10 +246,7 @@ Status joint_reactions(const Geometry<T, Robot>& geometry, const Motion<T, Robot
   for (int i = 0; i < Robot::kLimbs; ++i) {
     auto& limb = result.limbs[i];
     limb.drive = {arms[i].place, arms[i].force, arms[i].moment};
-    for (const JointLoad<T>& elbow : limb.elbow) {
-      limb.drive.force += elbow.force;
-      limb.drive.moment += elbow.moment + Vector3<T>(elbow.place - arms[i].place).cross(elbow.force);
-    }
+    for (const JointLoad<T>& elbow : limb.elbow) limb.drive.add(elbow, T(1));
   }
   out = result;
   return Status::ok;

@@ -109,6 +109,11 @@ struct RowBlock {
 /// will.
 void read_rows(const Robot& robot, const PreparedLog& log, Eigen::Index first_row, Eigen::Index count, RowBlock& block);
 
+/// The same rows of the same motion under two low passes, with one evaluation of the regressor.
+/// \param other  differs from `log` in the low pass alone
+void read_rows(const Robot& robot, const PreparedLog& log, const PreparedLog& other, Eigen::Index first_row,
+               Eigen::Index count, RowBlock& block, RowBlock& other_block);
+
 /// Sample of a row in the log.
 [[nodiscard]] inline Eigen::Index sample_of_row(const PreparedLog& log, Eigen::Index row) {
   return log.first + row * log.stride;

@@ -30,8 +30,15 @@ struct WrittenValidation {
   std::optional<FineDelay> fine_delay;  ///< taken out of the logs
 };
 
+/// Cut-off at which logs show a model, by choose_model_cutoff(): it takes as long as a fit, and depends on the logs and
+/// on whether the model holds_timing(), on nothing else.
+/// \param keep_delay  as for validate_written()
+/// Throws deltadyn::Error as choose_model_cutoff() does.
+[[nodiscard]] double written_cutoff_hz(const Robot& robot, const std::vector<Log>& logs, const WrittenModel& model,
+                                       const ProcessingOptions& processing, bool keep_delay, int threads = 0);
+
 /// \param processing     its presliding and ripples are those of the model
-/// \param choose_cutoff  from the logs, by choose_model_cutoff()
+/// \param choose_cutoff  by written_cutoff_hz()
 /// \param keep_delay     leave a small delay that shows beside the bristles in the logs; always with effects
 /// Throws deltadyn::Error as validate() and choose_model_cutoff() do.
 [[nodiscard]] WrittenValidation validate_written(const Robot& robot, std::vector<Log> logs, const WrittenModel& model,

@@ -171,7 +171,8 @@ Status forward_from_anywhere(const Geometry<T, Robot>& geometry, const Vector<T,
   constexpr double kClear = 0.5;  // of the determinant in the middle; from there on no second pose was ever found
   const PlateLoops<T, Robot> loops(geometry, q);
   const T middle = middle_determinant(geometry);
-  PoseFound<T, Robot> found(geometry.yaw_ratio * geometry.theta_range);
+  using std::abs;  // a gear may reverse
+  PoseFound<T, Robot> found(T(abs(geometry.yaw_ratio)) * geometry.theta_range);
   Status status = Status::unreachable;
   for (const double share : kStarts) {
     const T psi = geometry.yaw_ratio * geometry.theta_range * T(share);
@@ -235,7 +236,7 @@ bool is_near(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>
 
 }  // namespace detail
 
-/// Task coordinates of a plate that turns, from a pose near by, e.g. that of the last set point: half the work, and the
+/// Task coordinates of a plate that turns, from a pose near by, e.g. that of the last set point: a part of the work, and the
 /// right one of two poses that belong to the same drives in the same assembly mode. Where one step of the iteration
 /// might lead to the other, the way from the start is followed in smaller steps. A pose further away than a set point
 /// goes, a twentieth of a strut or 0.2 rad of theta, is looked for from everywhere.

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "deltadyn/core/status.hpp"
+#include "deltadyn/runtime/path_pose.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -30,8 +31,8 @@ class EffectStates {
  public:
   virtual ~EffectStates() = default;
   using ConstRef = Eigen::Ref<const Eigen::VectorXd>;
-  [[nodiscard]] virtual Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
-                                  EffectState& state) const = 0;
+  [[nodiscard]] virtual Status at(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, EffectState& state,
+                                  PathPose* path = nullptr) const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<EffectStates> make_effect_states(const RobotDescription& description);

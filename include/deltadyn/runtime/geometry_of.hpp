@@ -29,6 +29,8 @@ Geometry<T, Robot> geometry_of(const RobotDescription& description) {
 
 /// The names of all types, once each: "delta3, linear-delta3, ..."
 [[nodiscard]] std::string robot_type_names();
+/// Of those with an articulated plate.
+[[nodiscard]] std::string articulated_type_names();
 
 /// work(R()) with the type R of the core that the description belongs to. Throws Error(bad_input) if there is none.
 template <class Work>

@@ -12,6 +12,7 @@
 #include "deltadyn/core/status.hpp"
 #include "deltadyn/runtime/dynamics_terms.hpp"
 #include "deltadyn/runtime/parameter_id.hpp"
+#include "deltadyn/runtime/path_pose.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
 
 namespace deltadyn {
@@ -29,7 +30,8 @@ struct TaskState {
   Eigen::VectorXd z, zd, zdd;
 };
 
-/// A robot with its parameter layout. Immutable after construction; safe to use from several threads.
+/// A robot with its parameter layout. Immutable after construction; safe to use from several threads. What is asked row
+/// by row of a log takes a `path`, see PathPose.
 class Robot {
  public:
   using Vector = Eigen::VectorXd;
@@ -51,7 +53,8 @@ class Robot {
   /// q = f_IK(z) (paper III.A).
   [[nodiscard]] virtual Status inverse_kinematics(const ConstRef& z, Eigen::Ref<Vector> q) const = 0;
   /// z = f_FK(q).
-  [[nodiscard]] virtual Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z) const = 0;
+  [[nodiscard]] virtual Status forward_kinematics(const ConstRef& q, Eigen::Ref<Vector> z,
+                                                  PathPose* path = nullptr) const = 0;
   /// Drive motion of a task-space motion.
   [[nodiscard]] virtual Status to_drives(const TaskState& task, Eigen::Ref<Vector> q, Eigen::Ref<Vector> qd,
                                          Eigen::Ref<Vector> qdd) const = 0;
@@ -63,13 +66,14 @@ class Robot {
 
   /// Y(q, qd, qdd), drives x parameters (paper (3)-(7)).
   [[nodiscard]] virtual Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
-                                         Eigen::Ref<Eigen::MatrixXd> Y) const = 0;
+                                         Eigen::Ref<Eigen::MatrixXd> Y, PathPose* path = nullptr) const = 0;
   /// tau = Y p without forming Y [N m | N].
   [[nodiscard]] virtual Status inverse_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
-                                                const ConstRef& p, Eigen::Ref<Vector> tau) const = 0;
+                                                const ConstRef& p, Eigen::Ref<Vector> tau,
+                                                PathPose* path = nullptr) const = 0;
   /// M(q) of (1), drives x drives, symmetric.
-  [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p,
-                                           Eigen::Ref<Eigen::MatrixXd> M) const = 0;
+  [[nodiscard]] virtual Status mass_matrix(const ConstRef& q, const ConstRef& p, Eigen::Ref<Eigen::MatrixXd> M,
+                                           PathPose* path = nullptr) const = 0;
   /// qdd of drive torques tau, (1) solved by Cholesky's factorisation of M [rad/s^2 | m/s^2]. At rest Coulomb friction
   /// gives no torque (sign(0) = 0). out_of_range if M is not positive definite, i.e. p is not physically consistent.
   [[nodiscard]] virtual Status forward_dynamics(const ConstRef& q, const ConstRef& qd, const ConstRef& tau,
@@ -86,8 +90,8 @@ class Robot {
   [[nodiscard]] virtual Status joint_reactions(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,
                                                const ConstRef& p, std::vector<JointReaction>& reactions) const = 0;
   /// Rates of the joints with friction: drives, then the inner joint if there is one [rad/s | m/s].
-  [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd,
-                                                    Eigen::Ref<Vector> rates) const = 0;
+  [[nodiscard]] virtual Status friction_joint_rates(const ConstRef& q, const ConstRef& qd, Eigen::Ref<Vector> rates,
+                                                    PathPose* path = nullptr) const = 0;
   [[nodiscard]] int friction_joints() const { return drives() + (*description().inner_joint() != 0 ? 1 : 0); }
 };
 

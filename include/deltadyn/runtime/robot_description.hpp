@@ -43,6 +43,8 @@ struct RobotDescription {
   [[nodiscard]] bool feels_inner_joint(int drive) const {
     return plate || (telescope && drive < static_cast<int>(limbs.size()));
   }
+  /// Whether arms and struts are as long in every limb.
+  [[nodiscard]] bool limbs_are_alike() const;
   /// Largest yaw of the tool to either side that an articulated plate allows [rad].
   [[nodiscard]] double plate_yaw_range() const { return plate ? std::abs(plate->ratio) * plate->range : 0.0; }
   /// Gives the robot an articulated plate and its parts. Throws deltadyn::Error if the type has none.

@@ -15,9 +15,10 @@ std::vector<MatrixXd> base_rows(const Robot& robot, const BaseParameters& base, 
   MatrixXd raw(N, n * b);
   MatrixXd Y(n, robot.parameters());
   const std::vector<Index> coulomb = log.coulomb_share.size() > 0 ? coulomb_columns(robot) : std::vector<Index>{};
+  PathPose path;
   for (Index k = 0; k < N; ++k) {
     const Status status =
-        robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y);
+        robot.regressor(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), Y, &path);
     if (status != Status::ok)
       throw Error(message(status), log.file, "check that the robot file belongs to this machine");
     for (std::size_t joint = 0; joint < coulomb.size(); ++joint)

@@ -60,8 +60,10 @@ PreparedLog prepared(const Robot& robot, const Log& log, const ProcessingOptions
 MatrixXd friction_rates(const Robot& robot, const PreparedLog& log) {
   MatrixXd rates(log.t_s.size(), robot.friction_joints());
   VectorXd v(robot.friction_joints());
+  PathPose path;
   for (Index k = 0; k < rates.rows(); ++k) {
-    if (robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v) != Status::ok) v.setZero();
+    if (robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), v, &path) != Status::ok)
+      v.setZero();
     rates.row(k) = v.transpose();
   }
   return rates;

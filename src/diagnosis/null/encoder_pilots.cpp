@@ -30,9 +30,11 @@ void keep_bristles(const Robot& robot, const PreparedLog& before, PreparedLog& l
   if (log.coulomb_share.size() == 0) return;
   const Eigen::Array<bool, 1, Eigen::Dynamic> bristle = (log.coulomb_share.array() != 1.0).colwise().any();
   VectorXd own(robot.friction_joints()), noisy = own;
+  PathPose path;
   for (Index k = 0; k < log.q.rows(); ++k) {
-    if (robot.friction_joint_rates(before.q.row(k).transpose(), before.qd.row(k).transpose(), own) != Status::ok ||
-        robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), noisy) != Status::ok)
+    if (robot.friction_joint_rates(before.q.row(k).transpose(), before.qd.row(k).transpose(), own, &path) !=
+            Status::ok ||
+        robot.friction_joint_rates(log.q.row(k).transpose(), log.qd.row(k).transpose(), noisy, &path) != Status::ok)
       continue;
     for (Index joint = 0; joint < own.size(); ++joint) {
       if (bristle(joint) && own(joint) * noisy(joint) < 0) log.coulomb_share(k, joint) *= -1;

@@ -105,35 +105,65 @@ bool WrittenProof::passed() const {
 }
 
 const std::vector<Log>& ValidatedLogs::beside(const std::vector<Effect>& effects) const {
+  return with_delay(holds_timing(effects));
+}
+
+const std::vector<Log>& ValidatedLogs::with_delay(bool keep) const {
   GateOptions gate;
-  gate.keep_delay = holds_timing(effects);
+  gate.keep_delay = keep;
   std::optional<std::vector<Log>>& logs = gate.keep_delay ? with_delay_ : mended_;
   if (!logs) logs = examine_logs(robot_, logs_, {}, {}, gate).logs;
   return *logs;
 }
 
-WrittenProof prove_written(const Robot& robot, const ValidatedLogs& holdout, const WrittenModel& given_model,
-                           const WrittenModel& written, const std::vector<int>& touched, double search_hz,
-                           const DiagnosisOptions& options) {
-  const WrittenModel given = of_another_log(given_model), improved = of_another_log(written);
+WrittenModel written_model(const VectorXd& p, const std::vector<Effect>& effects, const ProcessingOptions& extras) {
+  return {p, effects, extras.presliding, extras.presliding_damping_s, extras.ripples};
+}
+
+GivenModel::GivenModel(const Robot& robot, const ValidatedLogs& holdout, const WrittenModel& model,
+                       const DiagnosisOptions& options)
+    : robot_(robot), holdout_(holdout), options_(options), model_(of_another_log(model)) {}
+
+double GivenModel::chosen_cutoff_hz(const WrittenModel& model, bool keep_delay) const {
+  const std::pair<bool, bool> key(keep_delay, holds_timing(model.effects));
+  const auto known = cutoffs_hz_.find(key);
+  if (known != cutoffs_hz_.end()) return known->second;
+  const std::vector<Log>& logs = holdout_.with_delay(keep_delay);
+  return cutoffs_hz_[key] = written_cutoff_hz(robot_, logs, model, options_.processing, keep_delay, options_.threads);
+}
+
+Validation GivenModel::validation_of(const WrittenModel& model, double cutoff_hz, bool keep_delay) const {
+  ProcessingOptions processing = options_.processing;
+  if (cutoff_hz > 0)
+    processing.cutoff_hz = cutoff_hz;
+  else if (processing.filter && options_.choose_cutoff)
+    processing.cutoff_hz = chosen_cutoff_hz(model, keep_delay);
+  return validate_written(robot_, holdout_.with_delay(keep_delay), model, processing, false, keep_delay,
+                          options_.threads)
+      .validation;
+}
+
+WrittenProof GivenModel::proof_at(double cutoff_hz, const WrittenModel& improved,
+                                  const std::vector<int>& touched) const {
   // A delay that the improved model explains is in the log of both: else the check would have mended what one of them
   // lacks.
   const bool keep_delay = holds_timing(improved.effects);
-  const std::vector<Log>& logs = holdout.beside(improved.effects);
-  ProcessingOptions processing = options.processing;
-  const auto proof_with = [&](bool choose_cutoff) {
-    const auto validation_of = [&](const WrittenModel& model) {
-      return validate_written(robot, logs, model, processing, choose_cutoff, keep_delay, options.threads).validation;
-    };
-    return compare(validation_of(given), validation_of(improved), touched, options);
-  };
-  WrittenProof out = proof_with(options.choose_cutoff);
-  if (out.testable() || !options.choose_cutoff) return out;
+  const std::pair<bool, double> key(keep_delay, cutoff_hz);
+  if (validations_.count(key) == 0) validations_[key] = validation_of(model_, cutoff_hz, keep_delay);
+  WrittenProof out = compare(validations_.at(key), validation_of(improved, cutoff_hz, keep_delay), touched, options_);
+  out.cutoff_hz = cutoff_hz;
+  return out;
+}
+
+WrittenProof GivenModel::compare_with(const WrittenModel& improved, const std::vector<int>& touched,
+                                      double search_hz) const {
+  const WrittenModel written = of_another_log(improved);
+  WrittenProof out = proof_at(0, written, touched);
+  if (out.testable() || !options_.choose_cutoff) return out;
   // A cut-off that leaves too little beside reversals gives way to the one of the search, then to that of the motion.
-  for (const double cutoff_hz : {search_hz, choose_cutoff(logs).cutoff_hz}) {
-    processing.cutoff_hz = cutoff_hz;
-    WrittenProof wider = proof_with(false);
-    wider.cutoff_hz = cutoff_hz;
+  const double motion_hz = choose_cutoff(holdout_.beside(written.effects)).cutoff_hz;
+  for (const double cutoff_hz : {search_hz, motion_hz}) {
+    WrittenProof wider = proof_at(cutoff_hz, written, touched);
     if (!wider.testable()) continue;
     // The few rows at delta-validate's own cut-off cannot bear the names out, but they can contradict a gain that is
     // small beside what is lost there.

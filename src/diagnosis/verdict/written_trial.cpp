@@ -52,10 +52,6 @@ void fit_improved(const TrialInput& input, bool keep_extras, Trial& trial) {
   trial.improved = identify_beside(input, logs, trial.effects, keep_extras);
 }
 
-WrittenModel model_of(const VectorXd& p, const std::vector<Effect>& effects, const ProcessingOptions& extras) {
-  return {p, effects, extras.presliding, extras.presliding_damping_s, extras.ripples};
-}
-
 /// Fits the model with the names, with bristles found anew and, if that is not borne out, with those of the search.
 Trial try_names(const TrialInput& input, const std::vector<NamedEffect>& named) {
   const ProcessingOptions& own = input.extras;
@@ -66,9 +62,9 @@ Trial try_names(const TrialInput& input, const std::vector<NamedEffect>& named) 
     Trial trial;
     trial.named = named;
     fit_improved(input, keep_extras, trial);
-    trial.proof = prove_written(input.robot, input.held, model_of(input.p, input.known, input.options.processing),
-                                model_of(trial.improved.fit.p, trial.effects, trial.improved.processing),
-                                reached_drives(named), input.cutoff_hz, input.options);
+    trial.proof =
+        input.given.compare_with(written_model(trial.improved.fit.p, trial.effects, trial.improved.processing),
+                                 reached_drives(named), input.cutoff_hz);
     if (!keep_extras || trial.proof.passed()) best = std::move(trial);
   }
   return best;

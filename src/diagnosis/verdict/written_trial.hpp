@@ -21,7 +21,8 @@ struct DiagnosisInput {
   const VectorXd &p, &p_std;         ///< of the model as given
   const std::vector<Effect>& known;  ///< effects of the model as given
   const DiagnosisOptions& options;
-  const ValidatedLogs &training, &held;  ///< `held` has none without a hold-out log
+  const ValidatedLogs& training;
+  const GivenModel& given;  ///< on the hold-out log, if there is one
 };
 
 struct TrialInput : DiagnosisInput {

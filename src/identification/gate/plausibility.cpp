@@ -243,8 +243,10 @@ std::vector<LogFinding> plate_findings(const Robot& robot, const std::vector<Log
   Eigen::VectorXd z(robot.drives());
   for (const Log& log : logs) {
     const Index stride = std::max<Index>(1, log.samples() / 5000);
+    PathPose path;
     for (Index k = 0; k < log.samples(); k += stride) {
-      if (robot.forward_kinematics(log.q.row(k).transpose(), z) != Status::ok || std::abs(z(3)) <= farthest) continue;
+      if (robot.forward_kinematics(log.q.row(k).transpose(), z, &path) != Status::ok || std::abs(z(3)) <= farthest)
+        continue;
       farthest = std::abs(z(3));
       file = log.file;
     }

@@ -76,10 +76,11 @@ struct PointRegressor {
     Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(N, robot.friction_joints());
     Eigen::MatrixXd full(n, robot.parameters());
     Eigen::VectorXd v(robot.friction_joints());
+    PathPose path;
     for (Index k = stretch.first; k < stretch.last; ++k) {
       const Eigen::VectorXd qk = q.row(k), vk = qd.row(k), ak = qdd.row(k);
-      if (robot.regressor(qk, vk, ak, full) != Status::ok || robot.friction_joint_rates(qk, vk, v) != Status::ok ||
-          !full.allFinite()) {
+      if (robot.regressor(qk, vk, ak, full, &path) != Status::ok ||
+          robot.friction_joint_rates(qk, vk, v, &path) != Status::ok || !full.allFinite()) {
         out_of_reach[static_cast<std::size_t>(k)] = 1;
         continue;
       }
@@ -220,9 +221,10 @@ Rows rows_of_points(const Robot& robot, const BaseParameters& base, const Points
   std::vector<std::vector<FoundRow>> found(static_cast<std::size_t>(n));
   Eigen::MatrixXd full(n, robot.parameters());
   Index unreachable = 0;
+  PathPose path;
   for (Index k = 0; k < q.rows(); ++k) {
     const Eigen::VectorXd qk = q.row(k), vk = qd.row(k), ak = qdd.row(k);
-    if (robot.regressor(qk, vk, ak, full) != Status::ok || !full.allFinite()) {
+    if (robot.regressor(qk, vk, ak, full, &path) != Status::ok || !full.allFinite()) {
       ++unreachable;
       continue;
     }
