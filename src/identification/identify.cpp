@@ -27,6 +27,8 @@ using Eigen::Index;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kReversalRatio = 3.0;     // above it, rows near reversals follow another law than the model's
+constexpr double kChanceSigmas = 3.0;      // of that ratio, where the rest is noise alone
+constexpr Index kRowsPerParameter = 10;    // of a drive, to tell noise from what the model lacks
 constexpr Index kFewestReversalRows = 10;  // to judge them by
 constexpr double kHuber = 1.345;           // 95 % efficient for normal noise (Huber 1981)
 // Of the best known parameter's standard deviation: a smaller bias is no matter
@@ -119,7 +121,10 @@ class Identifier {
     const auto fold_start = Clock::now();
     make_rows();
     report(0.4);
-    if (options_.processing.filter && options_.reversals == Reversals::automatic) find_everyday_friction();
+    if (options_.processing.filter && options_.reversals == Reversals::automatic) {
+      find_everyday_friction();
+      leave_out_worse_than_noise();
+    }
     for (const PreparedLog& log : rows_.prepared)
       out_.notes.insert(out_.notes.end(), log.notes.begin(), log.notes.end());
     out_.fold_time_s = seconds_since(fold_start);
@@ -208,7 +213,36 @@ class Identifier {
     return (out_.processing.presliding.array() > 0).any();
   }
 
-  void add_ripples() { out_.processing.ripples = find_ripples(robot_, out_.base, logs_, out_.processing, rows_.keep); }
+  void add_ripples() { out_.processing.ripples = find_ripples(robot_, out_.base, logs_, out_.processing); }
+
+  /// Rows near reversals are kept for what they know beside a model that is off a little everywhere. Where it is exact,
+  /// a residual there that is above the noise is none: steps of Coulomb's friction at the wrong moment bend the
+  /// parameters by many of their standard deviations.
+  void leave_out_worse_than_noise() {
+    const std::vector<bool> kept = rows_.keep;
+    const auto few = kRowsPerParameter * out_.base.count();
+    for (std::size_t j = 0; j < kept.size(); ++j) rows_.keep[j] = kept[j] && rows_.fold.regular[j].rows < few;
+    if (rows_.keep == kept) return;
+    try {
+      out_.base_estimate = estimate_base_parameters(out_.base, rows_.used());
+      const std::vector<double> memory = correlations();
+      for (std::size_t j = 0; j < kept.size(); ++j) {
+        const auto rows = static_cast<double>(rows_.fold.reversal[j].rows);
+        const double by_chance = 1 + kChanceSigmas * std::sqrt(memory[j] / (2 * rows));
+        // Memory of what is left away from reversals is of what the model lacks.
+        const double most = by_chance * std::max(1.0, memory[j] / white_memory());
+        if (kept[j] && out_.drives[j].reversal_ratio <= most) rows_.keep[j] = true;
+      }
+    } catch (const Error&) {  // without them the motion does not show every parameter
+      rows_.keep = kept;
+    }
+  }
+
+  /// DriveNoise::correlation of white noise under the rows' low pass.
+  [[nodiscard]] double white_memory() const {
+    const auto& low_pass = rows_.prepared.front().low_pass;
+    return low_pass ? low_pass->white_correlation() : 1.0;
+  }
 
   [[nodiscard]] Eigen::VectorXd any() const {
     return any_parameters(out_.base, out_.base_estimate.value, robot_.parameters());

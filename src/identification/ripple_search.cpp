@@ -25,7 +25,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr Index kRippleSamples = 20'000;  // of each log, as for presliding
 // Over the drive's range; slower ones are the shape of gravity and wrong lengths
 constexpr double kFewestWaves = 4;
-constexpr double kSlowShare = 0.1;     // of the rows whose speed keeps the fastest waves within the pass band
+constexpr double kSlowShare = 0.25;    // of the rows whose speed keeps the fastest waves within the pass band
 constexpr Index kMostWaves = 2000;     // over the range
 constexpr Index kMostOfDrive = 4;      // ripples
 constexpr Index kFinePhase = 8;        // bins a wave of the fastest ripple
@@ -39,7 +39,7 @@ constexpr double kMostMemory = 3;
 class RippleSearch {
  public:
   RippleSearch(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-               const ProcessingOptions& processing, const std::vector<bool>& keep)
+               const ProcessingOptions& processing)
       : robot_(robot), pass_hz_(processing.torque_cutoff_ratio * processing.cutoff_hz) {
     ProcessingOptions options = processing;
     options.ripples.clear();
@@ -49,8 +49,7 @@ class RippleSearch {
       RowUses use;
       rows_.push_back(base_rows(robot, base, one, use));
       rows_.back().weight.resize(one.rows, robot.drives());
-      for (Index j = 0; j < robot.drives(); ++j)
-        rows_.back().weight.col(j) = usable_rows(use, j, keep[static_cast<std::size_t>(j)]).cast<double>();
+      for (Index j = 0; j < robot.drives(); ++j) rows_.back().weight.col(j) = usable_rows(use, j, false).cast<double>();
       logs_.push_back(std::move(one));
     }
     weigh_by_residual(rows_, 3);
@@ -292,8 +291,8 @@ class RippleSearch {
 }  // namespace
 
 std::vector<Ripple> find_ripples(const Robot& robot, const BaseParameters& base, const std::vector<Log>& logs,
-                                 const ProcessingOptions& processing, const std::vector<bool>& keep) {
-  return RippleSearch(robot, base, logs, processing, keep).run();
+                                 const ProcessingOptions& processing) {
+  return RippleSearch(robot, base, logs, processing).run();
 }
 
 }  // namespace deltadyn

@@ -13,13 +13,13 @@ namespace deltadyn {
 
 /// Waves whose amplitude, fitted together with all base parameters, takes clearly more off the squared residual than
 /// chance does, and that either half of the log predicts of the other. Slow ones (fewer than four over the range of the
-/// drive) are left to gravity and lengths, fast ones that the pass band hides nearly always are not looked for.
+/// drive) are left to gravity and lengths, fast ones that the pass band hides nearly always are not looked for. Rows
+/// near velocity reversals tell nothing: any wave slows down there, and one of thousands fits what friction leaves at
+/// the few places where a motion turns back.
 /// \param processing  with the cut-off and the presliding of the fit; its ripples are not used
-/// \param keep        drives whose rows near reversals count
 /// \returns drive by drive, the strongest first; phases and sizes at the positions of the logs
 /// Throws deltadyn::Error as prepare_log does.
 [[nodiscard]] std::vector<Ripple> find_ripples(const Robot& robot, const BaseParameters& base,
-                                               const std::vector<Log>& logs, const ProcessingOptions& processing,
-                                               const std::vector<bool>& keep);
+                                               const std::vector<Log>& logs, const ProcessingOptions& processing);
 
 }  // namespace deltadyn

@@ -34,7 +34,7 @@ TEST_P(RippleOfAnAxis, IsFoundBelowTheNoise) {
     log.seed = seed;
     logs.push_back(log.make());
   }
-  const auto found = find_ripples(*robot, find_base_parameters(*robot), logs, at_20_hz(), {false});
+  const auto found = find_ripples(*robot, find_base_parameters(*robot), logs, at_20_hz());
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].n, GetParam(), std::max(4 * found[0].n_std, 0.01 * GetParam()));
   EXPECT_NEAR(std::hypot(found[0].cosine, found[0].sine), 0.03, 4 * found[0].amplitude_std);
@@ -49,7 +49,7 @@ TEST(FindRipples, FindsNoneInCleanLogs) {
     AxisLog log;
     log.base_hz = seed % 2 == 0 ? 0.37 : 0.11;
     log.seed = seed;
-    EXPECT_TRUE(find_ripples(*robot, find_base_parameters(*robot), {log.make()}, at_20_hz(), {false}).empty()) << seed;
+    EXPECT_TRUE(find_ripples(*robot, find_base_parameters(*robot), {log.make()}, at_20_hz()).empty()) << seed;
   }
 }
 
@@ -65,9 +65,9 @@ TEST(FindRipples, ClaimsNoneBesideOtherStructure) {
     logs.push_back(log.make());
   }
   const BaseParameters base = find_base_parameters(*robot);
-  EXPECT_EQ(find_ripples(*robot, base, logs, at_20_hz(), {false}).size(), 1U);
+  EXPECT_EQ(find_ripples(*robot, base, logs, at_20_hz()).size(), 1U);
   for (Log& log : logs) log.tau.col(0).array() += 0.1 * (9 * log.t_s.array()).sin();
-  EXPECT_TRUE(find_ripples(*robot, base, logs, at_20_hz(), {false}).empty());
+  EXPECT_TRUE(find_ripples(*robot, base, logs, at_20_hz()).empty());
 }
 
 /// Ripple of two drives on a whole robot; a third drive has none.
@@ -90,7 +90,7 @@ TEST(FindRipples, BelongsToTheModelOfARobot) {
   };
   const std::vector<Log> logs = {with_ripple(71), with_ripple(72)};
   ProcessingOptions processing = at_20_hz();
-  const auto found = find_ripples(*robot, find_base_parameters(*robot), logs, processing, {false, false, false});
+  const auto found = find_ripples(*robot, find_base_parameters(*robot), logs, processing);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].drive, 0);
   EXPECT_NEAR(found[0].n, 40, 0.4);

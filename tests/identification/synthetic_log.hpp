@@ -51,7 +51,7 @@ inline Eigen::VectorXd delta_truth(const Robot& robot) {
 struct SyntheticOptions {
   double duration_s = 4.0, rate_hz = 1000.0;
   double base_frequency_hz = 0.25;
-  double torque_noise = 0.0;  ///< of the limbs' drives; a tenth of it on a fourth one [N m]
+  double torque_noise = 0.0;  ///< of the limbs' drives; a tenth of it on a telescope's [N m]
   double encoder_step = 0.0;  ///< quantisation of q [rad]
   bool with_derivatives = true;
   std::uint64_t seed = 1;
@@ -115,7 +115,10 @@ inline Log synthetic_log(const Robot& robot, const Eigen::VectorXd& p, const Syn
     log.q.row(k) = q;
     log.qd.row(k) = qd;
     log.qdd.row(k) = qdd;
-    for (int j = 0; j < n; ++j) tau(j) += options.torque_noise * (j < 3 ? 1.0 : 0.1) * normal(random);
+    for (int j = 0; j < n; ++j) {
+      const bool of_a_limb = j < static_cast<int>(robot.description().limbs.size());
+      tau(j) += options.torque_noise * (of_a_limb ? 1.0 : 0.1) * normal(random);
+    }
     log.tau.row(k) = tau;
     ++k;
   }

@@ -396,8 +396,8 @@ TEST(RobotFile, EditedPlatesAreRefused) {
     return std::string(par4).replace(at, from.size(), to);
   };
   ASSERT_NO_THROW((void)robot_from_urdf(par4, "memory"));
-  expect_refused(edited(" ratio=\"4\"", ""), {"tool_turn", "does not"});
-  expect_refused(edited(" ratio=\"4\"", " ratio=\"1\""), {"tool_turn", "does not"});
+  expect_refused(edited(" ratio=\"4\"", ""), {"tool_turn", "4-fold", "1 times as much"});
+  expect_refused(edited(" ratio=\"4\"", " ratio=\"1\""), {"tool_turn", "4-fold", "1 times as much"});
   expect_refused(edited(" ratio=\"4\"", " ratio=\"5\""), {"mimics another"});
   expect_refused(edited("range_rad=\"0.9\"", "range_rad=\"0.5\""), {"-0.9 to 0.9", "-0.5 to 0.5", "range_rad"});
   expect_refused(edited("lower=\"-0.9\" upper=\"0.9\"", "lower=\"-0.5\" upper=\"0.5\""),

@@ -236,7 +236,7 @@ bool is_near(const Geometry<T, Robot>& geometry, const Vector<T, Robot::kDrives>
 
 }  // namespace detail
 
-/// Task coordinates of a plate that turns, from a pose near by, e.g. that of the last set point: a part of the work, and the
+/// Task coordinates of a plate that turns, from a pose near by, e.g. that of the last set point: less work, and the
 /// right one of two poses that belong to the same drives in the same assembly mode. Where one step of the iteration
 /// might lead to the other, the way from the start is followed in smaller steps. A pose further away than a set point
 /// goes, a twentieth of a strut or 0.2 rad of theta, is looked for from everywhere.
