@@ -85,7 +85,7 @@ TEST(Excite, SlowAndFastSegmentsHaveFilesOfTheirOwnAndRowsAwayFromReversals) {
   const ToolResult result =
       run(excite("mujoco_delta4.urdf") + kMainCase +
               Words{"-o", folder.path("t.csv"), "--summary", folder.path("s.csv"), "--segments", "2",
-                    "--segment-speeds", "0.3,1", "--segment-files", "--starts", "8", "--time-limit-s", "500"},
+                    "--segment-speeds", "0.3,1", "--segment-files", "--starts", "4", "--time-limit-s", "500"},
           {600});
   EXPECT_EQ(result.code, 0) << result.err;
   const auto summary = read_summary(folder.path("s.csv"));
