@@ -16,14 +16,15 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
+from xml.etree import ElementTree
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from mujoco_case import Failed, Tools, read_summary
+from mujoco_case import Failed, Tools, read_rows, read_summary
 
-FIELDS = ["member", "truth", "verdict", "named", "rms_given", "rms_written", "d_efficiency", "time_s", "note"]
+FIELDS = ["member", "truth", "verdict", "named", "d_efficiency", "time_s", "note"]
 
 RAILS = ["--drive-kind", "prismatic", "--base-radius", "0.45", "--platform-radius", "0.08", "--strut", "0.75",
          "--drive-range-m=-0.5,0.7", "--drive-velocity-m-s", "3", "--drive-acceleration-m-s2", "30", "--drive-effort-N",
@@ -76,7 +77,7 @@ class Member:
         if not (self.folder / "plan_1.csv").exists():
             self.make_robot(robots)
             self.plan()
-        self.rails = "prismatic" in self.robot.read_text(encoding="utf-8").split('name="drive2"')[1][:60]
+        self.rails = ElementTree.parse(self.robot).find("joint[@name='drive1']").get("type") == "prismatic"
         self.efficiency = read_summary(self.folder / "plan_summary.csv").get("d_efficiency", "")
 
     def make_robot(self, robots):
@@ -86,11 +87,9 @@ class Member:
             self.tools("delta-model", "create", *self.words, "-o", self.robot)
         self.tools("delta-model", "prior", self.robot, "-o", self.prior)
         random, share = np.random.default_rng([sum(map(ord, self.name)), 16]), {}
-        with open(self.prior, encoding="utf-8", newline="") as lines:
-            rows = list(csv.DictReader(row for row in lines if not row.startswith("#")))
         with open(self.truth, "w", encoding="utf-8") as out:
             out.write("name,value,unit\n")
-            for row in rows:
+            for row in read_rows(self.prior):
                 body, kind = row["name"].rsplit(".", 1)
                 key = row["name"] if kind in ("viscous", "coulomb") else body
                 value = float(row["value"]) * share.setdefault(key, random.uniform(0.75, 1.3))
@@ -132,14 +131,10 @@ class Member:
                    folder / "diagnosis.csv", "--effects-out", folder / "effects.csv", "--params-out",
                    folder / "improved.csv", "--summary", folder / "summary.csv", "--null-runs", "40", allowed=(0, 5))
         found = read_summary(folder / "summary.csv")
-        named = []
-        if (folder / "effects.csv").exists():
-            with open(folder / "effects.csv", encoding="utf-8", newline="") as lines:
-                for row in csv.DictReader(row for row in lines if not row.startswith("#")):
-                    if row["effect"] not in named:
-                        named.append(row["effect"])
-        return {"verdict": found.get("verdict", ""), "named": " ".join(named), "rms_given": found.get("rms_given", ""),
-                "rms_written": found.get("rms_written", ""), "note": f"identify {identify}" if identify else ""}
+        effects = folder / "effects.csv"
+        named = dict.fromkeys(row["effect"] for row in read_rows(effects)) if effects.exists() else []
+        return {"verdict": found.get("verdict", ""), "named": " ".join(named),
+                "note": f"identify {identify}" if identify else ""}
 
 
 def parse():

@@ -40,6 +40,12 @@ def read_summary(path):
         return {row["key"]: row["value"] for row in csv.DictReader(lines)}
 
 
+def read_rows(path):
+    """Rows of a table of the tools, without its comments."""
+    with open(path, encoding="utf-8", newline="") as lines:
+        return list(csv.DictReader(row for row in lines if not row.startswith("#")))
+
+
 class Case:
     """Everything that is drawn before the hidden effect: lengths, masses, friction, sensors, dirt, motion."""
 
@@ -113,11 +119,9 @@ class Case:
                 masses += ["--tool-mass-kg", f"{draw(0.15, 0.6):.3f}", "--tool-diameter-m", f"{draw(0.07, 0.13):.3f}"]
         tools("delta-model", "create", self.kind, *words, "-o", robot)
         tools("delta-model", "prior", robot, *masses, "-o", prior)
-        with open(prior, encoding="utf-8", newline="") as lines:
-            rows = list(csv.DictReader(row for row in lines if not row.startswith("#")))
         share = {}
         self.truth = []
-        for row in rows:
+        for row in read_rows(prior):
             body, name = row["name"].rsplit(".", 1)
             value = float(row["value"])
             if name in ("viscous", "coulomb", "offset"):
