@@ -18,23 +18,26 @@
 
 namespace deltadyn::detail {
 
-template <class R, Limbs kSharing>
+template <class R>
 class TaskRegressorOf final : public TaskRegressor {
  public:
-  using Layout = ParameterLayout<R, kSharing>;
+  using Layout = ParameterLayout<R, Limbs::individual>;
+  using SharedLayout = ParameterLayout<R, Limbs::shared>;
   static constexpr int N = R::kDrives;
   static constexpr int kState = 3 * N;
   using State = deltadyn::Vector<double, kState>;
   using Jet = Dual<double, kState>;
   using Drives = deltadyn::Vector<double, N>;
   using JetDrives = deltadyn::Vector<Jet, N>;
-  using Full = Matrix<double, N, Layout::kColumns>;
+  using Full = Matrix<double, N, Layout::kColumns>;  // each limb on its own
   using Vec = const Eigen::Ref<const Eigen::VectorXd>&;
 
   explicit TaskRegressorOf(const Robot& robot)
       : geometry_(geometry_of<double, R>(robot.description())),
         jet_geometry_(geometry_of<Jet, R>(robot.description())),
-        columns_(layout_columns<R, kSharing>(robot.parameter_options())) {}
+        individual_limbs_(robot.parameter_options().individual_limbs),
+        columns_(layout_columns<R>(robot.parameter_options())),
+        shared_(shared_columns<R>()) {}
 
   int drives() const override { return N; }
   int parameters() const override { return static_cast<int>(columns_.size()); }
@@ -46,15 +49,11 @@ class TaskRegressorOf final : public TaskRegressor {
     const Status status = motion_from_task(geometry_, Drives(x.template head<N>()), Drives(x.template segment<N>(N)),
                                            Drives(x.template tail<N>()), motion);
     if (status != Status::ok) return status;
-    Full full;
-    deltadyn::regressor<Layout>(geometry_, motion, full);
-    if (sign_width.size() > 0) {
-      for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
-        const auto f = friction_joint(motion, joint);
-        full.col(Layout::coulomb(joint)) = f.rate / std::hypot(f.rate, sign_width(joint)) * f.J.transpose();
-      }
+    if (individual_limbs_) {
+      fill<Layout>(motion, sign_width, Y);
+    } else {
+      fill<SharedLayout>(motion, sign_width, Y);
     }
-    Y = full(Eigen::all, columns_);
     out << motion.posture.q, motion.qd, motion.qdd;
     return Status::ok;
   }
@@ -65,9 +64,12 @@ class TaskRegressorOf final : public TaskRegressor {
     const Status status = jet_motion(x, motion);
     if (status != Status::ok) return status;
     const auto full = [&](Eigen::Index sum) {
-      Full G = Full::Zero();
+      // Of the regressor's own layout; then a column that limbs share goes to each of them.
+      Full own = Full::Zero(), G;
       for (std::size_t k = 0; k < columns_.size(); ++k)
-        G.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k)).template segment<N>(sum * N);
+        own.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k)).template segment<N>(sum * N);
+      if (individual_limbs_) return own;
+      for (int k = 0; k < Layout::kColumns; ++k) G.col(k) = own.col(shared_[static_cast<std::size_t>(k)]);
       return G;
     };
     std::vector<Full> G;
@@ -91,6 +93,19 @@ class TaskRegressorOf final : public TaskRegressor {
 
  private:
   using Vec3 = deltadyn::Vector3<double>;
+
+  template <class OfRegressor>
+  void fill(const Motion<double, R>& motion, Vec sign_width, Eigen::Ref<Eigen::MatrixXd> Y) const {
+    Matrix<double, N, OfRegressor::kColumns> full;
+    deltadyn::regressor<OfRegressor>(geometry_, motion, full);
+    if (sign_width.size() > 0) {
+      for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
+        const auto f = friction_joint(motion, joint);
+        full.col(OfRegressor::coulomb(joint)) = f.rate / std::hypot(f.rate, sign_width(joint)) * f.J.transpose();
+      }
+    }
+    Y = full(Eigen::all, columns_);
+  }
 
   /// Share of friction and rotors in the gradient.
   static void add_joints(const Motion<Jet, R>& motion, Vec sign_width, const Full& G,
@@ -175,13 +190,14 @@ class TaskRegressorOf final : public TaskRegressor {
 
   Geometry<double, R> geometry_;
   Geometry<Jet, R> jet_geometry_;
-  std::vector<int> columns_;
+  bool individual_limbs_;
+  std::vector<int> columns_;  // of the regressor's layout, in order
+  std::vector<int> shared_;   // of the layout of shared limbs, for each column of Layout
 };
 
 /// One translation unit for each type, so that they build side by side.
 template <class R>
 std::unique_ptr<TaskRegressor> make_task_regressor_of(const Robot& robot) {
-  if (robot.parameter_options().individual_limbs) return std::make_unique<TaskRegressorOf<R, Limbs::individual>>(robot);
-  return std::make_unique<TaskRegressorOf<R, Limbs::shared>>(robot);
+  return std::make_unique<TaskRegressorOf<R>>(robot);
 }
 }  // namespace deltadyn::detail

@@ -32,6 +32,7 @@ constexpr Index kFinePhase = 8;        // bins a wave of the fastest ripple
 constexpr Index kPadding = 4;          // points of the spectrum a wave over the range
 constexpr double kClearWaveGain = 40;  // of chi^2: chance in thousands of waves tried gives 33 once in ten thousand
 constexpr double kHalfShare = 0.3;     // of a half's own gain that the amplitude of the other half must bring there
+constexpr double kLeastHalf = 0.1;     // of the rows, from which a half has a say
 constexpr Index kPieces = 16;          // of each log, taken in turn by the halves
 // Of what is left, as where structure is told: what else the model lacks can pass for a wave
 constexpr double kMostMemory = 3;
@@ -80,7 +81,7 @@ class RippleSearch {
       if (!(n > 0)) break;
       const double refined = refine(fit, drive, n);
       const std::vector<Columns> waves = columns(drive, refined);
-      if (fit.square() - fit.with(waves).cost < kClearWaveGain || !halves_agree(waves, drive)) break;
+      if (fit.square() - fit.with(waves).cost < kClearWaveGain || !holds_everywhere(waves, drive)) break;
       Ripple found;
       found.drive = drive;
       found.n = refined;
@@ -221,13 +222,28 @@ class RippleSearch {
                                        std::max(n - width, 0.5 * n), n + width, 1 + 0.01 * width / n);
   }
 
-  /// Does the amplitude of either half of the log serve the other one?
-  [[nodiscard]] bool halves_agree(const std::vector<Columns>& waves, int drive) const {
+  /// A ripple holds all along the log, and on the way there as on the way back. What else the model lacks comes again
+  /// with every period of the motion, so that parts of the log agree on a wave that is none; but in the other direction
+  /// it is another torque.
+  [[nodiscard]] bool holds_everywhere(const std::vector<Columns>& waves, int drive) const {
+    const auto turn = [this](std::size_t l, Index k) { return (k * kPieces / rows_[l].weight.rows()) % 2 == 0; };
+    const auto forward = [&](std::size_t l, Index k) { return logs_[l].qd(sample_of_row(logs_[l], k), drive) > 0; };
+    return halves_agree(waves, drive, turn) && halves_agree(waves, drive, forward);
+  }
+
+  /// Does the amplitude of either half of the rows serve the other one? True if there is hardly another one.
+  template <class InFirstHalf>
+  [[nodiscard]] bool halves_agree(const std::vector<Columns>& waves, int drive, const InFirstHalf& first) const {
     std::vector<BaseRows> half[2] = {rows_, rows_};
+    double weight[2] = {0, 0};
     for (std::size_t l = 0; l < rows_.size(); ++l) {
-      const Index N = rows_[l].weight.rows();
-      for (Index k = 0; k < N; ++k) half[1 - (k * kPieces / N) % 2][l].weight.row(k).setZero();
+      for (Index k = 0; k < rows_[l].weight.rows(); ++k) {
+        const int h = first(l, k) ? 0 : 1;
+        weight[h] += rows_[l].weight(k, drive);
+        half[1 - h][l].weight.row(k).setZero();
+      }
     }
+    if (std::min(weight[0], weight[1]) < kLeastHalf * (weight[0] + weight[1])) return true;
     const PartialFit whole(rows_);
     VectorXd amplitude[2];
     for (int h = 0; h < 2; ++h) amplitude[h] = PartialFit(half[h]).with(waves).amplitude;

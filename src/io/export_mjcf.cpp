@@ -4,9 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "deltadyn/kinematics/forward.hpp"
 #include "deltadyn/runtime/error.hpp"
-#include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
 #include "export_parts.hpp"
@@ -35,32 +33,11 @@ constexpr const char* kImpedance = "0.9999 0.9999 0.001 0.5 2";
 // show.
 constexpr double kSmallestGyration = 1e-5;  // [m]
 
-/// Joint angles of the home pose, from the library's own kinematics.
+/// The pose that the file is assembled in.
 struct Home {
   Eigen::VectorXd q;
-  std::vector<Vec> strut;                       ///< beta, gamma, unused
-  Vec plate = Vec::Zero();                      ///< place of its centre
-  double bar_a = 0, bar_b = 0, bar_length = 0;  ///< of the telescope
+  LinkPoses at;
 };
-
-template <class R>
-Home home_of(const RobotDescription& description, const Eigen::VectorXd& q) {
-  Posture<double, R> posture;
-  const auto geometry = geometry_of<double, R>(description);
-  if (posture_from_drives<double, R>(geometry, q, posture) != Status::ok)
-    throw Error("the home pose is singular", description.name, "check the lengths in the robot file");
-  Home home;
-  home.q = q;
-  if constexpr (kHasPlate<R>) home.plate = posture.z.template head<3>();
-  for (const auto& limb : posture.limbs)
-    home.strut.emplace_back(std::atan2(limb.beta.sin, limb.beta.cos), std::atan2(limb.gamma.sin, limb.gamma.cos), 0);
-  if (R::kTelescope) {
-    home.bar_a = std::atan2(posture.telescope.a.sin, posture.telescope.a.cos);
-    home.bar_b = std::atan2(posture.telescope.b.sin, posture.telescope.b.cos);
-    home.bar_length = posture.telescope.length;
-  }
-  return home;
-}
 
 Home find_home(const Robot& robot) {
   const RobotDescription& description = robot.description();
@@ -70,9 +47,9 @@ Home find_home(const Robot& robot) {
   const WorkspaceSampler sampler(robot);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives());
   z.head<3>() = sampler.ball().centre;
-  if (robot.inverse_kinematics(z, home.q) != Status::ok)
+  if (robot.inverse_kinematics(z, home.q) != Status::ok || robot.link_poses(home.q, home.at) != Status::ok)
     throw Error("no home pose was found", description.name, "check the lengths in the robot file");
-  return with_robot_type(description, [&](auto type) { return home_of<decltype(type)>(description, home.q); });
+  return home;
 }
 
 Rotation about(const Vec& axis, double angle) {
@@ -102,7 +79,7 @@ class Mjcf {
     } else if (robot_.plate) {
       articulated_plate();
     } else if (!robot_.parts.empty()) {
-      XMLElement* plate = body(world_, "platform", home_.plate, Rotation::Identity());
+      XMLElement* plate = body(world_, "platform", home_.at.plate, Rotation::Identity());
       child(plate, "freejoint", {{"name", "platform"}});
       fill_platform(plate);
     }
@@ -218,7 +195,7 @@ class Mjcf {
     inertial(upper, parts_.body("upper_arm", arm), arm);
     capsule(upper, Vec::Zero(), limb.p_DE_0, 0.025);
     if (robot_.parts.empty()) return;
-    const double y_angle = home_.strut[i].x() - (revolute ? q : 0), z_angle = home_.strut[i].y();
+    const double y_angle = home_.at.limbs[i].beta - (revolute ? q : 0), z_angle = home_.at.limbs[i].gamma;
     for (const bool first : {true, false}) {
       const std::string name = robot_file::strut_name(i, first);
       const Rotation turn = about(Vec::UnitZ(), z_angle);
@@ -291,7 +268,7 @@ class Mjcf {
   XMLElement* floating_half(const robot_file::PlateBody& one) {
     const PlatePart<double>& part = robot_.parts[static_cast<std::size_t>(one.part)];
     const Rotation R = about(Vec::UnitZ(), part.turn);
-    const Vec place = home_.plate + part.c + part.a;
+    const Vec place = home_.at.plate + part.c + part.a;
     XMLElement* element = body(world_, one.name, place, R);
     for (int axis = 0; axis < 3; ++axis)
       joint(element, one.name + "_" + "xyz"[axis], "slide", R.transpose() * Vec(Vec::Unit(axis)), place(axis));
@@ -304,6 +281,8 @@ class Mjcf {
     if (!one.moves()) return;
     XMLElement* made = joint(element, one.name, one.slides ? "slide" : "hinge", axis, 0, place);
     if (one.name == leader.name) {
+      const double range = robot_.plate->range * std::abs(one.gain);
+      set(made, {{"range", text(-range) + " " + text(range)}});
       set_if_any(made, "damping", parts_.value("plate.viscous") / (one.gain * one.gain));
       set_if_any(made, "frictionloss", parts_.value("plate.coulomb") / std::abs(one.gain));
     } else {
@@ -350,25 +329,25 @@ class Mjcf {
 
   void telescope() {
     const TelescopeGeometry<double>& bar = *robot_.telescope;
-    const Rotation R_b = about(Vec::UnitY(), home_.bar_b);
-    const Rotation R = about(Vec::UnitX(), home_.bar_a) * R_b;
+    const Rotation R_b = about(Vec::UnitY(), home_.at.telescope.b);
+    const Rotation R = about(Vec::UnitX(), home_.at.telescope.a) * R_b;
     XMLElement* upper = body(world_, "telescope_upper", bar.p_WU, R);
     drive(joint(upper, robot_file::drive_name(robot_.limbs.size()), "hinge", R.transpose() * Vec::UnitZ(), 0),
           robot_.limbs.size());
-    joint(upper, "telescope_x", "hinge", R_b.transpose() * Vec::UnitX(), home_.bar_a);
-    joint(upper, "telescope_y", "hinge", Vec::UnitY(), home_.bar_b);
+    joint(upper, "telescope_x", "hinge", R_b.transpose() * Vec::UnitX(), home_.at.telescope.a);
+    joint(upper, "telescope_y", "hinge", Vec::UnitY(), home_.at.telescope.b);
     inertial(upper, parts_.body("telescope_upper"), "telescope_upper");
-    capsule(upper, Vec(0, 0, -0.6 * home_.bar_length), Vec::Zero(), 0.008);
-    XMLElement* lower = body(upper, "telescope_lower", Vec(0, 0, -home_.bar_length), Rotation::Identity());
-    friction(joint(lower, "telescope", "slide", -Vec::UnitZ(), home_.bar_length), "telescope");
+    capsule(upper, Vec(0, 0, -0.6 * home_.at.telescope.length), Vec::Zero(), 0.008);
+    XMLElement* lower = body(upper, "telescope_lower", Vec(0, 0, -home_.at.telescope.length), Rotation::Identity());
+    friction(joint(lower, "telescope", "slide", -Vec::UnitZ(), home_.at.telescope.length), "telescope");
     inertial(lower, parts_.body("telescope_lower"), "telescope_lower");
-    capsule(lower, Vec::Zero(), Vec(0, 0, 0.6 * home_.bar_length), 0.012);
+    capsule(lower, Vec::Zero(), Vec(0, 0, 0.6 * home_.at.telescope.length), 0.012);
     // The lower joint undoes the upper one's angles, so that the tool stands upright; the plate hangs on the tool's
     // bearing.
     const Vec joint_place(0, 0, bar.p_BV.z());
     XMLElement* tool = body(lower, "tool", -(R.transpose() * joint_place), R.transpose());
-    joint(tool, "tool_y", "hinge", R * Vec::UnitY(), -home_.bar_b, joint_place);
-    joint(tool, "tool_x", "hinge", Vec::UnitX(), -home_.bar_a, joint_place);
+    joint(tool, "tool_y", "hinge", R * Vec::UnitY(), -home_.at.telescope.b, joint_place);
+    joint(tool, "tool_x", "hinge", Vec::UnitX(), -home_.at.telescope.a, joint_place);
     inertial(tool, tool_parameters(), "tool");
     capsule(tool, Vec(0, 0, -0.06), Vec::Zero(), 0.015);
     const Vec axis_place(bar.p_BV.x(), bar.p_BV.y(), 0);

@@ -1,4 +1,5 @@
 #include "../excitation/task_regressor_of.hpp"
+#include "../runtime/effect_states_of.hpp"
 #include "../runtime/robot_of.hpp"
 #include "../simulation/mechanism_of.hpp"
 #include "instantiate.hpp"

@@ -8,6 +8,7 @@
 #define DELTADYN_INSTANTIATE_ROBOT(Type)                                                                       \
   namespace deltadyn::detail {                                                                                 \
   template std::unique_ptr<Robot> make_robot_of<Type>(const RobotDescription&, const ParameterOptions&);       \
+  template std::unique_ptr<EffectStates> make_effect_states_of<Type>(const RobotDescription&);                 \
   template std::unique_ptr<TaskRegressor> make_task_regressor_of<Type>(const Robot&);                          \
   template std::unique_ptr<Mechanism> make_mechanism_of<Type>(const RobotDescription&, const Eigen::VectorXd&, \
                                                               const MechanismOptions&);                        \

@@ -1,8 +1,12 @@
 #pragma once
 
 /// \file
-/// Robot for one compile-time type and layout. Columns that the options leave out are dropped here, once, by index.
+/// Robot for one compile-time type. Torque is that of the layout of individual limbs, each of which has the shared
+/// values where limbs share them; the regressor has both layouts. Columns that the options leave out are dropped here,
+/// once, by index.
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -16,6 +20,7 @@
 #include "deltadyn/runtime/layout_columns.hpp"
 #include "deltadyn/runtime/robot.hpp"
 
+#include "link_poses_of.hpp"
 #include "posture_along.hpp"
 
 namespace deltadyn::detail {
@@ -48,17 +53,19 @@ std::vector<ParameterId> layout_ids() {
   return ids;
 }
 
-template <class R, Limbs kSharing>
+template <class R>
 class RobotOf final : public Robot {
  public:
-  using Layout = ParameterLayout<R, kSharing>;
+  using Layout = ParameterLayout<R, Limbs::individual>;
   static constexpr int N = R::kDrives;
   using Drives = deltadyn::Vector<double, N>;
 
   RobotOf(const RobotDescription& description, const ParameterOptions& options)
       : description_(description), options_(options), geometry_(geometry_of<double, R>(description)) {
-    const std::vector<ParameterId> all = layout_ids<R, kSharing>();
-    columns_ = layout_columns<R, kSharing>(options);
+    const std::vector<ParameterId> all =
+        options.individual_limbs ? layout_ids<R, Limbs::individual>() : layout_ids<R, Limbs::shared>();
+    columns_ = layout_columns<R>(options);
+    entry_ = entries_of(columns_, options.individual_limbs);
     for (const int column : columns_) {
       ids_.push_back(all[static_cast<std::size_t>(column)]);
       names_.push_back(parameter_name(ids_.back()));
@@ -114,14 +121,23 @@ class RobotOf final : public Robot {
     return status;
   }
 
+  Status link_poses(const ConstRef& q, LinkPoses& out) const override {
+    Posture<double, R> posture;
+    const Status status = posture_from_drives(geometry_, Drives(q), posture);
+    if (status == Status::ok) out = link_poses_of<R>(geometry_, posture);
+    return status;
+  }
+
   Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd, Eigen::Ref<Eigen::MatrixXd> Y,
                    PathPose* path) const override {
     Motion<double, R> motion;
     const Status status = motion_along(geometry_, Drives(q), Drives(qd), Drives(qdd), path, motion);
     if (status != Status::ok) return status;
-    Matrix<double, N, Layout::kColumns> full;
-    deltadyn::regressor<Layout>(geometry_, motion, full);
-    Y = full(Eigen::all, columns_);
+    if (options_.individual_limbs) {
+      fill_regressor<Layout>(motion, Y);
+    } else {
+      fill_regressor<ParameterLayout<R, Limbs::shared>>(motion, Y);
+    }
     return status;
   }
 
@@ -211,9 +227,29 @@ class RobotOf final : public Robot {
 
  private:
   deltadyn::Vector<double, Layout::kColumns> all_columns(const ConstRef& p) const {
-    deltadyn::Vector<double, Layout::kColumns> full = deltadyn::Vector<double, Layout::kColumns>::Zero();
-    for (std::size_t k = 0; k < columns_.size(); ++k) full(columns_[k]) = p(static_cast<Eigen::Index>(k));
+    deltadyn::Vector<double, Layout::kColumns> full;
+    for (int k = 0; k < Layout::kColumns; ++k)
+      full(k) = entry_[static_cast<std::size_t>(k)] < 0 ? 0.0 : p(entry_[static_cast<std::size_t>(k)]);
     return full;
+  }
+
+  template <class OfRegressor>
+  void fill_regressor(const Motion<double, R>& motion, Eigen::Ref<Eigen::MatrixXd> Y) const {
+    Matrix<double, N, OfRegressor::kColumns> full;
+    deltadyn::regressor<OfRegressor>(geometry_, motion, full);
+    Y = full(Eigen::all, columns_);
+  }
+
+  /// For each column of Layout its entry in the robot's parameters; -1: it has none.
+  static std::array<int, Layout::kColumns> entries_of(const std::vector<int>& columns, bool individual_limbs) {
+    const std::vector<int> shared = shared_columns<R>();
+    std::array<int, Layout::kColumns> entries;
+    for (int k = 0; k < Layout::kColumns; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const auto found = std::find(columns.begin(), columns.end(), individual_limbs ? k : shared[at]);
+      entries[at] = found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
+    }
+    return entries;
   }
 
   std::vector<JointReaction> named_reactions(const JointReactions<double, R>& loads) const {
@@ -252,14 +288,14 @@ class RobotOf final : public Robot {
   RobotDescription description_;
   ParameterOptions options_;
   Geometry<double, R> geometry_;
-  std::vector<int> columns_;  // of the full layout, in order
+  std::vector<int> columns_;                   // of the regressor's layout, in order
+  std::array<int, Layout::kColumns> entry_{};  // of each column of Layout in the parameters; -1: none
   std::vector<ParameterId> ids_;
   std::vector<std::string> names_, units_;
 };
 
 template <class R>
 std::unique_ptr<Robot> make_robot_of(const RobotDescription& description, const ParameterOptions& options) {
-  if (options.individual_limbs) return std::make_unique<RobotOf<R, Limbs::individual>>(description, options);
-  return std::make_unique<RobotOf<R, Limbs::shared>>(description, options);
+  return std::make_unique<RobotOf<R>>(description, options);
 }
 }  // namespace deltadyn::detail

@@ -23,11 +23,10 @@ double middle(const DriveLimits& limits) {
   return std::isfinite(limits.lower) && std::isfinite(limits.upper) ? (limits.lower + limits.upper) / 2 : 0.0;
 }
 
-/// Size of the machine's moves: a share of the arm, or of the strut where the drives are prismatic [m].
-double move_size(const RobotDescription& robot) {
-  const LimbGeometry<double>& limb = robot.limbs.front();
-  return robot.drive_kind == DriveKind::revolute ? 0.5 * limb.p_DE_0.norm() : 0.25 * limb.strut;
-}
+constexpr double kShareOfArm = 0.5;          // that moves of the machine take
+constexpr double kShareOfStrut = 0.4;        // the same on rails, where there is no arm, if they reach so far
+constexpr double kLeastShareOfStrut = 0.25;  // of moves on rails, part of which may then be out of reach
+constexpr double kRoom = 0.8;                // of the way to where the reach ends
 
 }  // namespace
 
@@ -65,7 +64,38 @@ WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : rob
                     : "check the lengths in the robot file");
   }
   ball_.centre = z.head<3>();
-  ball_.radius = move_size(description);
+  ball_.radius = move_size();
+}
+
+double WorkspaceSampler::move_size() const {
+  const LimbGeometry<double>& limb = robot_.description().limbs.front();
+  if (robot_.description().drive_kind == DriveKind::revolute) return kShareOfArm * limb.p_DE_0.norm();
+  // Rails differ more than arms do in how far they reach beside their struts, so that this is looked at: towards the
+  // faces and the corners of a cube.
+  constexpr double kStep = 0.02;
+  const double longest = kShareOfStrut * limb.strut;
+  double shortest = longest / kRoom;
+  for (int k = 0; k < 27; ++k) {
+    const Eigen::Vector3d towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (towards.cwiseAbs().sum() == 2 || towards.isZero()) continue;
+    double way = 0;
+    while (way < shortest && within_reach(ball_.centre + (way + kStep * limb.strut) * towards.normalized()))
+      way += kStep * limb.strut;
+    shortest = std::min(shortest, way);
+  }
+  return std::max(kRoom * shortest, kLeastShareOfStrut * limb.strut);
+}
+
+bool WorkspaceSampler::within_reach(const Eigen::Vector3d& p) const {
+  const RobotDescription& description = robot_.description();
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(robot_.drives()), q(robot_.drives());
+  z.head<3>() = p;
+  if (robot_.inverse_kinematics(z, q) != Status::ok || !regular(q)) return false;
+  for (int i = 0; i < robot_.drives(); ++i) {
+    const DriveLimits& limits = description.limits[static_cast<std::size_t>(i)];
+    if (q(i) < limits.lower || q(i) > limits.upper) return false;
+  }
+  return true;
 }
 
 double WorkspaceSampler::uniform(double lower, double upper) {

@@ -131,6 +131,27 @@ TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
   }
 }
 
+// A counterweight that carries the arms, a little more or a little less, turns no base upside down.
+TEST_P(LogGate, LeavesACounterweightToTheDiagnosis) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  const std::vector<Log> sound = recordings_of(*robot);
+  EquationTerms terms;
+  for (const double share : {0.95, 1.0, 1.05, 1.1, 2.0}) {  // the last one: all of gravity the other way
+    std::vector<Log> logs = sound;
+    for (Log& log : logs) {
+      for (Eigen::Index k = 0; k < log.q.rows(); ++k) {
+        const Eigen::VectorXd q = log.q.row(k).transpose(), still = Eigen::VectorXd::Zero(q.size());
+        ASSERT_EQ(robot->equations_of_motion(q, still, delta_truth(*robot), Coordinates::drives, terms), Status::ok);
+        log.tau.row(k) -= share * terms.g.transpose();
+      }
+    }
+    const GateResult result = examine(*robot, logs);
+    const bool faulty =
+        std::ranges::any_of(result.findings, [](const LogFinding& f) { return f.level == FindingLevel::fault; });
+    EXPECT_EQ(faulty, share == 2) << share << ": " << told(result);
+  }
+}
+
 // Stops, a log that begins at rest, and high rates are no fault, alone and beside a planned motion.
 TEST_P(LogGate, LeavesPickAndPlaceAndStandstillAlone) {
   const auto robot = make_robot(delta_description(GetParam()));

@@ -70,6 +70,29 @@ TEST(FindRipples, ClaimsNoneBesideOtherStructure) {
   EXPECT_TRUE(find_ripples(*robot, base, logs, at_20_hz()).empty());
 }
 
+// A ripple belongs to the place; what comes on the way there only, period after period, is something else.
+TEST(FindRipples, ClaimsNoneThatComesOneWayOnly) {
+  const auto robot = make_robot(axis_description(DriveKind::revolute));
+  std::vector<Log> logs;
+  for (const std::uint64_t seed : {91U, 92U}) {
+    AxisLog log;
+    log.base_hz = 0.11;
+    log.seed = seed;
+    logs.push_back(log.make());
+  }
+  const BaseParameters base = find_base_parameters(*robot);
+  const auto with_wave = [&logs](bool both_ways) {
+    std::vector<Log> out = logs;
+    for (Log& log : out) {
+      for (Eigen::Index k = 1; k < log.q.rows(); ++k)
+        if (both_ways || log.q(k, 0) > log.q(k - 1, 0)) log.tau(k, 0) += 0.05 * std::sin(40 * log.q(k, 0));
+    }
+    return out;
+  };
+  EXPECT_EQ(find_ripples(*robot, base, with_wave(true), at_20_hz()).size(), 1U);
+  EXPECT_TRUE(find_ripples(*robot, base, with_wave(false), at_20_hz()).empty());
+}
+
 /// Ripple of two drives on a whole robot; a third drive has none.
 TEST(FindRipples, BelongsToTheModelOfARobot) {
   const auto robot = make_robot(delta_description("delta3"));

@@ -182,6 +182,34 @@ TEST(ModelExport, KnowsEveryType) {
   }
 }
 
+/// The joint that leads the plate, by its range; null if no joint of the plate has one.
+const tinyxml2::XMLElement* joint_with_range(const tinyxml2::XMLElement* body, double range) {
+  for (auto* joint = body->FirstChildElement("joint"); joint != nullptr; joint = joint->NextSiblingElement("joint")) {
+    double low = 0, high = 0;
+    if (joint->Attribute("range") != nullptr && std::sscanf(joint->Attribute("range"), "%lf %lf", &low, &high) == 2 &&
+        std::abs(high - range) < 1e-9 && std::abs(low + range) < 1e-9)
+      return joint;
+  }
+  for (auto* inner = body->FirstChildElement("body"); inner != nullptr; inner = inner->NextSiblingElement("body"))
+    if (const auto* found = joint_with_range(inner, range); found != nullptr) return found;
+  return nullptr;
+}
+
+TEST(ModelExport, KeepsThePlateInItsRangeInMujoco) {
+  for (const char* type : {"h4", "i4", "par4"}) {
+    const RobotDescription description = four_limb_description(type);
+    const auto robot = make_robot(description);
+    const ExportedModel model = export_mjcf(*robot, nominal_parameters(*robot, PartShapes(description)).value);
+    tinyxml2::XMLDocument document;
+    ASSERT_EQ(document.Parse(model.text.c_str()), tinyxml2::XML_SUCCESS);
+    // Bars swing as far as the plate turns; the slides of an I4 run pinion radius times that to either side.
+    const PlateShape& plate = *description.plate;
+    const double range = plate.range * (plate.pinion_radius > 0 ? 2 * plate.pinion_radius : 1);
+    const auto* world = document.FirstChildElement("mujoco")->FirstChildElement("worldbody");
+    EXPECT_NE(joint_with_range(world, range), nullptr) << type << "\n" << model.text;
+  }
+}
+
 TEST(ModelExport, RefusesBodiesThatCannotBe) {
   Sample sample;
   Eigen::VectorXd negative = sample.p, thin = sample.p, broken = sample.p;

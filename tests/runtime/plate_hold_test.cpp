@@ -17,7 +17,7 @@ double margin_at(const RobotDescription& description, double x, double y) {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(robot->drives()), q = z;
   z.head<3>() = WorkspaceSampler(*robot).ball().centre + Eigen::Vector3d(x, y, 0);
   EXPECT_EQ(robot->inverse_kinematics(z, q), Status::ok);
-  return tipping_margin(description, q);
+  return tipping_margin(*robot, q);
 }
 
 TEST(TippingMargin, AnH4InTheDiagonalsTipsAboutItsCrossbar) {

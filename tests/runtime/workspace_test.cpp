@@ -53,6 +53,29 @@ TEST(Workspace, OfAnAxisIsItsDrive) {
   EXPECT_NE(qdd(0), 0);
 }
 
+// On rails the reach ends where the travel does, beside the struts or along the rails: the ball stays inside.
+TEST(Workspace, OnRailsKeepsInsideTheTravel) {
+  RobotDescription robot = delta_description("linear-delta3");
+  const WorkspaceBall wide = WorkspaceSampler(*make_robot(robot)).ball();
+  EXPECT_NEAR(wide.radius, 0.4 * robot.limbs.front().strut, 1e-9);
+  for (DriveLimits& limits : robot.limits) {
+    limits.lower = -0.36 * robot.limbs.front().strut;
+    limits.upper = 0.36 * robot.limbs.front().strut;
+  }
+  const auto narrow = make_robot(robot);
+  const WorkspaceBall ball = WorkspaceSampler(*narrow).ball();
+  EXPECT_LT(ball.radius, 0.9 * wide.radius);
+  Eigen::VectorXd q(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      ASSERT_EQ(narrow->inverse_kinematics(ball.centre + side * ball.radius * Eigen::Vector3d::Unit(axis), q),
+                Status::ok);
+      EXPECT_GE(q.minCoeff(), robot.limits[0].lower);
+      EXPECT_LE(q.maxCoeff(), robot.limits[0].upper);
+    }
+  }
+}
+
 TEST(Workspace, RefusesARobotThatReachesNothing) {
   Lengths lengths;
   lengths.strut = 0.1;

@@ -47,9 +47,11 @@ MEMBERS = {
     "linear-delta3-inclined": "linear_delta3_inclined.urdf",
 }
 
-# Rails reach farther up and down than the ball that is taken without words.
-WORKSPACE = {name: ["--workspace", "ball", "--workspace-radius-m", "0.28", "--workspace-center-m=0,0,-0.65"]
-             for name in ("h4-rails", "i4-rails", "par4-rails")}
+# Struts near the vertical would let the drives' limits move the plate faster than any motion in its workspace can.
+PLATE_LIMITS = {
+    "linear-delta3": ["--platform-velocity-m-s", "2", "--platform-acceleration-m-s2", "20"],
+    "linear-delta3-inclined": ["--platform-velocity-m-s", "1.5", "--platform-acceleration-m-s2", "30"],
+}
 
 # Of arms [N m] and of carriages [N]; the rates fit both.
 EFFECTS = {
@@ -97,7 +99,7 @@ class Member:
 
     def plan(self):
         limits = ["--yaw-velocity-rad-s", "12", "--yaw-acceleration-rad-s2", "120"] if "4" in self.name else []
-        limits += WORKSPACE.get(self.name, [])
+        limits += PLATE_LIMITS.get(self.name, [])
         self.tools("delta-excite", self.robot, "--params", self.prior, "--segments", "2", "--segment-speeds", "0.3,1",
                    "--segment-files", "--validation", self.folder / "val.csv", *limits, "-o", self.folder / "plan.csv",
                    "--summary", self.folder / "plan_summary.csv", "--threads", "2")
@@ -133,8 +135,11 @@ class Member:
         found = read_summary(folder / "summary.csv")
         effects = folder / "effects.csv"
         named = dict.fromkeys(row["effect"] for row in read_rows(effects)) if effects.exists() else []
-        return {"verdict": found.get("verdict", ""), "named": " ".join(named),
-                "note": f"identify {identify}" if identify else ""}
+        # What delta-identify has found before belongs to the model given: there is nothing left to name.
+        ripples = [row["name"].removesuffix(".waves") for row in read_rows(folder / "params.csv")
+                   if row["name"].endswith(".waves")]
+        notes = [f"identify {identify}"] * (identify != 0) + ripples
+        return {"verdict": found.get("verdict", ""), "named": " ".join(named), "note": " ".join(notes)}
 
 
 def parse():

@@ -141,7 +141,7 @@ class Info {
       Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
       z.head<3>() = reach.home;
       if (robot.inverse_kinematics(z, q) == Status::ok) {
-        const double margin = tipping_margin(robot.description(), q);
+        const double margin = tipping_margin(robot, q);
         summary.add("plate_tipping_margin", margin);
         if (margin < kLeastTippingMargin)
           fmt::print(
@@ -168,13 +168,13 @@ class Info {
   }
 
   /// The robot at its home pose, seen from above and the side.
-  static PlotSpec picture(const RobotDescription& robot, const Eigen::VectorXd& home) {
+  static PlotSpec picture(const Robot& robot, const Eigen::VectorXd& home) {
     constexpr double kAzimuth = 0.45, kElevation = 0.4;  // of the eye [rad]
     const Eigen::Vector3d right(-std::sin(kAzimuth), std::cos(kAzimuth), 0);
     const Eigen::Vector3d up(-std::sin(kElevation) * std::cos(kAzimuth), -std::sin(kElevation) * std::sin(kAzimuth),
                              std::cos(kElevation));
     PlotSpec spec;
-    spec.title = fmt::format("{} at its home pose, oblique view (across and upwards in m)", robot.type);
+    spec.title = fmt::format("{} at its home pose, oblique view (across and upwards in m)", robot.description().type);
     spec.x_label = "to the right [m]";
     spec.y_label = "upwards in the picture [m]";
     const PlotColor colors[] = {PlotColor::black, PlotColor::vermillion, PlotColor::blue,
@@ -244,7 +244,7 @@ class Info {
       spec.height = 480;
       return spec;
     };
-    render_png({picture(robot, home), slice(1, 0, 0, 2, "side view, y = 0"),
+    render_png({picture(model, home), slice(1, 0, 0, 2, "side view, y = 0"),
                 slice(2, reach.home.z(), 0, 1, fmt::format("top view, z = {:.2f} m", reach.home.z()))},
                plot_);
   }

@@ -94,7 +94,7 @@ inline void warn_of_tipping(const Robot& robot, const Eigen::Vector3d& home) {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
   z.head<3>() = home;
   if (robot.description().parts.empty() || robot.inverse_kinematics(z, q) != Status::ok) return;
-  if (tipping_margin(robot.description(), q) < kLeastTippingMargin)
+  if (tipping_margin(robot, q) < kLeastTippingMargin)
     fmt::print(stderr,
                "warning: in the home pose both halves of the plate may tip about the same axis, which its hinges do "
                "not stop\n  {}\n",

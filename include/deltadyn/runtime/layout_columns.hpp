@@ -29,4 +29,33 @@ std::vector<int> layout_columns(const ParameterOptions& options) {
   return columns;
 }
 
+/// The same for a layout that is chosen at run time.
+template <class R>
+std::vector<int> layout_columns(const ParameterOptions& options) {
+  return options.individual_limbs ? layout_columns<R, Limbs::individual>(options)
+                                  : layout_columns<R, Limbs::shared>(options);
+}
+
+/// For each column of the layout of individual limbs, that of the layout of shared ones which holds the same value.
+template <class R>
+std::vector<int> shared_columns() {
+  using Own = ParameterLayout<R, Limbs::individual>;
+  using Shared = ParameterLayout<R, Limbs::shared>;
+  std::vector<int> columns(static_cast<std::size_t>(Own::kColumns));
+  const auto add = [&columns](int own, int shared, int count) {
+    for (int k = 0; k < count; ++k) columns[static_cast<std::size_t>(own + k)] = shared + k;
+  };
+  const auto add_body = [&add](Body kind, int index) {
+    add(kInertialParameters * Own::body(kind, index), kInertialParameters * Shared::body(kind, index),
+        kInertialParameters);
+  };
+  for (int i = 0; i < R::kLimbs; ++i) add_body(Body::upper_arm, i);
+  for (int i = 0; i < (kHasPlate<R> ? R::kLimbs : 0); ++i) add_body(Body::strut, i);
+  for (int k = 0; k < R::kPlateParts; ++k) add_body(R::kParts[k], k);
+  if (R::kTelescope)
+    for (const Body body : {Body::tool, Body::telescope_upper, Body::telescope_lower}) add_body(body, 0);
+  add(Own::kFriction, Shared::kFriction, Own::kColumns - Own::kFriction);
+  return columns;
+}
+
 }  // namespace deltadyn

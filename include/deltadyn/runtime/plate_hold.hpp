@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "deltadyn/runtime/robot_description.hpp"
+#include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn {
 
@@ -16,7 +16,7 @@ namespace deltadyn {
 /// \return sine of the angle between the two axes, seen from above; 1 where bars or a slide hold the halves, or where
 ///         the plate is rigid
 /// Throws deltadyn::Error if q is out of reach or singular.
-[[nodiscard]] double tipping_margin(const RobotDescription& robot, const Eigen::VectorXd& q);
+[[nodiscard]] double tipping_margin(const Robot& robot, const Eigen::VectorXd& q);
 
 /// Below it a plate has visible play.
 inline constexpr double kLeastTippingMargin = 0.05;

@@ -11,6 +11,7 @@
 
 #include "deltadyn/core/status.hpp"
 #include "deltadyn/runtime/dynamics_terms.hpp"
+#include "deltadyn/runtime/link_poses.hpp"
 #include "deltadyn/runtime/parameter_id.hpp"
 #include "deltadyn/runtime/path_pose.hpp"
 #include "deltadyn/runtime/robot_description.hpp"
@@ -63,6 +64,9 @@ class Robot {
                                        TaskState& task) const = 0;
   /// Jacobian dz/dq (drives x drives).
   [[nodiscard]] virtual Status jacobian(const ConstRef& q, Eigen::Ref<Eigen::MatrixXd> J_q_z) const = 0;
+
+  /// Where every link is, to be drawn or to be exported.
+  [[nodiscard]] virtual Status link_poses(const ConstRef& q, LinkPoses& out) const = 0;
 
   /// Y(q, qd, qdd), drives x parameters (paper (3)-(7)).
   [[nodiscard]] virtual Status regressor(const ConstRef& q, const ConstRef& qd, const ConstRef& qdd,

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "deltadyn/runtime/robot_description.hpp"
+#include "deltadyn/runtime/robot.hpp"
 
 namespace deltadyn {
 
@@ -19,6 +19,6 @@ struct SketchLines {
 
 /// Base, arms or carriages on their rails, struts, parts of the plate, and the telescope bar, at drive coordinates q.
 /// Throws deltadyn::Error if the pose is out of reach or singular.
-[[nodiscard]] std::vector<SketchLines> sketch_of(const RobotDescription& robot, const Eigen::VectorXd& q);
+[[nodiscard]] std::vector<SketchLines> sketch_of(const Robot& robot, const Eigen::VectorXd& q);
 
 }  // namespace deltadyn

@@ -39,6 +39,10 @@ class WorkspaceSampler {
   double uniform(double lower, double upper);
   void draw_task(TaskState& task);
   [[nodiscard]] bool regular(const Eigen::VectorXd& q) const;
+  /// True if the plate, not turned, is at p inside the drives' limits, not near a singular pose.
+  [[nodiscard]] bool within_reach(const Eigen::Vector3d& p) const;
+  /// Size of the machine's moves [m]: a share of the arm; on rails of the strut, or less where the reach ends earlier.
+  [[nodiscard]] double move_size() const;
 
   const Robot& robot_;
   std::mt19937_64 random_;

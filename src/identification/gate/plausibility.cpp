@@ -24,6 +24,7 @@ constexpr double kBeyondRotors = 100;  // times the prior's inertia
 constexpr double kWeighed = 0.15;      // relative deviation of a prior whose parts were weighed
 // Gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
 constexpr double kSpread = 0.5;
+constexpr double kCarried = 0.3;  // of the inertia's ratio, below which gravity is neither way up, but carried
 // Times the effort of the robot file: drives reach three times their rated torque for moments
 constexpr double kFaultEffort = 5.0;
 constexpr double kWarnEffort = 1.5;
@@ -148,6 +149,17 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
     ++count;
   }
   if (count > 0) inertia /= count, inertia_std /= count;
+  if (weight_known && count > 0 && inertia > kSpread && std::abs(g.value) < kCarried * inertia) {
+    return {{.level = FindingLevel::warning,
+             .key = "gravity_carried",
+             .value = g.value,
+             .std = g.data_std,
+             .text = fmt::format("gravity's torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} "
+                                 "times",
+                                 g.value, g.data_std, inertia),
+             .mend = "if springs, a hose or a counterweight carry the arms, delta-diagnose names them; else check how "
+                     "the base hangs: gravity in the robot file"}};
+  }
   if (weight_known && g.value < 0 && count > 0 && inertia > 0) {
     return {
         {.level = FindingLevel::fault,
