@@ -52,8 +52,11 @@ Check check_efficiency(const ExcitationReportInput& input) {
   check.meaning = "That share of the information which any states inside these limits could give.";
   if (check.verdict != Verdict::good)
     check.meaning += " More time (--time-limit-s), a larger workspace or a wider --base-frequency-hz may give more.";
-  const Eigen::VectorXd& plate_velocity = input.excitation.segments.front().limits.zd;
-  if (check.verdict != Verdict::good && plate_velocity.size() >= 3 && !plate_velocity.head<3>().allFinite())
+  const bool plate_is_free = std::ranges::any_of(input.excitation.segments, [](const Excitation::Segment& segment) {
+    const MotionLimits& limits = segment.limits;
+    return limits.zd.size() >= 3 && !(limits.zd.head<3>().allFinite() && limits.zdd.head<3>().allFinite());
+  });
+  if (check.verdict != Verdict::good && plate_is_free)
     check.meaning +=
         " The share counts plate speeds that the drives allow, also those for which the workspace leaves no room: "
         "--platform-velocity-m-s and --platform-acceleration-m-s2 say what the machine is to do.";

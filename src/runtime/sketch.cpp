@@ -1,6 +1,8 @@
 #include "deltadyn/runtime/sketch.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "deltadyn/runtime/error.hpp"
 

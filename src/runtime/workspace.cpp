@@ -1,5 +1,6 @@
 #include "deltadyn/runtime/workspace.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

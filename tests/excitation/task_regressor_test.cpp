@@ -1,10 +1,12 @@
 #include "deltadyn/excitation/task_regressor.hpp"
 
+#include <cmath>
 #include <gmock/gmock.h>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "deltadyn/dynamics/regressor.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
+#include "deltadyn/runtime/workspace.hpp"
 
 #include "support/descriptions.hpp"
 #include "support/matchers.hpp"
@@ -14,6 +16,7 @@ namespace deltadyn {
 namespace {
 
 using testing_support::delta_description;
+using testing_support::four_limb_description;
 using testing_support::IsNear;
 using testing_support::Random;
 using testing_support::random_task;
@@ -128,6 +131,37 @@ TYPED_TEST(TaskRegressorTest, SaysWhenThePoseIsOutOfReach) {
     EXPECT_EQ(this->regressor->evaluate(x, Eigen::VectorXd(), Y, drives), Status::unreachable);
     Y.setZero();
     EXPECT_EQ(this->regressor->differentiate(x, Eigen::VectorXd(), Y, gradient, jacobian), Status::unreachable);
+  }
+}
+
+// Plates that turn, with limbs that share their parameters and with limbs of their own, against differences.
+TEST(TaskRegressorOfAPlate, DerivativesAreThoseOfDifferences) {
+  for (const char* type : {"h4", "i4", "par4"}) {
+    for (const bool individual : {false, true}) {
+      const auto robot = make_robot(four_limb_description(type), {individual, true, {2}, true});
+      const auto regressor = make_task_regressor(*robot);
+      WorkspaceSampler sampler(*robot, 9);
+      Eigen::VectorXd q, qd, qdd, x(12), out(12);
+      sampler.next(q, qd, qdd);
+      TaskState task;
+      ASSERT_EQ(robot->to_task(q, qd, qdd, task), Status::ok);
+      x << task.z, task.zd, task.zdd;
+      const Eigen::VectorXd widths = Eigen::VectorXd::Constant(regressor->friction_joints(), 0.5);
+      const Eigen::MatrixXd G = Eigen::MatrixXd::Random(4, robot->parameters());
+      Eigen::MatrixXd gradients(12, 1), jacobian(12, 12), Y(4, robot->parameters());
+      ASSERT_EQ(regressor->differentiate(x, widths, G, gradients, jacobian), Status::ok);
+      const auto sum_at = [&](const Eigen::VectorXd& at) {
+        EXPECT_EQ(regressor->evaluate(at, widths, Y, out), Status::ok);
+        return G.cwiseProduct(Y).sum();
+      };
+      for (int k = 0; k < 12; ++k) {
+        const double step = 1e-6 * (1 + std::abs(x(k)));
+        const Eigen::VectorXd by = step * Eigen::VectorXd::Unit(12, k);
+        const double slope = (sum_at(x + by) - sum_at(x - by)) / (2 * step);
+        EXPECT_NEAR(gradients(k, 0), slope, 1e-5 * (gradients.cwiseAbs().maxCoeff() + 1))
+            << type << (individual ? ", individual, " : ", shared, ") << k;
+      }
+    }
   }
 }
 

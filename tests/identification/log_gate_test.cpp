@@ -149,6 +149,8 @@ TEST_P(LogGate, LeavesACounterweightToTheDiagnosis) {
     const bool faulty =
         std::ranges::any_of(result.findings, [](const LogFinding& f) { return f.level == FindingLevel::fault; });
     EXPECT_EQ(faulty, share == 2) << share << ": " << told(result);
+    EXPECT_EQ(find(result, {"gravity_carried"}, FindingLevel::warning) != nullptr, share < 2)
+        << share << ": " << told(result);
   }
 }
 

@@ -202,7 +202,7 @@ TEST(ModelExport, KeepsThePlateInItsRangeInMujoco) {
     const ExportedModel model = export_mjcf(*robot, nominal_parameters(*robot, PartShapes(description)).value);
     tinyxml2::XMLDocument document;
     ASSERT_EQ(document.Parse(model.text.c_str()), tinyxml2::XML_SUCCESS);
-    // Bars swing as far as the plate turns; the slides of an I4 run pinion radius times that to either side.
+    // Bars swing as far as the plate turns; the halves of an I4 slide apart by twice the pinion radius times that.
     const PlateShape& plate = *description.plate;
     const double range = plate.range * (plate.pinion_radius > 0 ? 2 * plate.pinion_radius : 1);
     const auto* world = document.FirstChildElement("mujoco")->FirstChildElement("worldbody");

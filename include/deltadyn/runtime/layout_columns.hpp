@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Which columns of a compile-time layout a robot with given options has.
+/// Which columns of a compile-time layout a robot with given options has, and how both layouts go together.
 
 #include <algorithm>
 #include <vector>

@@ -41,7 +41,7 @@ class WorkspaceSampler {
   [[nodiscard]] bool regular(const Eigen::VectorXd& q) const;
   /// True if the plate, not turned, is at p inside the drives' limits, not near a singular pose.
   [[nodiscard]] bool within_reach(const Eigen::Vector3d& p) const;
-  /// Size of the machine's moves [m]: a share of the arm; on rails of the strut, or less where the reach ends earlier.
+  /// Size of the machine's moves [m]: 0.5 of the arm; on rails 0.4 of the strut, or what the reach allows down to 0.25.
   [[nodiscard]] double move_size() const;
 
   const Robot& robot_;

@@ -24,7 +24,9 @@ constexpr double kBeyondRotors = 100;  // times the prior's inertia
 constexpr double kWeighed = 0.15;      // relative deviation of a prior whose parts were weighed
 // Gravity that exceeds the inertia's ratio by more than 1/this is no matter of the torque's scale
 constexpr double kSpread = 0.5;
-constexpr double kCarried = 0.3;  // of the inertia's ratio, below which gravity is neither way up, but carried
+constexpr double kSoundInertia = 0.5;  // of the prior's, from which the torque's unit is right
+// Of a sound weight, below which gravity is neither way up, but carried; and how well that must be known
+constexpr double kCarried = 0.3, kCarriedKnown = 0.1;
 // Times the effort of the robot file: drives reach three times their rated torque for moments
 constexpr double kFaultEffort = 5.0;
 constexpr double kWarnEffort = 1.5;
@@ -132,6 +134,13 @@ void add_rate_finding(const RobotDescription& robot, const std::vector<Log>& log
   }
 }
 
+/// Springs, a hose or a counterweight hold what gravity pulls. Reflected rotors make the inertia large, not the weight.
+bool is_carried(const Ratio& gravity, double inertia) {
+  const double sound = std::min(1.0, inertia);
+  return inertia > kSoundInertia && gravity.known && gravity.data_std < kCarriedKnown * sound &&
+         std::abs(gravity.value) < kCarried * sound;
+}
+
 }  // namespace
 
 std::vector<LogFinding> scale_findings(const RobotDescription& robot, const TorqueScale& scale) {
@@ -149,18 +158,20 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
     ++count;
   }
   if (count > 0) inertia /= count, inertia_std /= count;
-  if (weight_known && count > 0 && inertia > kSpread && std::abs(g.value) < kCarried * inertia) {
-    return {{.level = FindingLevel::warning,
-             .key = "gravity_carried",
-             .value = g.value,
-             .std = g.data_std,
-             .text = fmt::format("gravity's torques are {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} "
-                                 "times",
-                                 g.value, g.data_std, inertia),
-             .mend = "if springs, a hose or a counterweight carry the arms, delta-diagnose names them; else check how "
-                     "the base hangs: gravity in the robot file"}};
+  const bool carried = count > 0 && is_carried(g, inertia);
+  if (carried) {
+    out.push_back({.level = FindingLevel::warning,
+                   .key = "gravity_carried",
+                   .value = g.value,
+                   .std = g.data_std,
+                   .text = fmt::format("gravity's torques are {:.3g} +- {:.2g} times those of the prior, the inertia "
+                                       "{:.3g} times",
+                                       g.value, g.data_std, inertia),
+                   .mend =
+                       "if springs, a hose or a counterweight carry the arms, delta-diagnose names them; else check "
+                       "how the base hangs: gravity in the robot file"});
   }
-  if (weight_known && g.value < 0 && count > 0 && inertia > 0) {
+  if (!carried && weight_known && g.value < 0 && count > 0 && inertia > 0) {
     return {
         {.level = FindingLevel::fault,
          .key = "gravity_direction",
@@ -173,7 +184,7 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   }
   Ratio ratio = g;
   bool certain = weight_known;
-  if (!weight_known && count > 0) {
+  if ((!weight_known || carried) && count > 0) {
     ratio.value = inertia;
     ratio.data_std = inertia_std;
     ratio.std = std::hypot(inertia_std, scale.prior_std * inertia);
@@ -183,12 +194,12 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   if (!ratio.known || ratio.value <= 0 || (!weight_known && count == 0)) return out;
   // A weight too large for the inertia, or springs that carry it, is another matter than the torque's scale.
   if (weight_known && count > 0 && inertia < kSpread * g.value) certain = false;
-  if (weight_known && count > 0 && g.value < 1 && inertia > 0.5) certain = false;
+  if (weight_known && count > 0 && g.value < 1 && inertia > kSoundInertia) certain = false;
   const double far = beyond(ratio.value, scale.prior_std, kFault, kFaultTrust);
   const double doubtful = beyond(ratio.value, scale.prior_std, kWarning, kWarningTrust);
   const bool yaw_alike = scale.inertia.size() > limbs && scale.inertia.back().known &&
                          std::abs(std::log(std::max(1e-12, scale.inertia.back().value / ratio.value))) < 0.7;
-  if (doubtful > 0)
+  if (doubtful > 0 && !carried)
     out.push_back(scale_finding(robot, ratio, scale.prior_std, certain && far > 0, all_or_limbs(robot, yaw_alike), -1));
   if (scale.inertia.size() <= limbs || yaw_alike) return out;
   const Ratio& yaw = scale.inertia.back();
