@@ -37,7 +37,7 @@ class TaskRegressorOf final : public TaskRegressor {
         jet_geometry_(geometry_of<Jet, R>(robot.description())),
         individual_limbs_(robot.parameter_options().individual_limbs),
         columns_(layout_columns<R>(robot.parameter_options())),
-        shared_(shared_columns<R>()) {}
+        entry_(layout_entries<R>(robot.parameter_options())) {}
 
   int drives() const override { return N; }
   int parameters() const override { return static_cast<int>(columns_.size()); }
@@ -64,12 +64,9 @@ class TaskRegressorOf final : public TaskRegressor {
     const Status status = jet_motion(x, motion);
     if (status != Status::ok) return status;
     const auto full = [&](Eigen::Index sum) {
-      // Of the regressor's own layout; then a column that limbs share goes to each of them.
-      Full own = Full::Zero(), G;
-      for (std::size_t k = 0; k < columns_.size(); ++k)
-        own.col(columns_[k]) = G_columns.col(static_cast<Eigen::Index>(k)).template segment<N>(sum * N);
-      if (individual_limbs_) return own;
-      for (int k = 0; k < Layout::kColumns; ++k) G.col(k) = own.col(shared_[static_cast<std::size_t>(k)]);
+      Full G = Full::Zero();  // a column that limbs share goes to each of them
+      for (std::size_t k = 0; k < entry_.size(); ++k)
+        if (entry_[k] >= 0) G.col(static_cast<Eigen::Index>(k)) = G_columns.col(entry_[k]).template segment<N>(sum * N);
       return G;
     };
     std::vector<Full> G;
@@ -192,7 +189,7 @@ class TaskRegressorOf final : public TaskRegressor {
   Geometry<Jet, R> jet_geometry_;
   bool individual_limbs_;
   std::vector<int> columns_;  // of the regressor's layout, in order
-  std::vector<int> shared_;   // of the layout of shared limbs, for each column of Layout
+  std::vector<int> entry_;    // of each column of Layout in the parameters; -1: none
 };
 
 /// One translation unit for each type, so that they build side by side.

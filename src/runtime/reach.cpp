@@ -8,37 +8,10 @@
 #include "deltadyn/runtime/statistics.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
+#include "pose_check.hpp"
+
 namespace deltadyn {
 namespace {
-
-constexpr double kLargestReachCondition = 50;  // of the Jacobian dr/dq; poses beyond it count as singular
-
-/// Condition number of dr/dq where the pose is allowed, infinity elsewhere.
-class PoseCheck {
- public:
-  explicit PoseCheck(const Robot& robot)
-      : robot_(robot), z_(robot.drives()), q_(robot.drives()), J_(robot.drives(), robot.drives()) {}
-
-  double condition(const Eigen::Vector3d& r, double yaw = 0) {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    z_.setZero();
-    z_.head<3>() = r;
-    if (robot_.description().plate) z_(3) = yaw;
-    if (robot_.inverse_kinematics(z_, q_) != Status::ok) return kNever;
-    const RobotDescription& description = robot_.description();
-    for (std::size_t i = 0; i < description.limbs.size(); ++i) {
-      const double q = q_(static_cast<Eigen::Index>(i));
-      if (q < description.limits[i].lower || q > description.limits[i].upper) return kNever;
-    }
-    if (robot_.jacobian(q_, J_) != Status::ok) return kNever;
-    return plate_condition(description, J_);
-  }
-
- private:
-  const Robot& robot_;
-  Eigen::VectorXd z_, q_;
-  Eigen::MatrixXd J_;
-};
 
 /// No pose of the plate is farther from the origin than this in any coordinate.
 Eigen::Vector3d bound(const RobotDescription& robot, const Eigen::Vector3d& home) {
@@ -84,7 +57,7 @@ Reach find_reach(const Robot& robot, int cells) {
     if ((c.array() < 0).any() || (c.array() >= cells).any() || seen[index(c)] != 0) return;
     seen[index(c)] = 1;
     const double condition = check.condition(centre(c));
-    if (!(condition <= kLargestReachCondition)) return;
+    if (!(condition <= kLargestCondition)) return;
     open.push_back(c);
     found.push_back(c);
     conditions.push_back(condition);
@@ -113,7 +86,7 @@ Reach find_reach(const Robot& robot, int cells) {
     for (const double yaw : {-range, range}) {
       Eigen::Index left = 0;
       for (Eigen::Index k = 0; k < count; ++k)
-        left += check.condition(reach.points.row(k).transpose(), yaw) <= kLargestReachCondition ? 1 : 0;
+        left += check.condition(reach.points.row(k).transpose(), yaw) <= kLargestCondition ? 1 : 0;
       reach.share_at_full_turn =
           std::min(reach.share_at_full_turn, static_cast<double>(left) / static_cast<double>(count));
     }

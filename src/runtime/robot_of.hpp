@@ -5,8 +5,6 @@
 /// values where limbs share them; the regressor has both layouts. Columns that the options leave out are dropped here,
 /// once, by index.
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -65,7 +63,7 @@ class RobotOf final : public Robot {
     const std::vector<ParameterId> all =
         options.individual_limbs ? layout_ids<R, Limbs::individual>() : layout_ids<R, Limbs::shared>();
     columns_ = layout_columns<R>(options);
-    entry_ = entries_of(columns_, options.individual_limbs);
+    entry_ = layout_entries<R>(options);
     for (const int column : columns_) {
       ids_.push_back(all[static_cast<std::size_t>(column)]);
       names_.push_back(parameter_name(ids_.back()));
@@ -228,8 +226,8 @@ class RobotOf final : public Robot {
  private:
   deltadyn::Vector<double, Layout::kColumns> all_columns(const ConstRef& p) const {
     deltadyn::Vector<double, Layout::kColumns> full;
-    for (int k = 0; k < Layout::kColumns; ++k)
-      full(k) = entry_[static_cast<std::size_t>(k)] < 0 ? 0.0 : p(entry_[static_cast<std::size_t>(k)]);
+    for (std::size_t k = 0; k < entry_.size(); ++k)
+      full(static_cast<Eigen::Index>(k)) = entry_[k] < 0 ? 0.0 : p(entry_[k]);
     return full;
   }
 
@@ -238,18 +236,6 @@ class RobotOf final : public Robot {
     Matrix<double, N, OfRegressor::kColumns> full;
     deltadyn::regressor<OfRegressor>(geometry_, motion, full);
     Y = full(Eigen::all, columns_);
-  }
-
-  /// For each column of Layout its entry in the robot's parameters; -1: it has none.
-  static std::array<int, Layout::kColumns> entries_of(const std::vector<int>& columns, bool individual_limbs) {
-    const std::vector<int> shared = shared_columns<R>();
-    std::array<int, Layout::kColumns> entries;
-    for (int k = 0; k < Layout::kColumns; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const auto found = std::find(columns.begin(), columns.end(), individual_limbs ? k : shared[at]);
-      entries[at] = found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
-    }
-    return entries;
   }
 
   std::vector<JointReaction> named_reactions(const JointReactions<double, R>& loads) const {
@@ -288,8 +274,8 @@ class RobotOf final : public Robot {
   RobotDescription description_;
   ParameterOptions options_;
   Geometry<double, R> geometry_;
-  std::vector<int> columns_;                   // of the regressor's layout, in order
-  std::array<int, Layout::kColumns> entry_{};  // of each column of Layout in the parameters; -1: none
+  std::vector<int> columns_;  // of the regressor's layout, in order
+  std::vector<int> entry_;    // of each column of Layout in the parameters; -1: none
   std::vector<ParameterId> ids_;
   std::vector<std::string> names_, units_;
 };

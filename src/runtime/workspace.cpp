@@ -10,14 +10,14 @@
 #include "deltadyn/runtime/random.hpp"
 
 #include "articulated_plate.hpp"
+#include "pose_check.hpp"
 
 namespace deltadyn {
 
 namespace {
 
-constexpr double kLargestCondition = 50.0;  // of dz_r/dq, beyond which a pose says little about the machine in use
-constexpr double kTurnRange = 3.0;          // of a telescope drive, rad
-constexpr double kPlateShare = 0.8;         // of the range of an articulated plate
+constexpr double kTurnRange = 3.0;   // of a telescope drive, rad
+constexpr double kPlateShare = 0.8;  // of the range of an articulated plate
 
 /// A drive position in the middle of its limits, 0 if it has none.
 double middle(const DriveLimits& limits) {
@@ -28,6 +28,28 @@ constexpr double kShareOfArm = 0.5;          // that moves of the machine take
 constexpr double kShareOfStrut = 0.4;        // the same on rails, where there is no arm, if they reach so far
 constexpr double kLeastShareOfStrut = 0.25;  // of moves on rails, part of which may then be out of reach
 constexpr double kRoom = 0.8;                // of the way to where the reach ends
+
+/// Size of the moves about a place [m]: a share of the arm; on rails of the strut, or of what the reach allows.
+double move_size(const Robot& robot, const Eigen::Vector3d& centre) {
+  const LimbGeometry<double>& limb = robot.description().limbs.front();
+  if (robot.description().drive_kind == DriveKind::revolute) return kShareOfArm * limb.p_DE_0.norm();
+  // Rails differ more than arms do in how far they reach beside their struts, so that this is looked at: towards the
+  // faces and the corners of a cube.
+  constexpr double kStep = 0.02;
+  const double longest = kShareOfStrut * limb.strut;
+  double shortest = longest / kRoom;
+  PoseCheck check(robot);
+  for (int k = 0; k < 27; ++k) {
+    const Eigen::Vector3d towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (towards.cwiseAbs().sum() == 2 || towards.isZero()) continue;
+    double way = 0;
+    while (way < shortest &&
+           check.condition(centre + (way + kStep * limb.strut) * towards.normalized()) < kLargestCondition)
+      way += kStep * limb.strut;
+    shortest = std::min(shortest, way);
+  }
+  return std::max(kRoom * shortest, kLeastShareOfStrut * limb.strut);
+}
 
 }  // namespace
 
@@ -65,38 +87,7 @@ WorkspaceSampler::WorkspaceSampler(const Robot& robot, std::uint64_t seed) : rob
                     : "check the lengths in the robot file");
   }
   ball_.centre = z.head<3>();
-  ball_.radius = move_size();
-}
-
-double WorkspaceSampler::move_size() const {
-  const LimbGeometry<double>& limb = robot_.description().limbs.front();
-  if (robot_.description().drive_kind == DriveKind::revolute) return kShareOfArm * limb.p_DE_0.norm();
-  // Rails differ more than arms do in how far they reach beside their struts, so that this is looked at: towards the
-  // faces and the corners of a cube.
-  constexpr double kStep = 0.02;
-  const double longest = kShareOfStrut * limb.strut;
-  double shortest = longest / kRoom;
-  for (int k = 0; k < 27; ++k) {
-    const Eigen::Vector3d towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    if (towards.cwiseAbs().sum() == 2 || towards.isZero()) continue;
-    double way = 0;
-    while (way < shortest && within_reach(ball_.centre + (way + kStep * limb.strut) * towards.normalized()))
-      way += kStep * limb.strut;
-    shortest = std::min(shortest, way);
-  }
-  return std::max(kRoom * shortest, kLeastShareOfStrut * limb.strut);
-}
-
-bool WorkspaceSampler::within_reach(const Eigen::Vector3d& p) const {
-  const RobotDescription& description = robot_.description();
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(robot_.drives()), q(robot_.drives());
-  z.head<3>() = p;
-  if (robot_.inverse_kinematics(z, q) != Status::ok || !regular(q)) return false;
-  for (int i = 0; i < robot_.drives(); ++i) {
-    const DriveLimits& limits = description.limits[static_cast<std::size_t>(i)];
-    if (q(i) < limits.lower || q(i) > limits.upper) return false;
-  }
-  return true;
+  ball_.radius = move_size(robot, ball_.centre);
 }
 
 double WorkspaceSampler::uniform(double lower, double upper) {

@@ -21,19 +21,22 @@ ProcessingOptions at_20_hz() {
   return processing;
 }
 
+/// A machine recorded twice, noise and phase of the motion by the seed.
+std::vector<Log> two_slow_logs(AxisLog log, std::uint64_t seed) {
+  log.base_hz = 0.11;
+  std::vector<Log> logs;
+  for (log.seed = seed; log.seed < seed + 2; ++log.seed) logs.push_back(log.make());
+  return logs;
+}
+
 class RippleOfAnAxis : public ::testing::TestWithParam<double> {};
 
 TEST_P(RippleOfAnAxis, IsFoundBelowTheNoise) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  std::vector<Log> logs;
-  for (const std::uint64_t seed : {31U, 32U}) {
-    AxisLog log;
-    log.ripple = 0.03;  // the noise of a sample is 0.05
-    log.waves = GetParam();
-    log.base_hz = 0.11;
-    log.seed = seed;
-    logs.push_back(log.make());
-  }
+  AxisLog log;
+  log.ripple = 0.03;  // the noise of a sample is 0.05
+  log.waves = GetParam();
+  const std::vector<Log> logs = two_slow_logs(log, 31);
   const auto found = find_ripples(*robot, find_base_parameters(*robot), logs, at_20_hz());
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].n, GetParam(), std::max(4 * found[0].n_std, 0.01 * GetParam()));
@@ -56,30 +59,19 @@ TEST(FindRipples, FindsNoneInCleanLogs) {
 // What else the model lacks can pass for a wave: beside it none is claimed, however well it fits.
 TEST(FindRipples, ClaimsNoneBesideOtherStructure) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  std::vector<Log> logs;
-  for (const std::uint64_t seed : {81U, 82U}) {
-    AxisLog log;
-    log.ripple = 0.3;
-    log.base_hz = 0.11;
-    log.seed = seed;
-    logs.push_back(log.make());
-  }
+  AxisLog log;
+  log.ripple = 0.3;
+  std::vector<Log> logs = two_slow_logs(log, 81);
   const BaseParameters base = find_base_parameters(*robot);
   EXPECT_EQ(find_ripples(*robot, base, logs, at_20_hz()).size(), 1U);
-  for (Log& log : logs) log.tau.col(0).array() += 0.1 * (9 * log.t_s.array()).sin();
+  for (Log& one : logs) one.tau.col(0).array() += 0.1 * (9 * one.t_s.array()).sin();
   EXPECT_TRUE(find_ripples(*robot, base, logs, at_20_hz()).empty());
 }
 
 // A ripple belongs to the place; what comes on the way there only, period after period, is something else.
 TEST(FindRipples, ClaimsNoneThatComesOneWayOnly) {
   const auto robot = make_robot(axis_description(DriveKind::revolute));
-  std::vector<Log> logs;
-  for (const std::uint64_t seed : {91U, 92U}) {
-    AxisLog log;
-    log.base_hz = 0.11;
-    log.seed = seed;
-    logs.push_back(log.make());
-  }
+  const std::vector<Log> logs = two_slow_logs({}, 91);
   const BaseParameters base = find_base_parameters(*robot);
   const auto with_wave = [&logs](bool both_ways) {
     std::vector<Log> out = logs;

@@ -58,4 +58,18 @@ std::vector<int> shared_columns() {
   return columns;
 }
 
+/// For each column of the layout of individual limbs its place among Robot::parameter_names(); -1: it has none. Limbs
+/// that share a parameter have the same place.
+template <class R>
+std::vector<int> layout_entries(const ParameterOptions& options) {
+  const std::vector<int> columns = layout_columns<R>(options);
+  std::vector<int> entries = shared_columns<R>();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const int column = options.individual_limbs ? static_cast<int>(k) : entries[k];
+    const auto found = std::find(columns.begin(), columns.end(), column);
+    entries[k] = found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
+  }
+  return entries;
+}
+
 }  // namespace deltadyn

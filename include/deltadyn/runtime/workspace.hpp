@@ -39,10 +39,6 @@ class WorkspaceSampler {
   double uniform(double lower, double upper);
   void draw_task(TaskState& task);
   [[nodiscard]] bool regular(const Eigen::VectorXd& q) const;
-  /// True if the plate, not turned, is at p inside the drives' limits, not near a singular pose.
-  [[nodiscard]] bool within_reach(const Eigen::Vector3d& p) const;
-  /// Size of the machine's moves [m]: 0.5 of the arm; on rails 0.4 of the strut, or what the reach allows down to 0.25.
-  [[nodiscard]] double move_size() const;
 
   const Robot& robot_;
   std::mt19937_64 random_;

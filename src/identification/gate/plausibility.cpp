@@ -159,28 +159,22 @@ std::vector<LogFinding> scale_findings(const RobotDescription& robot, const Torq
   }
   if (count > 0) inertia /= count, inertia_std /= count;
   const bool carried = count > 0 && is_carried(g, inertia);
+  const auto of_gravity = [&](FindingLevel level, const char* key, const char* words, const char* mend) -> LogFinding {
+    return {.level = level,
+            .key = key,
+            .value = g.value,
+            .std = g.data_std,
+            .text = fmt::format("{} {:.3g} +- {:.2g} times those of the prior, the inertia {:.3g} times", words,
+                                g.value, g.data_std, inertia),
+            .mend = mend};
+  };
   if (carried) {
-    out.push_back({.level = FindingLevel::warning,
-                   .key = "gravity_carried",
-                   .value = g.value,
-                   .std = g.data_std,
-                   .text = fmt::format("gravity's torques are {:.3g} +- {:.2g} times those of the prior, the inertia "
-                                       "{:.3g} times",
-                                       g.value, g.data_std, inertia),
-                   .mend =
-                       "if springs, a hose or a counterweight carry the arms, delta-diagnose names them; else check "
-                       "how the base hangs: gravity in the robot file"});
-  }
-  if (!carried && weight_known && g.value < 0 && count > 0 && inertia > 0) {
-    return {
-        {.level = FindingLevel::fault,
-         .key = "gravity_direction",
-         .value = g.value,
-         .std = g.data_std,
-         .text = fmt::format("gravity acts the other way: its torques are {:.3g} +- {:.2g} times those of the prior, "
-                             "the inertia {:.3g} times",
-                             g.value, g.data_std, inertia),
-         .mend = "check how the base hangs: gravity in the robot file, and the direction of positive positions"}};
+    out.push_back(of_gravity(FindingLevel::warning, "gravity_carried", "gravity's torques are",
+                             "if springs, a hose or a counterweight carry the arms, delta-diagnose names them; else "
+                             "check how the base hangs: gravity in the robot file"));
+  } else if (weight_known && g.value < 0 && count > 0 && inertia > 0) {
+    return {of_gravity(FindingLevel::fault, "gravity_direction", "gravity acts the other way: its torques are",
+                       "check how the base hangs: gravity in the robot file, and the direction of positive positions")};
   }
   Ratio ratio = g;
   bool certain = weight_known;
