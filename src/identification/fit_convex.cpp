@@ -15,9 +15,11 @@ namespace {
 constexpr double kFinalBarrier = 1e-5;  // chi^2 an eigenvalue of a cone; far below what any statistic can see
 constexpr double kFirstBarrier = 1.0;   // at least, and ...
 constexpr double kFirstOfStart = 0.01;  // ... of the cost at the start: a damped step gains about a barrier's worth
-constexpr double kBarrierCut = 0.03;
+constexpr double kBarrierCut = 0.03;    // the deepest
+constexpr double kGentlestCut = 0.7;
+constexpr int kMostSteps = 25, kFewSteps = 5;  // to the centre, from which a cut was too deep, or can be deeper
 constexpr double kObjectiveRounding = 1e-10;
-constexpr int kMaxNewton = 400;
+constexpr int kMaxNewton = 2000;
 
 }  // namespace
 
@@ -140,43 +142,61 @@ ConvexProblem::Newton ConvexProblem::newton_step(const Terms& terms, const Eigen
   return newton;
 }
 
+/// The first of the halved steps that gains enough; false if none does.
+bool ConvexProblem::search_line(FitMetric metric, double lambda, double barrier, const Terms& terms,
+                                const Newton& newton, Iterate& at) const {
+  const double value = at.residual.squaredNorm() + terms.value;
+  double length = 1;
+  for (int trial = 0; trial < 60 && newton.decrement > 0; ++trial, length *= 0.5) {
+    Iterate candidate{at.x + length * newton.step, {}};
+    Terms there;
+    if (!separable_terms(metric, lambda, barrier, candidate.x.cwiseProduct(scale_), there, false)) continue;
+    candidate.residual = residual_at(candidate.x);
+    if (candidate.residual.squaredNorm() + there.value > value - 1e-4 * length * newton.decrement) continue;
+    at = candidate;
+    return true;
+  }
+  return false;
+}
+
 ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, const Eigen::VectorXd& start) const {
   Result result;
-  Eigen::VectorXd x = start.cwiseQuotient(scale_);  // scaled from here on
-  auto unscaled = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return v.cwiseProduct(scale_); };
-  Eigen::VectorXd residual = residual_at(x);
-  double barrier = std::max(kFirstBarrier, kFirstOfStart * residual.squaredNorm());
+  Iterate at{start.cwiseQuotient(scale_), {}};
+  at.residual = residual_at(at.x);
+  double barrier = std::max(kFirstBarrier, kFirstOfStart * at.residual.squaredNorm());
+  Iterate centred;
+  double centred_barrier = 0, cut = kBarrierCut;
+  int steps = 0;  // since the barrier was cut
   Terms terms;
   while (result.iterations < kMaxNewton) {
     ++result.iterations;
-    if (!separable_terms(metric, lambda, barrier, unscaled(x), terms, true)) return result;
-    const double value = residual.squaredNorm() + terms.value;
-    const Newton newton = newton_step(terms, residual);
+    ++steps;
+    if (!separable_terms(metric, lambda, barrier, at.x.cwiseProduct(scale_), terms, true)) return result;
+    const double value = at.residual.squaredNorm() + terms.value;
+    const Newton newton = newton_step(terms, at.residual);
     if (!newton.step.allFinite()) return result;
-    const auto& [step, decrement] = newton;
-    double length = 1;
-    bool accepted = false;
-    for (int trial = 0; trial < 60 && decrement > 0; ++trial, length *= 0.5) {
-      const Eigen::VectorXd candidate = x + length * step;
-      Terms at_candidate;
-      if (!separable_terms(metric, lambda, barrier, unscaled(candidate), at_candidate, false)) continue;
-      const Eigen::VectorXd new_residual = residual_at(candidate);
-      if (new_residual.squaredNorm() + at_candidate.value > value - 1e-4 * length * decrement) continue;
-      x = candidate;
-      residual = new_residual;
-      accepted = true;
-      break;
-    }
+    const bool accepted = search_line(metric, lambda, barrier, terms, newton, at);
+    const double decrement = newton.decrement;
     // centred well enough: the Newton decrement is small against the barrier (or rounding ends the progress)
-    if (decrement > (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier && accepted) continue;
-    if (barrier <= kFinalBarrier) {
+    if (decrement > (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier && accepted) {
+      // Where the boundary bends, a deep cut ends next to it, from where steps along it are short: go back, cut less.
+      if (steps < kMostSteps || centred.x.size() == 0 || cut > kGentlestCut) continue;
+      at = centred;
+      barrier = centred_barrier;
+      cut = std::sqrt(cut);
+    } else if (barrier <= kFinalBarrier) {
       // a line search that fails counts as converged only where no more than rounding is left to gain
       result.converged = decrement <= std::max(barrier, kObjectiveRounding * (1 + std::abs(value)));
       break;
+    } else {
+      centred = at;
+      centred_barrier = barrier;
+      if (steps < kFewSteps) cut = std::max(cut * cut, kBarrierCut);
     }
-    barrier = std::max(barrier * kBarrierCut, kFinalBarrier);
+    barrier = std::max(barrier * cut, kFinalBarrier);
+    steps = 0;
   }
-  result.x = unscaled(x);
+  result.x = at.x.cwiseProduct(scale_);
   return result;
 }
 

@@ -48,6 +48,12 @@ class ConvexProblem {
     Eigen::VectorXd step;  // of x, scaled
     double decrement = 0;  // what the gradient promises for it, twice what it gains
   };
+  /// A point, scaled, and what it leaves of the data.
+  struct Iterate {
+    Eigen::VectorXd x, residual;
+  };
+  [[nodiscard]] bool search_line(FitMetric metric, double lambda, double barrier, const Terms& terms,
+                                 const Newton& newton, Iterate& at) const;
   [[nodiscard]] Newton newton_step(const Terms& terms, const Eigen::VectorXd& residual) const;
   [[nodiscard]] Eigen::VectorXd residual_at(const Eigen::VectorXd& scaled) const;  // in the singular directions
   [[nodiscard]] std::optional<Eigen::VectorXd> barrier_dual(FitMetric metric, double lambda,

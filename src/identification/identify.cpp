@@ -384,20 +384,22 @@ class Identifier {
     ConsistentFitOptions options = options_.fit;
     out_.fit = fit_consistent_parameters(problem, options);
     // The largest lambda that costs the data nothing may be so small that a mass which no motion shows wanders beyond
-    // what a part can weigh. Such a file is refused by the next tool, and rightly.
-    constexpr int kTries = 6;
+    // what a part can weigh, or that an effect which the model has not takes all weight from a part. Such a file is
+    // refused by the next tool, and rightly. A large lambda ends at the prior, whose bodies are those of a robot.
+    constexpr double kLargestLambda = 1e9;
     const double chosen = out_.fit.lambda;
-    std::string heavy = implausible_body();
-    for (int k = 0; k < kTries && !options_.fit.regularization && !heavy.empty(); ++k) {
+    std::string odd = implausible_body();
+    while (!options_.fit.regularization && !odd.empty() && out_.fit.lambda < kLargestLambda) {
       options.regularization = 10 * out_.fit.lambda;
       out_.fit = fit_consistent_parameters(problem, options);
       const std::string still = implausible_body();
       if (still.empty()) {
-        out_.fit.notes.push_back(fmt::format(
-            "lambda was raised from {:.3g} to {:.3g}: with the smaller one {} weighed more than such a part can",
-            chosen, out_.fit.lambda, heavy));
+        out_.fit.notes.push_back(
+            fmt::format("lambda was raised from {:.3g} to {:.3g}: with the smaller one the mass or the moments of {} "
+                        "were none that such a part can have",
+                        chosen, out_.fit.lambda, odd));
       }
-      heavy = still;
+      odd = still;
     }
     out_.base_from_fit = out_.base.B * out_.fit.p;
   }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What the run-time faces need of a robot type. Each type is compiled in a file of its own, so that they build side by
-/// side.
+/// What the run-time faces need of a robot type. Each type has a file of its own; the folders say which share much and
+/// compile together.
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage, bugprone-macro-parentheses): an explicit instantiation has no other form.
 #define DELTADYN_INSTANTIATE_ROBOT(Type)                                                                       \

@@ -20,6 +20,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing_support::body_of;
+using testing_support::lifted_robot;
 using testing_support::random_problem;
 
 constexpr int kBodies = 6, kRank = 37;
@@ -175,6 +176,21 @@ TEST(ConsistentFit, IsProvenHoweverSharpTheDataAndHoweverThinTheBodiesEnd) {
         EXPECT_TRUE(summary.converged && summary.certificate.passed)
             << "precision " << precision << ", rank " << rank << "\n"
             << summary.brief_report();
+      }
+    }
+  }
+}
+
+TEST(ConsistentFit, IsProvenWhereAForceLiftsMoreThanTheRobotWeighs) {
+  // The least chi^2 then lies where the boundary of what bodies can have bends most, far from the prior.
+  for (const Eigen::Vector3d& tilts : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.4, -0.3, 0.2)}) {
+    for (const double lift : {10.0, 50.0, 100.0}) {
+      for (const unsigned seed : {1U, 2U, 3U}) {
+        ConsistentFitOptions options;
+        options.regularization = 0.1;
+        const ConsistentFitSummary summary = fit_consistent_parameters(lifted_robot(seed, tilts, lift), options);
+        EXPECT_TRUE(summary.converged && summary.certificate.passed) << "lift " << lift << " N, seed " << seed << "\n"
+                                                                     << summary.brief_report();
       }
     }
   }

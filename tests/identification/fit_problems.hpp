@@ -1,18 +1,25 @@
 #pragma once
 
 /// \file
-/// Synthetic folded data of a delta4 for the tests of the consistent fit.
+/// Synthetic folded data for the tests of the consistent fit.
 
 #include <Eigen/Core>
 #include <Eigen/QR>
 #include <algorithm>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "deltadyn/identification/consistent_fit.hpp"
 #include "deltadyn/model/inertial_parameters.hpp"
+#include "deltadyn/runtime/effect_states.hpp"
 #include "deltadyn/runtime/random.hpp"
+#include "deltadyn/runtime/robot.hpp"
+#include "deltadyn/runtime/workspace.hpp"
+
+#include "identification/synthetic_log.hpp"
+#include "support/descriptions.hpp"
 
 namespace deltadyn::testing_support {
 
@@ -108,6 +115,35 @@ inline ConsistentFitProblem random_problem(unsigned seed, int rank, double preci
   problem.b = problem.A * p;
   for (Eigen::Index i = 0; i < P; ++i) problem.b(i) += noise * normal(random);
   problem.prior = prior_factor * p;
+  return problem;
+}
+
+/// Torques of a delta3 at random states while a force that no parameter explains lifts its plate.
+/// \param lift  [N]
+inline ConsistentFitProblem lifted_robot(unsigned seed, const Eigen::Vector3d& tilts, double lift) {
+  constexpr int kStates = 40;
+  constexpr double kNoise = 0.01;  // [N m]
+  RobotDescription description = delta_description("delta3", {0.2, 0.06, 0.3, 0.65, 0.06});
+  for (int limb = 0; limb < 3; ++limb) description.limbs[static_cast<std::size_t>(limb)].tilt = tilts(limb);
+  const auto robot = make_robot(description);
+  const auto plate = make_effect_states(description);
+  const Eigen::VectorXd truth = 0.1 * delta_truth(*robot);
+  WorkspaceSampler states(*robot, seed);
+  ConsistentFitProblem problem;
+  problem.parameters = robot->parameter_ids();
+  problem.A.resize(3 * kStates, robot->parameters());
+  problem.b.resize(3 * kStates);
+  problem.prior = 0.8 * truth;
+  Eigen::VectorXd q(3), qd(3), qdd(3);
+  Eigen::MatrixXd Y(3, robot->parameters());
+  for (int k = 0; k < kStates; ++k) {
+    states.next(q, qd, qdd);
+    EffectState state;
+    if (robot->regressor(q, qd, qdd, Y) != Status::ok || plate->at(q, qd, qdd, state) != Status::ok)
+      throw std::runtime_error("a state of the sampler is not regular");
+    problem.A.middleRows(3 * k, 3) = Y / kNoise;
+    problem.b.segment(3 * k, 3) = (Y * truth - state.J.transpose() * Eigen::Vector3d(0, 0, lift)) / kNoise;
+  }
   return problem;
 }
 

@@ -1,9 +1,12 @@
 #include "deltadyn/identification/identify.hpp"
 
 #include <Eigen/LU>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "deltadyn/runtime/effect_states.hpp"
 #include "deltadyn/runtime/error.hpp"
+#include "deltadyn/runtime/plausibility.hpp"
 
 #include "identification/synthetic_log.hpp"
 
@@ -11,6 +14,8 @@ namespace deltadyn {
 namespace {
 
 using namespace testing_support;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 std::vector<Log> recorded(const Robot& robot, double outlier = 0) {
   std::vector<Log> logs;
@@ -78,6 +83,54 @@ TEST(Identify, HuberWeightsResistOutliers) {
     return std::sqrt(error.dot(information * error));
   };
   EXPECT_LT(distance(robust), 0.5 * distance(plain));
+}
+
+/// Adds a force that no parameter explains and that lifts the plate [N].
+void lift(const Robot& robot, double force, Log& log) {
+  const auto plate = make_effect_states(robot.description());
+  EffectState state;
+  for (Eigen::Index k = 0; k < log.samples(); ++k) {
+    ASSERT_EQ(plate->at(log.q.row(k).transpose(), log.qd.row(k).transpose(), log.qdd.row(k).transpose(), state),
+              Status::ok);
+    log.tau.row(k) -= (state.J.transpose() * Eigen::Vector3d(0, 0, force)).transpose();
+  }
+}
+
+std::string implausible_bodies(const Robot& robot, const Eigen::VectorXd& p) {
+  std::string found;
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    const ParameterId& id = robot.parameter_ids()[static_cast<std::size_t>(k)];
+    if (id.kind != ParameterKind::inertial || id.entry != 0) continue;
+    try {
+      plausibility::require_body(robot.description(), id.body, p.segment<10>(k), owner_name(id), "");
+    } catch (const Error& error) {
+      found += std::string(error.what()) + "; ";
+    }
+  }
+  return found;
+}
+
+TEST(Identify, RaisesLambdaUntilEveryBodyIsAPartOfSuchARobot) {
+  RobotDescription description = delta_description("delta3", {0.2, 0.06, 0.3, 0.65, 0.06});
+  const double tilts[] = {0.4, -0.3, 0.2};
+  for (std::size_t limb = 0; limb < 3; ++limb) description.limbs[limb].tilt = tilts[limb];
+  const auto robot = make_robot(description);
+  const Eigen::VectorXd truth = 0.1 * delta_truth(*robot);
+  SyntheticOptions recording;
+  recording.torque_noise = 0.02;
+  const Log unloaded = synthetic_log(*robot, truth, recording);
+  for (const double force : {5.0, 50.0}) {
+    std::vector<Log> logs = {unloaded};
+    lift(*robot, force, logs.front());
+    IdentificationOptions options;
+    const Identification result = identify(*robot, logs, 0.8 * truth, {}, options);
+    EXPECT_TRUE(result.fit.converged) << result.fit.brief_report();
+    EXPECT_EQ(implausible_bodies(*robot, result.fit.p), "");
+    EXPECT_THAT(result.fit.notes, Contains(HasSubstr("lambda was raised")));
+    options.fit.regularization = 1e-8;
+    EXPECT_NE(implausible_bodies(*robot, identify(*robot, logs, 0.8 * truth, {}, options).fit.p), "")
+        << "the test must be a hard one";
+  }
 }
 
 TEST(Identify, RefusesWithoutLogs) {

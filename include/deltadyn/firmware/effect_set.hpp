@@ -8,19 +8,11 @@
 #include "deltadyn/effects/side_load.hpp"
 #include "deltadyn/effects/some_effects.hpp"
 #include "deltadyn/firmware/changed_geometry.hpp"
-#include "deltadyn/firmware/effect_refusal.hpp"
+#include "deltadyn/firmware/effect_term.hpp"
 #include "deltadyn/kinematics/passive_joints.hpp"
 #include "deltadyn/kinematics/tool_point.hpp"
 
 namespace deltadyn {
-
-/// One effect with its numbers, in the order of its traits. A constant table of them is what a converted header holds.
-struct EffectRow {
-  EffectId id = EffectId{-1};
-  int joint = -1;  ///< drive from 0; -1: not on one drive (telescope, platform, robot)
-  Shape<double> shape{};
-  std::array<double, kMostAmplitudes> amplitude{};
-};
 
 /// One set point as effects see it.
 template <class T, class Robot>
@@ -129,52 +121,16 @@ class EffectSet {
   [[nodiscard]] int count() const { return count_; }
 
  private:
-  struct Term {
-    EffectId id = EffectId{-1};
-    Role role = Role::none;
-    int joint = -1;
-    Shape<T> shape{};
-    std::array<T, kMostAmplitudes> amplitude{};
-    T gain = T(1);
-  };
-
-  /// What the shape parameters can be, and the amplitudes, known to the compiler.
-  template <class E>
-  static constexpr std::array<Range, kMostShapes> shape_ranges() {
-    const EffectTraits traits = E::traits();
-    std::array<Range, kMostShapes> ranges{};
-    for (std::size_t k = 0; k < traits.shapes.size(); ++k) ranges[k] = traits.shapes[k].range;
-    return ranges;
-  }
-  template <class E>
-  static constexpr std::array<Range, kMostAmplitudes> amplitude_ranges() {
-    const EffectTraits traits = E::traits();
-    std::array<Range, kMostAmplitudes> ranges{};
-    for (std::size_t k = 0; k < traits.amplitudes.size(); ++k) ranges[k] = traits.amplitudes[k].range();
-    return ranges;
-  }
+  using Term = EffectTerm<T>;
 
   template <class E>
   EffectRefusal add_as(const EffectRow& row, ChangedGeometry<T, Robot>& machine) {
-    const EffectRefusal refusal = refusal_of<E>(row.shape);
+    Term term;
+    const EffectRefusal refusal = make_term<E>(row, term);
     if (refusal != EffectRefusal::none) return refusal;
     if (!has_place<Robot>(E::traits().place, row.joint)) return EffectRefusal::no_such_place;
     if (kIs<E, JointMemory> && row.joint < 0) return EffectRefusal::memory_elsewhere;
     if (count_ >= kCapacity) return EffectRefusal::no_room;
-    Term term;
-    term.id = row.id;
-    term.role = E::traits().role;
-    term.joint = row.joint;
-    constexpr auto shapes = shape_ranges<E>();
-    constexpr auto amplitudes = amplitude_ranges<E>();
-    for (std::size_t k = 0; k < kMostShapes; ++k) {
-      term.shape[k] = static_cast<T>(row.shape[k]);
-      if (!is_finite(term.shape[k]) || !shapes[k].holds(row.shape[k])) return EffectRefusal::bad_number;
-    }
-    for (std::size_t k = 0; k < kMostAmplitudes; ++k) {
-      term.amplitude[k] = static_cast<T>(row.amplitude[k]);
-      if (!is_finite(term.amplitude[k]) || !amplitudes[k].holds(row.amplitude[k])) return EffectRefusal::bad_number;
-    }
     if constexpr (kIs<E, MachineChange> && has_any_place<Robot>(E::traits().place)) {
       ChangedGeometry<T, Robot> changed = machine;
       E::change(changed, row.joint, row.amplitude, row.shape);
@@ -184,8 +140,6 @@ class EffectSet {
     terms_[count_++] = term;
     return EffectRefusal::none;
   }
-
-  static bool is_finite(const T& number) { return number - number == T(0); }
 
   template <class E>
   static T sum(const ColumnsOf<T, E>& columns, const Term& term) {

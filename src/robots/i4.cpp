@@ -1,8 +1,0 @@
-#include "../excitation/task_regressor_of.hpp"
-#include "../runtime/effect_states_of.hpp"
-#include "../runtime/robot_of.hpp"
-#include "../simulation/mechanism_of.hpp"
-#include "instantiate.hpp"
-
-DELTADYN_INSTANTIATE_ROBOT(I4)
-DELTADYN_INSTANTIATE_ROBOT(LinearI4)
