@@ -15,11 +15,13 @@ namespace {
 constexpr double kFinalBarrier = 1e-5;  // chi^2 an eigenvalue of a cone; far below what any statistic can see
 constexpr double kFirstBarrier = 1.0;   // at least, and ...
 constexpr double kFirstOfStart = 0.01;  // ... of the cost at the start: a damped step gains about a barrier's worth
-constexpr double kBarrierCut = 0.03;    // the deepest
-constexpr double kGentlestCut = 0.7;
-constexpr int kMostSteps = 25, kFewSteps = 5;  // to the centre, from which a cut was too deep, or can be deeper
+constexpr double kDeepestCut = 0.03;
+constexpr double kGentleCut = 0.7;  // from which no centre is too far
+constexpr int kMostSteps = 25;      // to a centre; with more the cut was too deep
+constexpr int kFewSteps = 5;        // with fewer the next cut is deeper,
+constexpr double kDeepening = 1.5;  // by this power, less than going back takes off
 constexpr double kObjectiveRounding = 1e-10;
-constexpr int kMaxNewton = 2000;
+constexpr int kMaxNewton = 1000;
 
 }  // namespace
 
@@ -142,7 +144,7 @@ ConvexProblem::Newton ConvexProblem::newton_step(const Terms& terms, const Eigen
   return newton;
 }
 
-/// The first of the halved steps that gains enough; false if none does.
+/// Moves to the full step or the first of its halves that gains enough; false if none does.
 bool ConvexProblem::search_line(FitMetric metric, double lambda, double barrier, const Terms& terms,
                                 const Newton& newton, Iterate& at) const {
   const double value = at.residual.squaredNorm() + terms.value;
@@ -165,7 +167,7 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
   at.residual = residual_at(at.x);
   double barrier = std::max(kFirstBarrier, kFirstOfStart * at.residual.squaredNorm());
   Iterate centred;
-  double centred_barrier = 0, cut = kBarrierCut;
+  double centred_barrier = 0, cut = kDeepestCut;
   int steps = 0;  // since the barrier was cut
   Terms terms;
   while (result.iterations < kMaxNewton) {
@@ -177,21 +179,21 @@ ConvexProblem::Result ConvexProblem::minimise(FitMetric metric, double lambda, c
     if (!newton.step.allFinite()) return result;
     const bool accepted = search_line(metric, lambda, barrier, terms, newton, at);
     const double decrement = newton.decrement;
-    // centred well enough: the Newton decrement is small against the barrier (or rounding ends the progress)
-    if (decrement > (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier && accepted) {
+    const bool is_centred = decrement <= (barrier > kFinalBarrier ? 0.5 : 0.1) * barrier;  // well enough
+    if (!is_centred && accepted) {
+      if (steps < kMostSteps || centred.x.size() == 0 || barrier > kGentleCut * centred_barrier) continue;
       // Where the boundary bends, a deep cut ends next to it, from where steps along it are short: go back, cut less.
-      if (steps < kMostSteps || centred.x.size() == 0 || cut > kGentlestCut) continue;
       at = centred;
+      cut = std::sqrt(barrier / centred_barrier);
       barrier = centred_barrier;
-      cut = std::sqrt(cut);
     } else if (barrier <= kFinalBarrier) {
       // a line search that fails counts as converged only where no more than rounding is left to gain
       result.converged = decrement <= std::max(barrier, kObjectiveRounding * (1 + std::abs(value)));
       break;
-    } else {
+    } else if (is_centred) {
       centred = at;
       centred_barrier = barrier;
-      if (steps < kFewSteps) cut = std::max(cut * cut, kBarrierCut);
+      if (steps < kFewSteps) cut = std::max(std::pow(cut, kDeepening), kDeepestCut);
     }
     barrier = std::max(barrier * cut, kFinalBarrier);
     steps = 0;

@@ -359,14 +359,14 @@ class Identifier {
     if (more.size() > 0) add_uncertainty(out_.base, more, out_.base_estimate);
   }
 
-  /// Name of a fitted body that no part of this robot can be; empty if there is none.
-  [[nodiscard]] std::string implausible_body() const {
-    for (Eigen::Index k = 0; k < out_.fit.p.size(); ++k) {
+  /// Name of a body that no part of this robot can be; empty if there is none.
+  [[nodiscard]] std::string implausible_body(const Eigen::VectorXd& p) const {
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
       const ParameterId& id = robot_.parameter_ids()[static_cast<std::size_t>(k)];
       if (id.kind != ParameterKind::inertial || id.entry != 0) continue;
       try {
-        plausibility::require_body(robot_.description(), id.body, out_.fit.p.segment<kInertialParameters>(k),
-                                   owner_name(id), "");
+        plausibility::require_body(robot_.description(), id.body, p.segment<kInertialParameters>(k), owner_name(id),
+                                   "");
       } catch (const Error&) {
         return owner_name(id);
       }
@@ -381,27 +381,36 @@ class Identifier {
     problem.b = out_.base_estimate.b;
     problem.prior = prior;
     problem.prior_std = prior_std;
-    ConsistentFitOptions options = options_.fit;
-    out_.fit = fit_consistent_parameters(problem, options);
-    // The largest lambda that costs the data nothing may be so small that a mass which no motion shows wanders beyond
-    // what a part can weigh, or that an effect which the model has not takes all weight from a part. Such a file is
-    // refused by the next tool, and rightly. A large lambda ends at the prior, whose bodies are those of a robot.
-    constexpr double kLargestLambda = 1e9;
-    const double chosen = out_.fit.lambda;
-    std::string odd = implausible_body();
-    while (!options_.fit.regularization && !odd.empty() && out_.fit.lambda < kLargestLambda) {
-      options.regularization = 10 * out_.fit.lambda;
-      out_.fit = fit_consistent_parameters(problem, options);
-      const std::string still = implausible_body();
-      if (still.empty()) {
-        out_.fit.notes.push_back(
-            fmt::format("lambda was raised from {:.3g} to {:.3g}: with the smaller one the mass or the moments of {} "
-                        "were none that such a part can have",
-                        chosen, out_.fit.lambda, odd));
-      }
-      odd = still;
-    }
+    out_.fit = fit_consistent_parameters(problem, options_.fit);
+    if (!options_.fit.regularization) raise_lambda(problem);
     out_.base_from_fit = out_.base.B * out_.fit.p;
+  }
+
+  /// The largest lambda that costs the data nothing may be so small that a mass which no motion shows wanders beyond
+  /// what a part can weigh, or that an effect which the model has not takes all weight from a part. Such a file is
+  /// refused by the next tool, and rightly. A large lambda ends at the prior.
+  void raise_lambda(const ConsistentFitProblem& problem) {
+    constexpr double kLargestLambda = 1e9;
+    const std::string odd = implausible_body(out_.fit.p);
+    if (odd.empty()) return;
+    ConsistentFitOptions options = options_.fit;
+    for (double lambda = 10 * out_.fit.lambda; lambda <= kLargestLambda; lambda *= 10) {
+      options.regularization = lambda;
+      ConsistentFitSummary raised = fit_consistent_parameters(problem, options);
+      if (!raised.converged || !implausible_body(raised.p).empty()) continue;
+      raised.notes.push_back(fmt::format(
+          "lambda was raised from {:.3g} to {:.3g}: with the smaller one the mass or the moments of {} were "
+          "none that such a part can have",
+          out_.fit.lambda, lambda, odd));
+      // What the data said of it stays: the curve, and the least chi^2.
+      raised.lambda_from_data = true;
+      raised.l_curve = std::move(out_.fit.l_curve);
+      raised.data_cost_min = out_.fit.data_cost_min;
+      out_.fit = std::move(raised);
+      return;
+    }
+    out_.fit.notes.push_back(
+        fmt::format("no weight of the prior makes {} a part that such a robot can have: look at its prior", odd));
   }
 
   /// Residuals are told over all rows with their full weight.

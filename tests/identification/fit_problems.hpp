@@ -118,13 +118,19 @@ inline ConsistentFitProblem random_problem(unsigned seed, int rank, double preci
   return problem;
 }
 
+/// A small delta3 whose axes lean.
+inline RobotDescription leaning_delta(const Eigen::Vector3d& tilts) {
+  RobotDescription description = delta_description("delta3", {0.2, 0.06, 0.3, 0.65, 0.06});
+  for (int limb = 0; limb < 3; ++limb) description.limbs[static_cast<std::size_t>(limb)].tilt = tilts(limb);
+  return description;
+}
+
 /// Torques of a delta3 at random states while a force that no parameter explains lifts its plate.
 /// \param lift  [N]
 inline ConsistentFitProblem lifted_robot(unsigned seed, const Eigen::Vector3d& tilts, double lift) {
   constexpr int kStates = 40;
   constexpr double kNoise = 0.01;  // [N m]
-  RobotDescription description = delta_description("delta3", {0.2, 0.06, 0.3, 0.65, 0.06});
-  for (int limb = 0; limb < 3; ++limb) description.limbs[static_cast<std::size_t>(limb)].tilt = tilts(limb);
+  const RobotDescription description = leaning_delta(tilts);
   const auto robot = make_robot(description);
   const auto plate = make_effect_states(description);
   const Eigen::VectorXd truth = 0.1 * delta_truth(*robot);

@@ -8,6 +8,7 @@
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
 
+#include "identification/fit_problems.hpp"
 #include "identification/synthetic_log.hpp"
 
 namespace deltadyn {
@@ -111,10 +112,7 @@ std::string implausible_bodies(const Robot& robot, const Eigen::VectorXd& p) {
 }
 
 TEST(Identify, RaisesLambdaUntilEveryBodyIsAPartOfSuchARobot) {
-  RobotDescription description = delta_description("delta3", {0.2, 0.06, 0.3, 0.65, 0.06});
-  const double tilts[] = {0.4, -0.3, 0.2};
-  for (std::size_t limb = 0; limb < 3; ++limb) description.limbs[limb].tilt = tilts[limb];
-  const auto robot = make_robot(description);
+  const auto robot = make_robot(leaning_delta({0.4, -0.3, 0.2}));
   const Eigen::VectorXd truth = 0.1 * delta_truth(*robot);
   SyntheticOptions recording;
   recording.torque_noise = 0.02;
@@ -127,6 +125,8 @@ TEST(Identify, RaisesLambdaUntilEveryBodyIsAPartOfSuchARobot) {
     EXPECT_TRUE(result.fit.converged) << result.fit.brief_report();
     EXPECT_EQ(implausible_bodies(*robot, result.fit.p), "");
     EXPECT_THAT(result.fit.notes, Contains(HasSubstr("lambda was raised")));
+    EXPECT_TRUE(result.fit.lambda_from_data);
+    EXPECT_GT(result.fit.lambda, 1.0) << "by no less the masses come back";
     options.fit.regularization = 1e-8;
     EXPECT_NE(implausible_bodies(*robot, identify(*robot, logs, 0.8 * truth, {}, options).fit.p), "")
         << "the test must be a hard one";

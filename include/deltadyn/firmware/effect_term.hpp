@@ -4,6 +4,10 @@
 /// One effect with its numbers, as a table has it and as a controller holds it. What is checked here does not depend on
 /// the robot.
 
+#include <array>
+#include <cstddef>
+
+#include "deltadyn/effects/kinds.hpp"
 #include "deltadyn/firmware/effect_refusal.hpp"
 
 namespace deltadyn {
@@ -58,7 +62,7 @@ bool take_numbers(const std::array<double, kCount>& given, const std::array<Rang
 
 }  // namespace detail
 
-/// The term of a row, or why no controller can feed it forward; the place is not looked at.
+/// The term of a row, or why no controller can feed it forward, whatever the robot.
 template <class Effect, class T>
 EffectRefusal make_term(const EffectRow& row, EffectTerm<T>& term) {
   const EffectRefusal refusal = refusal_of<Effect>(row.shape);

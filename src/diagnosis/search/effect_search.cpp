@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "deltadyn/identification/non_negative_least_squares.hpp"
 #include "deltadyn/runtime/golden_section.hpp"
@@ -183,9 +184,46 @@ void EffectSearch::refine_all(const State& state, const std::vector<std::size_t>
   for (std::size_t k = 0; k < missing.size(); ++k) state.refined.emplace(missing[k], std::move(fits[k]));
 }
 
-Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
+std::vector<Score> EffectSearch::starts(const State& state, std::size_t h) const {
   const Hypothesis& hypothesis = hypotheses_[h];
-  const Score& start = state.scores[h];
+  const EffectKind& kind = hypothesis.kind();
+  std::vector<Score> out = {state.scores[h]};
+  const Signature& signature = state.signatures[h];
+  const auto is_fixed = [](const ShapeTraits& shape) { return shape.search.kind == ShapeSearch::fixed; };
+  if (std::ranges::all_of(kind.shapes, is_fixed) || signature.white.cols() == 0 || !(out.front().gain > 0)) return out;
+  const auto choice = [&](const VectorXd& shape) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < kind.shapes.size(); ++k)
+      if (is_fixed(kind.shapes[k])) values.push_back(shape(static_cast<Index>(k)));
+    return values;
+  };
+  const VectorXd inner = freed_of_bias(state.problem->inner(signature.white), bias_of(state, h));
+  std::set<std::vector<double>> seen = {choice(hypothesis.shapes[out.front().shape])};
+  for (const VectorXd& shape : hypothesis.shapes) {
+    const std::vector<double> other = choice(shape);
+    if (!seen.insert(other).second) continue;
+    Score score = best_score(hypothesis, signature, inner, [&](const VectorXd& one) { return choice(one) == other; });
+    if (score.gain > 0) out.push_back(std::move(score));
+  }
+  return out;
+}
+
+Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
+  constexpr double kAlike = 3.84;  // chi-square of one degree of freedom, 95 %
+  Fit best;
+  for (const Score& start : starts(state, h)) {
+    Fit fit = refined_from(state, h, start);
+    fit.grid_gain = state.scores[h].gain;
+    // Of two that the logs cannot tell apart, the larger one only owes its size to speeds or places that they lack.
+    const bool smaller = fit.effect.amplitude.norm() < best.effect.amplitude.norm();
+    if (best.rows.empty() || fit.gain > best.gain + (smaller ? -kAlike : kAlike)) best = std::move(fit);
+  }
+  best.white = state.problem->whiten(best.rows);
+  return best;
+}
+
+Fit EffectSearch::refined_from(const State& state, std::size_t h, const Score& start) const {
+  const Hypothesis& hypothesis = hypotheses_[h];
   const Index k = hypothesis.amplitudes;
   Fit best;
   best.hypothesis = h;
@@ -233,7 +271,6 @@ Fit EffectSearch::find_refined(const State& state, std::size_t h) const {
       (void)golden_section([&](double x) { return -gain_at(x); }, low, high, sweep == 0 ? kFirstSteps : kLaterSteps);
     }
   }
-  best.white = state.problem->whiten(best.rows);
   return best;
 }
 

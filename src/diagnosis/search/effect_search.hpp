@@ -60,7 +60,7 @@ class EffectSearch {
   [[nodiscard]] State state(const PerLogAndDrive<NoiseModel>& noise, const std::vector<Fit>& accepted,
                             const EncoderPilots* pilots) const;
 
-  /// Refines the shape of a hypothesis from its best start value by coordinate search (variable projection: the
+  /// Refines the shape of a hypothesis from its best start values by coordinate search (variable projection: the
   /// amplitude is solved for). A state is not for several threads.
   [[nodiscard]] const Fit& refine(const State& state, std::size_t hypothesis) const;
   /// Refines several at once, on all cores, for the calls of refine() that follow.
@@ -80,7 +80,11 @@ class EffectSearch {
   [[nodiscard]] Pair best_pair(const State& state, std::size_t best) const;
 
  private:
+  /// The best start value, and the best with each other choice of the shape parameters that no search moves: what
+  /// fits a coarse grid best need not fit best in the end.
+  [[nodiscard]] std::vector<Score> starts(const State& state, std::size_t hypothesis) const;
   [[nodiscard]] Fit find_refined(const State& state, std::size_t hypothesis) const;
+  [[nodiscard]] Fit refined_from(const State& state, std::size_t hypothesis, const Score& start) const;
 
   const EffectModel& model_;
   const std::vector<LogRows>& logs_;

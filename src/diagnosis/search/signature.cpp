@@ -23,7 +23,8 @@ Signature make_signature(const WhiteProblem& problem, const Hypothesis& hypothes
   return out;
 }
 
-Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner) {
+Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner,
+                 const std::function<bool(const VectorXd&)>& among) {
   const EffectKind& kind = hypothesis.kind();
   const Index k = hypothesis.amplitudes;
   std::vector<bool> positive;
@@ -32,7 +33,7 @@ Score best_score(const Hypothesis& hypothesis, const Signature& signature, const
   best.amplitude = VectorXd::Zero(k);
   if (signature.white.cols() == 0) return best;
   for (std::size_t s = 0; s < hypothesis.shapes.size(); ++s) {
-    if (signature.kept[s] < kAbsorbed) continue;
+    if (signature.kept[s] < kAbsorbed || (among && !among(hypothesis.shapes[s]))) continue;
     const VectorXd u = inner.segment(static_cast<Index>(s) * k, k);
     NonNegativeSolution found;
     if (kind.tied) {

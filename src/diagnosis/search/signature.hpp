@@ -3,6 +3,7 @@
 /// \file
 /// The torque of a hypothesis in white rows, and how much of the residual it explains.
 
+#include <functional>
 #include <vector>
 
 #include "../evidence/white_problem.hpp"
@@ -30,6 +31,8 @@ struct Score {
 
 /// Supremum of the gain over the shapes. Shapes that a re-fit absorbs count as nothing.
 /// \param inner  C_perp^T r of all columns, WhiteProblem::inner
-[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner);
+/// \param among  shapes that may win; empty: all
+[[nodiscard]] Score best_score(const Hypothesis& hypothesis, const Signature& signature, const VectorXd& inner,
+                               const std::function<bool(const VectorXd&)>& among = {});
 
 }  // namespace deltadyn
