@@ -1,6 +1,7 @@
 #include "../../../src/diagnosis/search/effect_search.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -12,27 +13,21 @@ namespace {
 
 using namespace testing_support;
 
-/// One drive whose torque holds a slow wave over the position besides: `share` of a wave over its range.
+using Torque = std::function<Eigen::ArrayXd(const Eigen::ArrayXd& position, const Eigen::ArrayXd& rate)>;
+
+/// One drive whose torque holds something besides.
 struct Searched {
   std::unique_ptr<Robot> robot = make_robot(axis_description(DriveKind::revolute));
   EffectModel model{*robot};
   std::vector<LogRows> logs;
   GenericBasis basis;
-  double range = 0;
 
-  /// \param friction  the wave is one of Coulomb's friction
-  explicit Searched(double share, bool friction = false) {
+  explicit Searched(const Torque& besides) {
     AxisLog plain;
     Log log = plain.make();
-    range = log.q.maxCoeff() - log.q.minCoeff();
-    const double n = share * 2 * std::numbers::pi / range;
-    Eigen::ArrayXd wave = 0.8 * (n * log.q.col(0).array() + 0.3).cos();
-    if (friction)
-      wave *= testing_support::MultiSine{plain.base_hz, plain.amplitude}
-                  .at(log.t_s, 1, 0.7 * static_cast<double>(plain.seed))
-                  .array()
-                  .sign();
-    log.tau.col(0).array() += wave;
+    const Eigen::VectorXd rate = testing_support::MultiSine{plain.base_hz, plain.amplitude}.at(
+        log.t_s, 1, 0.7 * static_cast<double>(plain.seed));
+    log.tau.col(0).array() += besides(log.q.col(0).array(), rate.array());
     ProcessingOptions processing;
     processing.cutoff_hz = 40;
     processing.motion_over_pass = 1;
@@ -51,8 +46,26 @@ struct Searched {
   }
 };
 
+double range_of(const Eigen::ArrayXd& position) {
+  return position.maxCoeff() - position.minCoeff();
+}
+
+/// A slow wave over the position: `share` of a wave over its range.
+Torque wave(double share) {
+  return [share](const Eigen::ArrayXd& position, const Eigen::ArrayXd& /*rate*/) -> Eigen::ArrayXd {
+    return 0.8 * (share * 2 * std::numbers::pi / range_of(position) * position + 0.3).cos();
+  };
+}
+
+/// The wave as one of Coulomb's friction.
+Torque friction_wave(double share) {
+  return [share](const Eigen::ArrayXd& position, const Eigen::ArrayXd& rate) -> Eigen::ArrayXd {
+    return wave(share)(position, rate) * rate.sign();
+  };
+}
+
 TEST(EffectSearch, DoesNotLookForBristlesThatTheRowsHold) {
-  const Searched one(0.5);
+  const Searched one(wave(0.5));
   const EffectSearch without(one.model, one.logs, one.basis, {});
   const EffectSearch with(one.model, one.logs, one.basis, {}, Eigen::VectorXd::Constant(1, 2e-3));
   EXPECT_LT(Searched::find(without, effect_id<effects::Presliding>), without.hypotheses().size());
@@ -62,26 +75,44 @@ TEST(EffectSearch, DoesNotLookForBristlesThatTheRowsHold) {
 
 // Part of a wave is gravity, load or anything.
 TEST(EffectSearch, RefinesARippleToNoLessThanOneWaveOverTheRange) {
-  const Searched one(0.7);
+  const Searched one(wave(0.7));
   const EffectSearch search(one.model, one.logs, one.basis, {});
   const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
   const Fit& fit = search.refine(state, Searched::find(search, effect_id<effects::TorqueRipple>));
   ASSERT_GT(fit.gain, 100);
-  EXPECT_GE(fit.effect.shape(0) * one.range, 0.99 * 2 * std::numbers::pi);
+  EXPECT_GE(fit.effect.shape(0) * range_of(one.logs.front().log.q.col(0)), 0.99 * 2 * std::numbers::pi);
 }
 
 // It varies once a turn, of which a drive sees a part.
 TEST(EffectSearch, FindsFrictionThatVariesByLessThanOneWaveOverTheRange) {
-  const Searched one(0.8, true);
+  const Searched one(friction_wave(0.8));
   const EffectSearch search(one.model, one.logs, one.basis, {});
   const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
   const Fit& fit = search.refine(state, Searched::find(search, effect_id<effects::PositionDependentFriction>));
   ASSERT_GT(fit.gain, 100);
-  EXPECT_NEAR(fit.effect.shape(0) * one.range / (2 * std::numbers::pi), 0.8, 0.05);
+  EXPECT_NEAR(fit.effect.shape(0) * range_of(one.logs.front().log.q.col(0)) / (2 * std::numbers::pi), 0.8, 0.05);
+}
+
+// What fits the coarse start values best need not fit best in the end.
+TEST(EffectSearch, RefinesEveryExponentOfStribecksLaw) {
+  for (const double share : {0.06, 0.08, 0.1, 0.13, 0.17}) {
+    for (const double exponent : {1.0, 2.0}) {
+      const Searched one([&](const Eigen::ArrayXd& /*position*/, const Eigen::ArrayXd& rate) -> Eigen::ArrayXd {
+        const double bend = share * rate.abs().maxCoeff();
+        return 0.8 * rate.sign() * (-(rate.abs() / bend).pow(exponent)).exp();
+      });
+      const EffectSearch search(one.model, one.logs, one.basis, {});
+      const EffectSearch::State state = search.state(search.noise_beside({}).noise, {}, nullptr);
+      const Fit& fit = search.refine(state, Searched::find(search, effect_id<effects::Stribeck>));
+      ASSERT_GT(fit.gain, 100);
+      EXPECT_EQ(fit.effect.shape(1), exponent) << "bend at " << share << " of the largest rate";
+      EXPECT_NEAR(fit.effect.amplitude(0), 0.8, 0.16) << "bend at " << share << " of the largest rate";
+    }
+  }
 }
 
 TEST(Hypothesis, OfASaturationTakesOffNoMoreThanWhatIsAboveTheLevel) {
-  const Searched one(0.5);
+  const Searched one(wave(0.5));
   const EffectSearch search(one.model, one.logs, one.basis, {});
   EXPECT_LE(search.hypotheses()[Searched::find(search, effect_id<effects::Saturation>)].largest(0), 1.0);
 }
