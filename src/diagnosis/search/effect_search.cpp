@@ -197,7 +197,7 @@ std::vector<Score> EffectSearch::starts(const State& state, std::size_t h) const
       if (is_fixed(kind.shapes[k])) values.push_back(shape(static_cast<Index>(k)));
     return values;
   };
-  const VectorXd inner = freed_of_bias(state.problem->inner(signature.white), bias_of(state, h));
+  const VectorXd inner = freed_of_bias(state.problem->inner(signature.white), state.bias[h]);
   std::set<std::vector<double>> seen = {choice(hypothesis.shapes[out.front().shape])};
   for (const VectorXd& shape : hypothesis.shapes) {
     const std::vector<double> other = choice(shape);
