@@ -1,10 +1,9 @@
 #pragma once
 
 /// \file
-/// TaskRegressor for one compile-time type. The kinematics run in numbers that carry their derivatives (forward mode)
-/// by the N positions, velocities and accelerations of the state in turn, in the number type of
-/// inverse_dynamics_derivatives(), whose templates they share. What the bodies make of them is differentiated by hand
-/// (reverse mode), because a body turns few numbers into ten columns for each drive.
+/// TaskRegressor for one compile-time type. The kinematics run once in numbers that carry their derivatives by the 3 N
+/// entries of the state (forward mode); what the bodies make of them is differentiated by hand (reverse mode), because
+/// a body turns few numbers into ten columns for each drive.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -25,8 +24,10 @@ class TaskRegressorOf final : public TaskRegressor {
   using Layout = ParameterLayout<R, Limbs::individual>;
   using SharedLayout = ParameterLayout<R, Limbs::shared>;
   static constexpr int N = R::kDrives;
+  static constexpr int kState = 3 * N;
+  using State = deltadyn::Vector<double, kState>;
+  using Jet = Dual<double, kState>;
   using Drives = deltadyn::Vector<double, N>;
-  using Jet = Dual<double, N>;
   using JetDrives = deltadyn::Vector<Jet, N>;
   using Full = Matrix<double, N, Layout::kColumns>;  // each limb on its own
   using Vec = const Eigen::Ref<const Eigen::VectorXd>&;
@@ -59,45 +60,36 @@ class TaskRegressorOf final : public TaskRegressor {
 
   Status differentiate(Vec x, Vec sign_width, const Eigen::Ref<const Eigen::MatrixXd>& G_columns,
                        Eigen::Ref<Eigen::MatrixXd> gradients, Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
+    Motion<Jet, R> motion;
+    const Status status = jet_motion(x, motion);
+    if (status != Status::ok) return status;
+    const auto full = [&](Eigen::Index sum) {
+      Full G = Full::Zero();  // a column that limbs share goes to each of them
+      for (std::size_t k = 0; k < entry_.size(); ++k)
+        if (entry_[k] >= 0) G.col(static_cast<Eigen::Index>(k)) = G_columns.col(entry_[k]).template segment<N>(sum * N);
+      return G;
+    };
     std::vector<Full> G;
-    for (Eigen::Index sum = 0; sum < gradients.cols(); ++sum) G.push_back(weights(G_columns.middleRows(sum * N, N)));
+    for (Eigen::Index sum = 0; sum < gradients.cols(); ++sum) G.push_back(full(sum));
     gradients.setZero();
-    JetDrives q;
-    if (const Status status = drives_at(x, q); status != Status::ok) return status;
-    for (const StatePart by : {StatePart::position, StatePart::velocity, StatePart::acceleration}) {
-      Motion<Jet, R> motion;
-      if (const Status status = jet_motion(x, q, by, motion); status != Status::ok) return status;
-      const Eigen::Index first = N * static_cast<Eigen::Index>(by);
-      auto rows = gradients.middleRows<N>(first);
-      for_each_body(jet_geometry_, motion, [&](Body kind, int index, int count, const BodyMotion<Jet, N>& body) {
-        const int column = kInertialParameters * Layout::body(kind, index);
-        for (std::size_t sum = 0; sum < G.size(); ++sum)
-          rows.col(static_cast<Eigen::Index>(sum)) +=
-              count * body_gradient(body, G[sum].template middleCols<kInertialParameters>(column));
-      });
+    for_each_body(jet_geometry_, motion, [&](Body kind, int index, int count, const BodyMotion<Jet, N>& body) {
+      const int first = kInertialParameters * Layout::body(kind, index);
       for (std::size_t sum = 0; sum < G.size(); ++sum)
-        rows.col(static_cast<Eigen::Index>(sum)) =
-            with_joints(motion, sign_width, G[sum], rows.col(static_cast<Eigen::Index>(sum)));
-      for (int i = 0; i < N; ++i) {
-        jacobian.template block<1, N>(i, first) = motion.posture.q(i).slope.transpose();
-        jacobian.template block<1, N>(N + i, first) = motion.qd(i).slope.transpose();
-        jacobian.template block<1, N>(2 * N + i, first) = motion.qdd(i).slope.transpose();
-      }
+        gradients.col(static_cast<Eigen::Index>(sum)) +=
+            count * body_gradient(body, G[sum].template middleCols<kInertialParameters>(first));
+    });
+    for (std::size_t sum = 0; sum < G.size(); ++sum)
+      add_joints(motion, sign_width, G[sum], gradients.col(static_cast<Eigen::Index>(sum)));
+    for (int i = 0; i < N; ++i) {
+      jacobian.row(i) = motion.posture.q(i).slope.transpose();
+      jacobian.row(N + i) = motion.qd(i).slope.transpose();
+      jacobian.row(2 * N + i) = motion.qdd(i).slope.transpose();
     }
     return Status::ok;
   }
 
  private:
   using Vec3 = deltadyn::Vector3<double>;
-  enum class StatePart { position, velocity, acceleration };
-
-  /// Of the columns with each limb on its own; a column that limbs share goes to each of them.
-  [[nodiscard]] Full weights(const Eigen::Ref<const Eigen::MatrixXd>& of_columns) const {
-    Full G = Full::Zero();
-    for (std::size_t k = 0; k < entry_.size(); ++k)
-      if (entry_[k] >= 0) G.col(static_cast<Eigen::Index>(k)) = of_columns.col(entry_[k]);
-    return G;
-  }
 
   template <class OfRegressor>
   void fill(const Motion<double, R>& motion, Vec sign_width, Eigen::Ref<Eigen::MatrixXd> Y) const {
@@ -112,9 +104,10 @@ class TaskRegressorOf final : public TaskRegressor {
     Y = full(Eigen::all, columns_);
   }
 
-  /// The gradient with the share of friction and rotors.
-  static Drives with_joints(const Motion<Jet, R>& motion, Vec sign_width, const Full& G, const Drives& of_bodies) {
-    Drives sum = of_bodies;
+  /// Share of friction and rotors in the gradient.
+  static void add_joints(const Motion<Jet, R>& motion, Vec sign_width, const Full& G,
+                         Eigen::Ref<Eigen::VectorXd> gradient) {
+    State sum = gradient;
     for (int joint = 0; joint < Layout::kFrictionJoints; ++joint) {
       const auto f = friction_joint(motion, joint);
       const double v = f.rate.value, w = sign_width.size() > 0 ? sign_width(joint) : 0.0;
@@ -130,60 +123,48 @@ class TaskRegressorOf final : public TaskRegressor {
       sum += by_rate * f.rate.slope;
     }
     for (int i = 0; i < N; ++i) sum += G(i, Layout::kRotorInertia + i) * motion.qdd(i).slope;
-    return sum;
+    gradient = sum;
   }
 
-  /// Drives at a task-space state with their derivatives by its positions: the inverse kinematics runs in plain
-  /// numbers, and a drive's derivative by z is its rate for a unit rate of z.
-  Status drives_at(Vec x, JetDrives& q) const {
+  /// The motion of a task-space state with its derivatives by all of the state.
+  Status jet_motion(Vec x, Motion<Jet, R>& motion) const {
+    // Inverse kinematics in plain numbers; a drive's derivative by z is its rate for a unit rate of z.
     Motion<double, R> still;
     const Drives z = x.template head<N>(), none = Drives::Zero();
     Status status = motion_from_task(geometry_, z, none, none, still);
     if (status != Status::ok) return status;
-    for (int i = 0; i < N; ++i) q(i) = Jet(still.posture.q(i));
+    JetDrives jet_z, jet_zd, jet_zdd, jet_q;
+    for (int i = 0; i < N; ++i) {
+      jet_z(i) = Jet(x(i), State::Unit(i));
+      jet_zd(i) = Jet(x(N + i), State::Unit(N + i));
+      jet_zdd(i) = Jet(x(2 * N + i), State::Unit(2 * N + i));
+      jet_q(i) = Jet(still.posture.q(i));
+    }
     for (int k = 0; k < N; ++k) {
       Drives qd, unused;
       status = drive_rates(geometry_, still.posture, Drives(Drives::Unit(k)), none, qd, unused);
       if (status != Status::ok) return status;
-      for (int i = 0; i < N; ++i) q(i).slope(k) = qd(i);
+      for (int i = 0; i < N; ++i) jet_q(i).slope(k) = qd(i);
     }
-    return status;
-  }
-
-  /// The motion of a task-space state with its derivatives by one part of the state.
-  Status jet_motion(Vec x, const JetDrives& q, StatePart by, Motion<Jet, R>& motion) const {
-    const auto seeded = [&](StatePart part) {
-      JetDrives entries;
-      for (int i = 0; i < N; ++i) {
-        entries(i) = Jet(x(N * static_cast<int>(part) + i));
-        if (part == by) entries(i).slope = Drives::Unit(i);
-      }
-      return entries;
-    };
-    JetDrives jet_q = q;
-    if (by != StatePart::position)
-      for (int i = 0; i < N; ++i) jet_q(i).slope.setZero();
-    Status status = assemble_posture(jet_geometry_, jet_q, seeded(StatePart::position), motion.posture);
-    JetDrives qd, qdd;
-    if (status == Status::ok)
-      status = drive_rates(jet_geometry_, motion.posture, seeded(StatePart::velocity), seeded(StatePart::acceleration),
-                           qd, qdd);
-    if (status == Status::ok) set_drive_rates(jet_geometry_, qd, qdd, motion);
+    status = assemble_posture(jet_geometry_, jet_q, jet_z, motion.posture);
+    JetDrives jet_qd, jet_qdd;
+    if (status == Status::ok) status = drive_rates(jet_geometry_, motion.posture, jet_zd, jet_zdd, jet_qd, jet_qdd);
+    if (status == Status::ok) set_drive_rates(jet_geometry_, jet_qd, jet_qdd, motion);
     return status;
   }
 
   static Vec3 value(const deltadyn::Vector3<Jet>& v) { return {v.x().value, v.y().value, v.z().value}; }
-  static void add(Drives& sum, const Vec3& weight, const deltadyn::Vector3<Jet>& v) {
+  static void add(State& sum, const Vec3& weight, const deltadyn::Vector3<Jet>& v) {
     sum += weight.x() * v.x().slope + weight.y() * v.y().slope + weight.z() * v.z().slope;
   }
 
   /// Gradient of sum_ij G_ij (J_v' F + J_w' M)_ij with the force and moment regressors F, M of the body. With the rows
   /// of G as parameters (m, c, I) of bodies, row i adds J_v,i . f_i + J_w,i . n_i, where f = m a + w_d x c + w x (w x
   /// c) and n = I w_d + w x I w + c x a.
-  static Drives body_gradient(const BodyMotion<Jet, N>& body, const Matrix<double, N, kInertialParameters>& G) {
+  static State body_gradient(const BodyMotion<Jet, N>& body, const Matrix<double, N, kInertialParameters>& G) {
     const Vec3 a = value(body.a), w = value(body.w), w_d = value(body.w_d);
     Vec3 by_a = Vec3::Zero(), by_w = Vec3::Zero(), by_w_d = Vec3::Zero();
-    Drives sum = Drives::Zero();
+    State sum = State::Zero();
     for (int i = 0; i < N; ++i) {
       const double m = G(i, 0);
       const Vec3 c(G(i, 1), G(i, 2), G(i, 3));
