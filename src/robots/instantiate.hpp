@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What the run-time faces need of a robot type. Each type has a file of its own; a folder
-/// holds those that share much and compile together: by the kind of their plate, axes with the rigid ones.
+/// What the run-time faces need of a robot type. Each type has a file of its own; a folder holds those that share much
+/// and compile together: by the kind of their plate, axes with the rigid ones.
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage, bugprone-macro-parentheses): an explicit instantiation has no other form.
 #define DELTADYN_INSTANTIATE_ROBOT(Type)                                                                       \
