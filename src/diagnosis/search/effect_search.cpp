@@ -56,10 +56,10 @@ Reach reach_of(const Hypothesis& hypothesis, std::size_t parameter, const Vector
   return {true, true, search.low * value, search.high * value};
 }
 
-/// Of the shape with the best score; empty: none.
-VectorXd bias_of(const EffectSearch::State& state, std::size_t h) {
-  const Index k = state.scores[h].amplitude.size();
-  return state.bias[h].size() > 0 ? VectorXd(state.bias[h].segment(static_cast<Index>(state.scores[h].shape) * k, k))
+/// What encoder noise fakes of hypothesis `h` at the shape of a score; empty: not known.
+VectorXd bias_of(const EffectSearch::State& state, std::size_t h, const Score& score) {
+  const Index k = score.amplitude.size();
+  return state.bias[h].size() > 0 ? VectorXd(state.bias[h].segment(static_cast<Index>(score.shape) * k, k))
                                   : VectorXd();
 }
 
@@ -234,7 +234,7 @@ Fit EffectSearch::refined_from(const State& state, std::size_t h, const Score& s
   best.effect.amplitude = start.amplitude;
   best.rows = columns_of(rows_[h], static_cast<Index>(start.shape) * k, k);
   // What encoder noise fakes changes little from one shape to the next.
-  const VectorXd bias = bias_of(state, h);
+  const VectorXd bias = bias_of(state, h, start);
   const auto fit_with = [&](const VectorXd& shape) {
     Hypothesis one = hypothesis;
     one.shapes = {shape};
@@ -288,7 +288,7 @@ EffectSearch::Pair EffectSearch::best_pair(const State& state, std::size_t best)
     One one;
     if (signature.white.cols() > 0) {
       one.white = signature.white.part(static_cast<Index>(state.scores[h].shape) * k, k);
-      one.inner = freed_of_bias(state.problem->inner(one.white), bias_of(state, h));
+      one.inner = freed_of_bias(state.problem->inner(one.white), bias_of(state, h, state.scores[h]));
     }
     for (const AmplitudeTraits& amplitude : hypotheses_[h].kind().amplitudes)
       one.positive.push_back(amplitude.positive());
