@@ -125,10 +125,11 @@ class Diagnose {
     options_.choose_cutoff = processing_.automatic_cutoff();
     options_.seed = run.seed;
     options_.identify = !params_out_.empty();
+    options_.prior = prior_of(table, *robot, match);
     tools::ProgressBar bar("diagnosing");
     options_.progress = [&bar](double share) { bar.update(share); };
-    const Diagnosis result =
-        diagnose(*robot, logs, holdout ? &*holdout : nullptr, match.value, prior_std(*robot, match), known, options_);
+    const Diagnosis result = diagnose(*robot, logs, holdout ? &*holdout : nullptr, match.value,
+                                      prior_std(*robot, options_.prior), known, options_);
 
     write_diagnosis(*robot, result);
     if (!effects_out_.empty()) write_effects(effects_out_, result.effects, description);
@@ -145,11 +146,21 @@ class Diagnose {
                      !processing_.options().filter, run.summary);
   }
 
-  /// Trust in the parameters, as delta-identify has it in its prior.
-  static Eigen::VectorXd prior_std(const Robot& robot, const ParameterMatch& match) {
+  /// What delta-identify kept to, as its file says; of a file without priors the values.
+  static Eigen::VectorXd prior_of(const ParameterTable& table, const Robot& robot, const ParameterMatch& match) {
+    Eigen::VectorXd prior = match.value;
+    for (Eigen::Index k = 0; k < prior.size(); ++k) {
+      const ParameterEntry* entry = table.find(robot.parameter_names()[static_cast<std::size_t>(k)]);
+      if (entry != nullptr && std::isfinite(entry->prior)) prior(k) = entry->prior;
+    }
+    return prior;
+  }
+
+  /// Trust in it, as delta-identify has it.
+  static Eigen::VectorXd prior_std(const Robot& robot, const Eigen::VectorXd& prior) {
     Eigen::VectorXd std = nominal_parameters(robot, PartShapes(robot.description())).std;
     for (Eigen::Index k = 0; k < std.size(); ++k) {
-      if (match.value(k) != 0) std(k) = std::max(std(k), 0.5 * std::abs(match.value(k)));
+      if (prior(k) != 0) std(k) = std::max(std(k), 0.5 * std::abs(prior(k)));
     }
     return std;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -404,15 +405,37 @@ Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set) {
   return layout;
 }
 
+namespace {
+
+/// What the first moments and products of inertia of a body must shrink by, so that it is clear of the boundary.
+double shrink_to_inside(const Block& block, const Eigen::VectorXd& x) {
+  constexpr double kClear = 0.05;  // smallest eigenvalue, the diagonal being 1; a uniform rod has 0.13
+  if (block.shape != BlockKind::spatial && block.shape != BlockKind::planar) return 1;
+  const int n = block.cone.size;
+  const Eigen::MatrixXd M = block.cone(block.gather(x)).topLeftCorner(n, n);
+  const Eigen::VectorXd root = M.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  const double smallest = dense::eigenvalues(M.cwiseQuotient(root * root.transpose()))(0);
+  return smallest >= kClear ? 1 : (1 - kClear) / (1 - smallest);
+}
+
+}  // namespace
+
 Eigen::VectorXd convex_start(const Layout& layout) {
   Eigen::VectorXd x(layout.convex);
   for (const Block& block : layout.blocks) {
     x.segment(block.y, block.fitted()) = block.anchor(block.entries);
-    if (block.split < 0) continue;
-    // in the middle of the splits that leave the mass room: Sa / Sb = |a| / |b|
-    const double a = std::abs(block.anchor(kMcx + block.axes[0])), b = std::abs(block.anchor(kMcx + block.axes[1]));
-    const double inertia = block.anchor(block.inertia), even = 1e-3 * (a + b) + 1e-12;
-    x(block.split) = inertia * ((a + even) - (b + even)) / (a + b + 2 * even);
+    if (block.split >= 0) {
+      // in the middle of the splits that leave the mass room: Sa / Sb = |a| / |b|
+      const double a = std::abs(block.anchor(kMcx + block.axes[0])), b = std::abs(block.anchor(kMcx + block.axes[1]));
+      const double inertia = block.anchor(block.inertia), even = 1e-3 * (a + b) + 1e-12;
+      x(block.split) = inertia * ((a + even) - (b + even)) / (a + b + 2 * even);
+    }
+    const double share = shrink_to_inside(block, x);
+    for (int i = 0; share < 1 && i < block.fitted(); ++i) {
+      const int entry = block.entries[static_cast<std::size_t>(i)];
+      const bool moment = entry == kMcx || entry == kMcy || entry == kMcz;
+      if (moment || entry == kIxy || entry == kIyz || entry == kIxz) x(block.y + i) *= share;
+    }
   }
   return x;
 }

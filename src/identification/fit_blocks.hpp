@@ -80,7 +80,9 @@ struct Layout {
 /// Checks sizes, parameters and prior; throws deltadyn::Error.
 [[nodiscard]] Layout make_layout(const ConsistentFitProblem& problem, ParameterSet set);
 
-/// The start of the convex problem: the anchors, strictly inside every cone.
+/// The start of the convex problem, and the point that its barrier is centred on: the anchors, those next to the
+/// boundary moved clear of it. From a thin body the way to any other is long, and far from it the barrier would
+/// outweigh the data.
 [[nodiscard]] Eigen::VectorXd convex_start(const Layout& layout);
 
 /// Log-Cholesky variables of the block (scalars: entry 0) that give its fitted entries in x; the other variables stay

@@ -208,6 +208,24 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
   write_file(path, text);
 }
 
+namespace {
+
+/// A body of which nothing is known would be counted as none at all.
+void require_every_body(const ParameterTable& table, const std::vector<std::string>& names,
+                        const std::vector<std::string>& missing) {
+  for (const std::string& name : missing) {
+    if (!name.ends_with(".m")) continue;
+    const std::string body = name.substr(0, name.size() - 1);
+    const auto of_body = [&body](const std::string& other) { return other.starts_with(body); };
+    if (std::ranges::count_if(missing, of_body) < std::ranges::count_if(names, of_body)) continue;
+    throw Error(fmt::format("the file has no value of {}, a body of this robot", name.substr(0, name.size() - 2)),
+                table.file,
+                "check that this is the parameter file of this robot; delta-model prior writes one with all names");
+  }
+}
+
+}  // namespace
+
 ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
                                 const std::vector<std::string>& units) {
   if (!units.empty() && units.size() != names.size()) {
@@ -252,6 +270,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
                                          place(table.file, entry.line), entry.name));
   }
+  require_every_body(table, names, match.missing);
   if (!match.missing.empty())
     match.warnings.push_back(fmt::format("{}: not in the file and counted as 0 ({}): {}", table.file,
                                          match.missing.size(), fmt::join(match.missing, " ")));

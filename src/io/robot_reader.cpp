@@ -123,7 +123,7 @@ class Reader {
                            drives_.size(), drives_.size()),
                tree_.at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
       drives_[k] = &j;
-      if (j.mimic) refuse("a drive cannot mimic another joint", tree_.at(j), "remove the <mimic> element");
+      if (!j.mimics.empty()) refuse("a drive cannot mimic another joint", tree_.at(j), "remove the <mimic> element");
     }
   }
 
@@ -172,6 +172,11 @@ class Reader {
       refuse("the telescope's drive must be the last one", tree_.at(*drives_[limbs]),
              "call the limbs' drives drive1 to drive3");
     const bool telescope = limbs < drives_.size();
+    if (declares_turning_plate() && limbs != 4)
+      refuse(fmt::format("an {} has four limbs, but {} found{}", tree_.declared_type, limbs,
+                         telescope ? " and a telescope bar" : ""),
+             tree_.where,
+             "hang the missing limb on the base (a drive with two struts), or mend the type of <deltadyn>");
     if (limbs != 3 && !(limbs == 4 && !telescope))
       refuse(fmt::format("three limbs expected, or four with an articulated plate, but {} found{}", limbs,
                          telescope ? " and a telescope bar" : ""),
@@ -208,12 +213,16 @@ class Reader {
   }
 
   // --- articulated plate --------------------------------------------------------------------------
+  /// By the type that the file gives itself.
+  [[nodiscard]] bool declares_turning_plate() const {
+    return visit_robot_type(
+        tree_.declared_type, drives_[0]->prismatic ? DriveKind::prismatic : DriveKind::revolute,
+        [](auto type) { return decltype(type)::kPlateTurns; }, [] { return false; });
+  }
+
   /// What joins the parts of the plate is not told by the limbs.
   [[nodiscard]] std::string type_of_four_limbs() const {
-    const bool known = visit_robot_type(
-        tree_.declared_type, robot_.drive_kind, [](auto type) { return decltype(type)::kPlateTurns; },
-        [] { return false; });
-    if (!known)
+    if (!declares_turning_plate())
       refuse("a robot with four limbs, but no word on how its plate is made", tree_.where,
              fmt::format("write its type (one of {}) into <deltadyn type=\"...\"> with a <plate> as delta-model create "
                          "does",
@@ -262,11 +271,20 @@ class Reader {
         if (found == tree_.joints.end())
           refuse(fmt::format("joint {} of the plate is missing", one->name), tree_.where,
                  "write the plate's joints as delta-model create does");
-        if (found->prismatic != wanted->prismatic || (found->axis - wanted->axis).norm() > kTolerance ||
-            (found->X_PJ.matrix() - wanted->X_PJ.matrix()).norm() > kTolerance)
+        require_axis(*found, wanted->axis, wanted->prismatic, "this joint of the plate");
+        require_turned_as(found->X_PJ, wanted->X_PJ, "this joint of the plate", tree_.at(*found));
+        if ((found->X_PJ.translation() - wanted->X_PJ.translation()).norm() > kTolerance)
           refuse(fmt::format("this joint of the plate stands at {}, but the lengths in <plate> put it at {}",
                              words(found->X_PJ.translation()), words(wanted->X_PJ.translation())),
-                 tree_.at(*found), "mend the joint's origin and axis, or the numbers of <plate>");
+                 tree_.at(*found), "mend the joint's origin, or the numbers of <plate>");
+        if (found->mimics != wanted->mimics || std::abs(found->mimic_offset) > kTolerance)
+          refuse(wanted->mimics.empty()
+                     ? std::string("the plate's angle is this joint's own, but it has a <mimic>")
+                     : fmt::format("this joint of the plate must mimic {} without an offset", wanted->mimics),
+                 tree_.at(*found),
+                 wanted->mimics.empty() ? std::string("remove the <mimic> element")
+                                        : fmt::format("write <mimic joint=\"{}\" multiplier=\"{:.9g}\"/>",
+                                                      wanted->mimics, wanted->mimic_gain));
         if (std::abs(found->mimic_gain - wanted->mimic_gain) > kTolerance)
           refuse(
               fmt::format("this joint of the plate mimics another {:.6g}-fold, but by <plate> it moves {:.6g} times as "
@@ -282,7 +300,33 @@ class Reader {
                              has.lower, has.upper, needs.lower, needs.upper),
                  tree_.at(*found), "mend range_rad of <plate>, which counts, and the limits of the plate's joints");
       }
+      if (body.part > 0) compare_place(body.name, made);
     }
+  }
+
+  /// Where no joint of its own moves a part of the plate, a fixed one must hold it in the place that the lengths say.
+  void compare_place(const std::string& link, const UrdfTree& made) const {
+    const auto found = tree_.links.find(link);
+    if (found == tree_.links.end())
+      refuse(fmt::format("link {} of the plate is missing", link), tree_.where,
+             "name the links of the plate as delta-model create does");
+    const robot_file::LinkPlace &has = found->second, &needs = made.links.at(link);
+    const std::string &on = tree_.body(has.body).name, &meant = made.body(needs.body).name;
+    if (on != meant)
+      refuse(fmt::format("this part of the plate moves with link {}, but must move with {}", on, meant), tree_.at(link),
+             "mend the parent of its joint");
+    require_turned_as(has.X_BL, needs.X_BL, "this part of the plate", tree_.at(link));
+    const Pose between = needs.X_BL.inverse() * has.X_BL;
+    if (between.translation().norm() > kTolerance)
+      refuse(fmt::format("this part of the plate stands {:.6g} m beside the place that the lengths in <plate> say",
+                         between.translation().norm()),
+             tree_.at(link), "mend the origin of its fixed joint, or the numbers of <plate>");
+  }
+
+  static void require_turned_as(const Pose& has, const Pose& needs, const std::string& what, const std::string& where) {
+    if ((has.linear() - needs.linear()).norm() <= kTolerance) return;
+    refuse(what + " is turned otherwise than <plate> says", where,
+           "set the rpy of its joint's origin as delta-model create does, or mend azimuth_rad of <plate>");
   }
 
   /// The part of the plate that a limb may end on, by body.

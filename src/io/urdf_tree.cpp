@@ -105,6 +105,12 @@ XmlFacts check_xml(const XMLElement* robot, const std::string& where) {
     const std::string name = attribute(joint, "name", place);
     if (!facts.joint_lines.emplace(name, joint->GetLineNum()).second)
       refuse("there are two joints of this name", place, "rename one of them");
+    for (const char* once : {"origin", "axis", "limit", "mimic", "dynamics", "parent", "child"}) {
+      const XMLElement* first = joint->FirstChildElement(once);
+      if (first != nullptr && first->NextSiblingElement(once) != nullptr)
+        refuse(fmt::format("the joint has two <{}>", once),
+               at(where, first->NextSiblingElement(once)) + ", joint " + name, "remove one of the two");
+    }
     for (const char* side : {"parent", "child"}) {
       const std::string link = attribute(require_child(joint, side, place), "link", place);
       if (facts.link_lines.count(link) == 0)
@@ -256,8 +262,9 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
                          .X_PJ = X_BJ,
                          // A unit vector stays as written, to the last digit.
                          .axis = std::abs(axis.norm() - 1) < 1e-15 ? axis : Eigen::Vector3d(axis.normalized()),
-                         .mimic = joint->mimic != nullptr,
+                         .mimics = joint->mimic ? joint->mimic->joint_name : std::string(),
                          .mimic_gain = joint->mimic ? joint->mimic->multiplier : 0.0,
+                         .mimic_offset = joint->mimic ? joint->mimic->offset : 0.0,
                          .floating = joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR,
                          .limits = limits_of(*joint)};
       if (!(moving.floating && dialect == UrdfDialect::cad) && !moving.prismatic &&
@@ -275,7 +282,38 @@ void add_children(const urdf::Link& link, const XmlFacts& facts, UrdfDialect dia
   }
 }
 
+/// A word of ours that is misspelt or stands twice would be passed over, and what it says be lost.
+void check_extension(const XMLElement* robot, const std::string& where) {
+  const XMLElement* extension = nullptr;
+  for (auto* element = robot->FirstChildElement(); element != nullptr; element = element->NextSiblingElement()) {
+    const std::string name = element->Name();
+    if (name == "deltadyn") {
+      if (extension != nullptr)
+        refuse(fmt::format("<deltadyn> stands on line {} already", extension->GetLineNum()), at(where, element),
+               "remove one of the two");
+      extension = element;
+    } else if (name.starts_with("delta") || name.starts_with("Delta")) {
+      refuse(fmt::format("<{}> is not known", name), at(where, element), "write <deltadyn>");
+    }
+  }
+  if (extension == nullptr) return;
+  std::map<std::string, int> lines;
+  for (auto* element = extension->FirstChildElement(); element != nullptr; element = element->NextSiblingElement()) {
+    const std::string name = element->Name();
+    if (name != "gravity" && name != "plate" && name != "drive")
+      refuse(fmt::format("<{}> in <deltadyn> is not known", name), at(where, element),
+             "known are <gravity>, <plate> and <drive>");
+    const char* joint = element->Attribute("joint");
+    const std::string key = name == "drive" && joint != nullptr ? fmt::format("drive joint=\"{}\"", joint) : name;
+    const auto [first, is_new] = lines.emplace(key, element->GetLineNum());
+    if (!is_new)
+      refuse(fmt::format("<{}> stands on line {} already", key, first->second), at(where, element),
+             "remove one of the two");
+  }
+}
+
 void read_extension(const XMLElement* robot, UrdfTree& tree) {
+  check_extension(robot, tree.where);
   const XMLElement* extension = robot->FirstChildElement("deltadyn");
   if (extension == nullptr) return;
   tree.extension_line = extension->GetLineNum();
@@ -285,12 +323,13 @@ void read_extension(const XMLElement* robot, UrdfTree& tree) {
   if (const char* type = extension->Attribute("type")) tree.declared_type = type;
   if (const XMLElement* gravity = extension->FirstChildElement("gravity")) {
     const std::string there = at(tree.where, gravity);
+    for (auto* entry = gravity->FirstAttribute(); entry != nullptr; entry = entry->Next())
+      if (std::string_view(entry->Name()) != "xyz_m_s2")
+        refuse(fmt::format("attribute '{}' is not known", entry->Name()), there, "known is xyz_m_s2");
     tree.gravity = parse_vector(attribute(gravity, "xyz_m_s2", there), there, "xyz_m_s2");
   }
   if (const XMLElement* plate = extension->FirstChildElement("plate")) {
     tree.plate.line = plate->GetLineNum();
-    if (const XMLElement* second = plate->NextSiblingElement("plate"))
-      refuse("a robot has one plate, but this is the second <plate>", at(tree.where, second), "remove one of the two");
     for (auto* entry = plate->FirstAttribute(); entry != nullptr; entry = entry->Next())
       tree.plate.attributes[entry->Name()] = entry->Value();
   }
@@ -377,11 +416,13 @@ void require_metres(const UrdfTree& tree) {
     try {
       plausibility::require(plausibility::kOffset, origin.norm(), "its distance from the link's origin", place);
     } catch (const Error& e) {
+      const bool has_plate = tree.plate.line > 0;  // which delta-model adopt does not take
       refuse(
           e.problem(), place,
-          fmt::format(
-              "{}; a file in millimetres throughout is turned by delta-model adopt {} --length-unit mm -o robot.urdf",
-              e.mend(), tree.where));
+          e.mend() + (has_plate ? std::string("; a file in millimetres throughout is made anew by delta-model create")
+                                : fmt::format("; a file in millimetres throughout is turned by delta-model adopt {} "
+                                              "--length-unit mm -o robot.urdf",
+                                              tree.where)));
     }
   };
   for (const Joint& joint : tree.joints)

@@ -26,8 +26,8 @@ struct Joint {
   /// Joint frame in the parent body's frame, at joint position 0 also the child body's frame
   Pose X_PJ = Pose::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the joint frame
-  bool mimic = false;
-  double mimic_gain = 0;  ///< its multiplier
+  std::string mimics;                               ///< the joint of its <mimic>; empty: none
+  double mimic_gain = 0, mimic_offset = 0;
   bool floating = false;  ///< six (or, planar, three) degrees of freedom: holds nothing; CAD trees only
   DriveLimits limits;
 };

@@ -112,7 +112,7 @@ void validate_limbs(const RobotDescription& robot, const std::string& where) {
   }
 }
 
-/// The plate beside the struts that hold it, and each half on the side of its limbs.
+/// The plate beside the struts that hold it, and each half on the side of its limbs, with its attachments.
 void require_one_size(const RobotDescription& robot, const std::string& where) {
   const PlateShape& shape = *robot.plate;
   const double strut = std::ranges::max(robot.limbs, {}, &LimbGeometry<double>::strut).strut;
@@ -122,9 +122,18 @@ void require_one_size(const RobotDescription& robot, const std::string& where) {
            where,
            "give all lengths in metres; the halves of an i4 travel by the pinion's radius times the range of theta");
   for (const int half : {0, 1}) {
-    Vector3<double> side = Vector3<double>::Zero();
-    for (const auto& limb : robot.limbs)
-      if (limb.part == half) side += limb_frame(limb).col(0);
+    const Vector3<double> origin = part_pose(robot.parts[static_cast<std::size_t>(half)], 0.0, 1.0).p.value;
+    Vector3<double> side = Vector3<double>::Zero(), ends = side;
+    for (const auto& limb : robot.limbs) {
+      if (limb.part != half) continue;
+      side += limb_frame(limb).col(0);
+      ends += origin + limb.p_BA;
+    }
+    if (ends.dot(shape.outwards()) * (half == 0 ? 1 : -1) < -1e-9)
+      refuse(
+          fmt::format("the attachments on half plate {} lie on the side of the other half, so the halves would cross",
+                      half + 1),
+          where, "give the attachments in the order of the limbs: those of 1 and 2 on the side of half plate 1");
     if (side.dot(shape.outwards()) * (half == 0 ? 1 : -1) < 0)
       refuse(
           fmt::format("half plate {} lies on the other side of the plate than its limbs, so the halves would cross",

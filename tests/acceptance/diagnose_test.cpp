@@ -251,6 +251,11 @@ class DirtyLogs : public ::testing::Test {
                  logs + "/slow.csv", "--holdout", logs + "/holdout.csv", "--null-runs", kNullRuns, "-o", path("d.csv"),
                  "--effects-out", path("e.csv"), "--params-out", path("improved.csv"), "--summary", path("s.csv")});
     EXPECT_NE(told.out.find("friction of drive 2 builds up"), std::string::npos) << told.out;
+    // What made up for the dirt and the effect is no prior of the model that knows them.
+    const auto prior = [this](const std::string& file) {
+      return read_parameters(path(file)).find("upper_arm.m")->prior;
+    };
+    EXPECT_EQ(prior("improved.csv"), prior("p.csv"));
     succeed({"delta-validate", path("robot.urdf"), "--params", path("improved.csv"), "--effects", path("e.csv"),
              logs + "/holdout.csv", "--summary", path("v.csv")});
     return read_summary(path("s.csv"));

@@ -198,6 +198,25 @@ TEST(ConsistentFit, IsProvenWhereAForceLiftsMoreThanTheRobotWeighs) {
   }
 }
 
+TEST(ConsistentFit, IsProvenFromBodiesNextToTheBoundary) {
+  // What a fit without the force made of the bodies is the prior of the fit that knows it.
+  for (const double lift : {10.0, 50.0}) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+      const Eigen::Vector3d tilts(0.4, -0.3, 0.2);
+      ConsistentFitOptions options;
+      options.regularization = 1e-3;
+      ConsistentFitProblem problem = lifted_robot(seed, tilts, 0);
+      problem.prior = fit_consistent_parameters(lifted_robot(seed, tilts, lift), options).p;
+      options.regularization = 1e-6;
+      const ConsistentFitSummary summary = fit_consistent_parameters(problem, options);
+      EXPECT_TRUE(summary.converged && summary.certificate.passed) << "lift " << lift << " N, seed " << seed << "\n"
+                                                                   << summary.brief_report();
+      EXPECT_LT(summary.interior_point_iterations, 150) << "lift " << lift << " N, seed " << seed;
+      EXPECT_LT(summary.data_cost, 1e-3) << "the logs have no noise";
+    }
+  }
+}
+
 TEST(ConsistentFit, LeastSquaresIsTheFloorOfChiSquare) {
   const ConsistentFitProblem problem = random_problem(33, kRank, 1e3, 0.8, false);
   ConsistentFitOptions options = make_options(ParameterSet::full, FitMetric::relative);

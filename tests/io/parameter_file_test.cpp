@@ -107,6 +107,20 @@ TEST(ParameterFile, RefusesLimbValuesWhereTheSharedOneIsWanted) {
   EXPECT_THROW((void)values(table, {"platform.m"}), Error);
 }
 
+TEST(ParameterFile, RefusesAFileThatLacksABody) {
+  const TemporaryFolder folder;
+  const ParameterTable table =
+      read_parameters(folder.write("p.csv", "name,value,unit\nstrut.m,1,kg\nhalf_plate.m,0.7,kg\n"));
+  EXPECT_NO_THROW((void)values(table, {"strut.m", "strut.mcx", "half_plate.m"}));  // a moment that is not given is 0
+  try {
+    (void)values(table, {"strut.m", "crossbar.m", "crossbar.Izz", "half_plate.m"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.problem(), HasSubstr("no value of crossbar"));
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+  }
+}
+
 TEST(ParameterFile, RefusesTheUnitOfAnotherRobot) {
   const TemporaryFolder folder;
   const ParameterTable table = read_parameters(folder.write("p.csv", "name,value,unit\ndrive1.viscous,1,N*s/m\n"));

@@ -101,6 +101,48 @@ TEST(FourLimbFileFaults, EachIsNamed) {
   expect_plate_refused("tool=\"centre\"", "tool=\"left\"", "'left' is not known");
   expect_plate_refused("ratio=\"1\"", "ratio=\"0\"", "ratio of the tool's gear is 0");
   expect_plate_refused("name=\"half_plate2_swing\"", "name=\"swing\"", "half_plate2_swing");
+  expect_plate_refused("mimic joint=\"half_plate2_swing\"", "mimic joint=\"drive1\"", "must mimic half_plate2_swing");
+  expect_plate_refused("<gravity xyz", "<gravitiy xyz", "<gravitiy> in <deltadyn> is not known");
+  expect_plate_refused("<gravity xyz", "<gravity xyz_m_s2=\"0 0 9.81\"/><gravity xyz", "stands on line");
+  expect_plate_refused("<drive joint=\"drive2\"", "<drive joint=\"drive1\"", "stands on line");
+  expect_plate_refused("<deltadyn ", "<deltadyn/><deltadyn ", "stands on line");
+  expect_plate_refused("</deltadyn>", "</deltadyn><deltadny/>", "<deltadny> is not known");
+}
+
+/// One attribute of the joint that holds a link: the first of this name behind the joint's.
+std::string with_attribute(std::string text, const std::string& joint, const std::string& key,
+                           const std::string& value) {
+  const auto at = text.find(key + "=\"", text.find("\"" + joint + "\"")) + key.size() + 2;
+  return text.replace(at, text.find('"', at) - at, value);
+}
+
+TEST(FourLimbFileFaults, AFixedPartOfThePlateInAnotherPlace) {
+  const std::pair<const char*, const char*> parts[] = {
+      {"i4", "half_plate2_fixed"}, {"h4", "tool_fixed"}, {"par4", "crossbar1_fixed"}};
+  for (const auto& [type, joint] : parts) {
+    for (const DriveKind kind : {DriveKind::revolute, DriveKind::prismatic}) {
+      const std::string text = robot_to_urdf(four_limb_description(type, kind));
+      ASSERT_NE(text.find(joint), std::string::npos) << type;
+      EXPECT_NO_THROW((void)robot_from_urdf(text, "memory"));
+      for (const auto& [key, value] : {std::pair{"xyz", "0.05 0.02 0.1"}, std::pair{"rpy", "0 0 1"}})
+        EXPECT_THROW((void)robot_from_urdf(with_attribute(text, joint, key, value), "memory"), Error)
+            << type << " " << joint << " " << key;
+      EXPECT_THROW((void)robot_from_urdf(with_attribute(text, joint, "parent link", "base"), "memory"), Error)
+          << type << " " << joint << " on the base";
+    }
+  }
+}
+
+TEST(FourLimbFileFaults, ThreeLimbsOfAnH4) {
+  std::string text = robot_to_urdf(testing_support::delta_description("delta3"));
+  const std::string type = "type=\"delta3\"";
+  text.replace(text.find(type), type.size(), "type=\"h4\"");
+  try {
+    (void)robot_from_urdf(text, "h4.urdf");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.problem(), HasSubstr("an h4 has four limbs, but 3 found"));
+  }
 }
 
 TEST(FourLimbFileFaults, ALimbOnAPartThatTurns) {

@@ -69,6 +69,11 @@ const DescriptionFault kFaults[] = {
     {"Collides", "par4", [](auto& r) { r.plate->range = 1.6; }, "the parts of the plate collide"},
     {"NoRange", "i4", [](auto& r) { r.plate->range = 0; }, "range of theta"},
     {"LimbOnABar", "h4", [](auto& r) { r.limbs[1].part = 2; }, "limb 2 does not end on a half plate"},
+    {"CrossedEnds", "i4",
+     [](auto& r) {
+       for (auto& limb : r.limbs) limb.p_BA = -3 * limb.p_BA;
+     },
+     "attachments on half plate 1 lie on the side of the other half"},
     {"OneSide", "par4", [](auto& r) { r.limbs[2].part = 0; }, "3 limbs on half plate 1, but two limbs hold each half"},
     {"LooseHalf", "i4", [](auto& r) { r.limbs[1].azimuth = r.limbs[0].azimuth; }, "so the half could turn"},
     {"ThetaNotHeld", "h4",

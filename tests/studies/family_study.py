@@ -1,12 +1,13 @@
 """Every member of the family through the installed tools: planned, recorded, identified, diagnosed.
 
     family_study.py --tools DIR --robots ../../data/robots OUT.csv [--member NAME]... [--effect NAME]... [--folder DIR]
-                    [--jobs 2]
+                    [--jobs 2] [--seed 0]
 
 For each member (type and drive kind) a robot file, a prior, and a truth that differs from it; one excitation in two
 segments with a validation motion; and for each effect, and for none, three logs with noise, of which delta-identify
-reads two and delta-diagnose all. Each case is a line of OUT.csv; those that are there already are left out. The script
-runs the tools of DIR, and nothing else of the project.
+reads two and delta-diagnose all. Each case is a line of OUT.csv; those that are there already are left out. The seed
+draws the truth, the start of the search for the motion, and the noise; give each seed a file and a folder of its own.
+The script runs the tools of DIR, and nothing else of the project.
 """
 import argparse
 import csv
@@ -71,8 +72,8 @@ EFFECTS = {
 class Member:
     """A robot with its prior, its truth and its motions in a folder of its own."""
 
-    def __init__(self, name, tools, robots, folder):
-        self.name, self.tools, self.folder = name, tools, folder / name
+    def __init__(self, name, tools, robots, folder, seed):
+        self.name, self.tools, self.folder, self.seed = name, tools, folder / name, seed
         self.folder.mkdir(parents=True, exist_ok=True)
         self.robot, self.prior, self.truth = (self.folder / n for n in ("robot.urdf", "prior.csv", "truth.csv"))
         self.words = MEMBERS[name]
@@ -88,7 +89,7 @@ class Member:
         else:
             self.tools("delta-model", "create", *self.words, "-o", self.robot)
         self.tools("delta-model", "prior", self.robot, "-o", self.prior)
-        random, share = np.random.default_rng([sum(map(ord, self.name)), 16]), {}
+        random, share = np.random.default_rng([sum(map(ord, self.name)), 16 + self.seed]), {}
         with open(self.truth, "w", encoding="utf-8") as out:
             out.write("name,value,unit\n")
             for row in read_rows(self.prior):
@@ -102,17 +103,17 @@ class Member:
         limits += PLATE_LIMITS.get(self.name, [])
         self.tools("delta-excite", self.robot, "--params", self.prior, "--segments", "2", "--segment-speeds", "0.3,1",
                    "--segment-files", "--validation", self.folder / "val.csv", *limits, "-o", self.folder / "plan.csv",
-                   "--summary", self.folder / "plan_summary.csv", "--threads", "2")
+                   "--summary", self.folder / "plan_summary.csv", "--threads", "2", "--seed", str(self.seed + 1))
 
     def record(self, folder, effect):
         """Three logs; of a payload the fast one alone has it."""
         noise = ["--torque-noise-n-m", "0.15", "--encoder-step-m", "1e-7"] if self.rails else [
             "--torque-noise-n-m", "0.05", "--encoder-bits", "22"]
-        for seed, (motion, log) in enumerate((("plan_1", "slow"), ("plan_2", "fast"), ("val", "holdout"))):
+        for number, (motion, log) in enumerate((("plan_1", "slow"), ("plan_2", "fast"), ("val", "holdout"))):
             hidden = effect if effect and ("payload" not in effect[1] or log == "fast") else []
             self.tools("delta-simulate", self.robot, "--params", self.truth, "--trajectory",
-                       self.folder / f"{motion}.csv", "-o", folder / f"{log}.csv", "--seed", str(seed + 1), *noise,
-                       *hidden)
+                       self.folder / f"{motion}.csv", "-o", folder / f"{log}.csv", "--seed",
+                       str(1000 * self.seed + number + 1), *noise, *hidden)
 
     def effect(self, name):
         if name == "nothing":
@@ -151,6 +152,7 @@ def parse():
     words.add_argument("--effect", action="append", choices=["nothing", *EFFECTS])
     words.add_argument("--folder", default="family-study")
     words.add_argument("--jobs", type=int, default=2)
+    words.add_argument("--seed", type=int, default=0)
     return words.parse_args()
 
 
@@ -181,7 +183,7 @@ def main():
             cases = [e for e in told.effect or ["nothing", *EFFECTS] if (name, e) not in done]
             if not cases:
                 continue
-            member = Member(name, tools, told.robots, Path(told.folder))
+            member = Member(name, tools, told.robots, Path(told.folder), told.seed)
             list(pool.map(lambda effect, member=member: run(member, effect), cases))
 
 

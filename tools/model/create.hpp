@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -17,6 +18,7 @@
 #include "deltadyn/io/robot_file.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
+#include "deltadyn/runtime/reach.hpp"
 #include "deltadyn/runtime/robot.hpp"
 #include "deltadyn/runtime/workspace.hpp"
 
@@ -156,9 +158,9 @@ class Create {
     try {
       robot.validate("");
       const auto closes = make_robot(robot);
-      const WorkspaceSampler sampler(*closes);  // refuses lengths that do not close
+      require_poses(robot);
       (void)robot_from_urdf(robot_to_urdf(robot), "");
-      warn_of_tipping(*closes, sampler.ball().centre);
+      warn_of_tipping(*closes, WorkspaceSampler(*closes).ball().centre);
     } catch (const Error& e) {
       // They are the flags here, not a file's.
       refuse_usage(e.problem(), e.mend().empty() ? "check the lengths and limits given" : e.mend());
@@ -173,11 +175,45 @@ class Create {
     run.summary.add("drives", robot.drives());
   }
 
+  /// A robot that never stands inside its limits is of no use to the other tools: which flag is in the way?
+  void require_poses(RobotDescription robot) const {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    if (robot.parts.empty()) return;
+    const auto problem = [](const RobotDescription& one) -> std::optional<Error> {
+      try {
+        (void)find_reach(*make_robot(one));
+        return std::nullopt;
+      } catch (const Error& e) {
+        return e;
+      }
+    };
+    const std::optional<Error> told = problem(robot);
+    if (!told) return;
+    RobotDescription wide = robot;
+    for (DriveLimits& limit : wide.limits) std::tie(limit.lower, limit.upper) = std::pair(-kNoLimit, kNoLimit);
+    for (auto& limb : robot.limbs) limb.elbow = -limb.elbow;
+    std::string mend = told->mend();
+    if (!problem(robot)) {
+      mend = fmt::format("give --elbow {}, with which there are some", elbow_word(robot.limbs.front().elbow));
+    } else if (!problem(wide)) {
+      mend = fmt::format("widen {}, without which there are some", linear() ? "--drive-range-m" : "--drive-range-rad");
+    } else if (mend.find("robot file") != std::string::npos) {
+      mend = fmt::format("check the lengths, {}--limb-azimuth-rad{}", linear() ? "the direction of the rails, " : "",
+                         four_limbs() ? " and --plate-azimuth-rad" : "");
+    }
+    refuse_usage(told->problem(), mend);
+  }
+
+  [[nodiscard]] const char* elbow_word(double elbow) const {
+    return elbow > 0 ? (linear() ? "above" : "outwards") : (linear() ? "below" : "inwards");
+  }
+
   double elbow() const {
     const std::string word = elbow_.value_or("outwards");
     if (word == "outwards" || word == "above") return 1;
     if (word == "inwards" || word == "below") return -1;
-    refuse_usage(fmt::format("--elbow {} is not known", word), "use outwards or inwards");
+    refuse_usage(fmt::format("--elbow {} is not known", word),
+                 fmt::format("use {} or {}", elbow_word(1), elbow_word(-1)));
   }
 
   Eigen::Vector3d rail() const {

@@ -78,7 +78,10 @@ struct DiagnosisOptions {
   int null_runs = 200;
   std::uint64_t seed = 1;
   int threads = 0;
-  bool identify = true;                  ///< fit the consistent parameters of the model with the effects
+  bool identify = true;  ///< fit the consistent parameters of the model with the effects
+  /// What that fit keeps to where the logs do not decide, in the robot's layout; empty: the model's parameters. The
+  /// prior of the model is better than these: where forces were missing, masses had to make up for them.
+  Eigen::VectorXd prior;
   DiagnosisPolicy policy;                ///< thresholds; a study varies them, users leave them
   std::function<void(double)> progress;  ///< called with the share done; may be empty
 
@@ -237,7 +240,7 @@ struct Diagnosis {
 };
 
 /// \param p        parameters of the model, in the robot's layout
-/// \param p_std    their standard deviations or empty, for the re-identification
+/// \param p_std    standard deviations of what the re-identification keeps to, or empty
 /// \param known    effects that the model holds already
 /// \param holdout  a log that takes no part in the search; null: none
 /// Throws deltadyn::Error for logs that do not belong to the robot, a hold-out log that is a training log, and options

@@ -95,7 +95,13 @@ Trial try_set(const TrialInput& input, const NamedEffect& named) {
   for (std::size_t k = 0; k < named.confusable.size(); ++k) {
     const bool simpler = freedom(named.confusable[k].effect) < freedom(best.named.front().effect);
     if (alone && !simpler) continue;
-    Trial other = try_names(input, {swapped(named, k)});
+    Trial other;
+    try {
+      other = try_names(input, {swapped(named, k)});
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::no_convergence) throw;
+      continue;  // neither borne out nor refused: it stays in the set
+    }
     if (!other.proof.passed()) {
       refused.push_back(k);
     } else if (!best.proof.passed() ||
@@ -192,6 +198,7 @@ Identification identify_beside(const TrialInput& input, const std::vector<Log>& 
   identification.choose_cutoff = false;
   identification.threads = input.options.threads;
   const double motion_hz = identification.processing.motion_over_pass * input.cutoff_hz;
+  const VectorXd& prior = input.options.prior.size() > 0 ? input.options.prior : input.p;
   const std::vector<Log> rest = without_effects(input.robot, logs, input.p_fit, effects, motion_hz);
   if (keep_extras) {
     take_extras(input.extras, identification.processing);
@@ -199,14 +206,14 @@ Identification identify_beside(const TrialInput& input, const std::vector<Log>& 
   } else {
     take_extras({}, identification.processing);
   }
-  Identification out = identify(input.robot, rest, input.p, input.p_std, identification);
+  Identification out = identify(input.robot, rest, prior, input.p_std, identification);
   // Beside other structure a ripple is not claimed anew: known ones stay, their torque taken off before the fit.
   const std::vector<Ripple> lost =
       keep_extras ? std::vector<Ripple>() : lost_ripples(out.processing.ripples, input.extras.ripples, effects);
   if (!lost.empty()) {
     std::vector<Effect> waves;
     for (const Ripple& ripple : lost) waves.push_back(effect_of(ripple));
-    out = identify(input.robot, without_effects(input.robot, rest, input.p_fit, waves, motion_hz), input.p, input.p_std,
+    out = identify(input.robot, without_effects(input.robot, rest, input.p_fit, waves, motion_hz), prior, input.p_std,
                    identification);
     out.processing.ripples.insert(out.processing.ripples.end(), lost.begin(), lost.end());
   }

@@ -18,7 +18,8 @@ struct DiagnosisInput {
   const Robot& robot;
   const std::vector<Log>& logs;
   const Log* holdout;
-  const VectorXd &p, &p_std;         ///< of the model as given
+  const VectorXd& p;                 ///< of the model as given
+  const VectorXd& p_std;             ///< of what the improved model's fit keeps to
   const std::vector<Effect>& known;  ///< effects of the model as given
   const DiagnosisOptions& options;
   const ValidatedLogs& training;
