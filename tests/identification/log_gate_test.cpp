@@ -131,6 +131,31 @@ TEST_P(LogGate, LeavesSpringsToTheDiagnosis) {
   }
 }
 
+// A rotor that only one drive has is of the machine, too.
+TEST_P(LogGate, LeavesARotorToTheDiagnosis) {
+  const auto robot = make_robot(delta_description(GetParam()));
+  Recording how;
+  how.encoder_bits = 24;
+  const std::vector<Log> sound = recordings_of(*robot, how);
+  const auto acceleration = [](const Log& log, Eigen::Index k, Eigen::Index j) {
+    constexpr Eigen::Index kStep = 5;
+    if (k < kStep || k + kStep >= log.q.rows()) return 0.0;
+    const double h = log.t_s(k) - log.t_s(k - kStep);
+    return (log.q(k + kStep, j) - 2 * log.q(k, j) + log.q(k - kStep, j)) / (h * h);
+  };
+  double largest = 0;
+  for (Eigen::Index k = 0; k < sound[0].q.rows(); ++k)
+    largest = std::max(largest, std::abs(acceleration(sound[0], k, 2)));
+  for (const double share : {0.1, 0.3}) {  // of the drive's largest torque
+    std::vector<Log> logs = sound;
+    const double inertia = share * sound[0].tau.col(2).cwiseAbs().maxCoeff() / largest;
+    for (std::size_t l = 0; l < logs.size(); ++l)
+      for (Eigen::Index k = 0; k < logs[l].q.rows(); ++k) logs[l].tau(k, 2) += inertia * acceleration(sound[l], k, 2);
+    const GateResult result = examine(*robot, logs);
+    for (const LogFinding& f : result.findings) EXPECT_NE(f.level, FindingLevel::fault) << share << ": " << f.text;
+  }
+}
+
 // A counterweight that carries the arms, a little more or a little less, turns no base upside down.
 TEST_P(LogGate, LeavesACounterweightToTheDiagnosis) {
   const auto robot = make_robot(delta_description(GetParam()));

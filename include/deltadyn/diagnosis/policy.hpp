@@ -61,7 +61,8 @@ struct DiagnosisPolicy {
   // --- the proof on the hold-out log, through the path of delta-validate ---
   double clearly_better = 0.98;  ///< rms as written over as given, at most
   double worse = 1.05;           ///< from which a named drive is worse; also the least gap that counts as one
-  double worse_elsewhere = 1.2;  ///< of any other drive, whose parameters are fitted along
+  double worse_elsewhere = 1.2;  ///< of any other drive, whose parameters are fitted along, if it loses ...
+  double loss_elsewhere = 0.01;  ///< ... this share of what the named drives gain in mean square: a tenth in rms
 };
 
 }  // namespace deltadyn

@@ -45,6 +45,10 @@ std::vector<Eigen::Array2d> blocks_of(const Prediction& before, const Prediction
   return blocks;
 }
 
+double square(double x) {
+  return x * x;
+}
+
 double chance_of_no_gain(const std::vector<Eigen::Array2d>& blocks, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const UniformIndex pick(blocks.size());
@@ -65,16 +69,25 @@ WrittenProof compare(const Validation& before, const Validation& after, const st
                      const DiagnosisOptions& options) {
   const DiagnosisPolicy& policy = options.policy;
   WrittenProof out;
+  double gain = 0;  // of the named drives, in mean square
+  for (const int j : touched) {
+    const auto drive = static_cast<std::size_t>(j);
+    gain += square(before.drives[drive].rms_residual) - square(after.drives[drive].rms_residual);
+  }
   for (std::size_t j = 0; j < before.drives.size(); ++j) {
     const ValidatedDrive &b = before.drives[j], &a = after.drives[j];
     out.drives.push_back({b.rms_residual, a.rms_residual, b.rows, a.rows});
     if (std::min(b.rows, a.rows) < kFewestDriveRows) continue;
-    const double worse = std::ranges::count(touched, static_cast<int>(j)) > 0 ? policy.worse : policy.worse_elsewhere;
+    const bool named = std::ranges::count(touched, static_cast<int>(j)) > 0;
+    const double worse = named ? policy.worse : policy.worse_elsewhere;
     // Rows near reversals count where the given model answers for them.
     const bool near = b.reversal_rows < a.reversal_rows || b.rms_with_reversals < policy.worse * b.rms_residual;
-    const bool is_worse = a.rms_residual > worse * b.rms_residual ||
-                          (near && a.rms_with_reversals > worse * std::max(b.rms_with_reversals, b.rms_residual));
-    if (is_worse && out.worse_drive < 0) out.worse_drive = static_cast<int>(j);
+    const auto is_worse = [&](double rms, double given) {
+      return rms > worse * given && (named || square(rms) - square(given) > policy.loss_elsewhere * gain);
+    };
+    const bool loses = is_worse(a.rms_residual, b.rms_residual) ||
+                       (near && is_worse(a.rms_with_reversals, std::max(b.rms_with_reversals, b.rms_residual)));
+    if (loses && out.worse_drive < 0) out.worse_drive = static_cast<int>(j);
     if (b.rms_residual > 0) out.largest_loss = std::max(out.largest_loss, a.rms_residual / b.rms_residual);
   }
   const std::vector<Eigen::Array2d> blocks =

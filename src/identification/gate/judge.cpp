@@ -26,8 +26,8 @@ constexpr double kBreaks = 1.1, kHeals = 1.1;  // that ratio, as given and for t
 constexpr double kSoundWinner = 0.15;          // ... down to that of a fit that may have other, smaller faults
 constexpr double kSoundOdd = 0.035;            // a zero or factor of any size fits another robot's log to some per cent
 constexpr double kAlike = 1.1;                 // residuals within this ratio do not tell explanations apart
-// Of an explanation's residual: springs on the drives explain the log better
-constexpr double kSprings = 0.9;
+// Of an explanation's residual: springs or rotors on the drives explain the log better
+constexpr double kOwnTorque = 0.9;
 constexpr double kOutOfReach = 0.01;    // share of poses that a recording of this robot cannot have
 constexpr Index kCoarsePoints = 120;    // for searches over a factor or a zero
 constexpr int kBestStarts = 2;          // of a search, refined
@@ -94,8 +94,12 @@ class Judge {
     out.residual = relative_residual(residual_form(blocks, out.assignment, out.factor), out.factor);
     out.unreachable = rows.unreachable;
     alone_ = root_mean_square(own_residuals(blocks));
-    with_springs_ = relative_residual(
-        residual_form(fold_torques(with_springs(rows), points_.tau), out.assignment, out.factor), out.factor);
+    const auto residual_beside = [&](const Eigen::MatrixXd& own) {
+      const Rows more = with_own_columns(rows, own);
+      return relative_residual(residual_form(fold_torques(more, points_.tau), out.assignment, out.factor), out.factor);
+    };
+    with_springs_ = residual_beside(points_.q);
+    with_rotors_ = residual_beside(points_.qdd);
     return out;
   }
 
@@ -107,16 +111,16 @@ class Judge {
     return Eigen::VectorXd::NullaryExpr(robot_.drives(), [set](Index j) { return (set >> j & 1) != 0 ? -1.0 : 1.0; });
   }
 
-  /// The rows with a torque in proportion to the own position beside the model, one a drive: a spring, which no fault
-  /// of a record is.
-  [[nodiscard]] Rows with_springs(Rows rows) const {
+  /// The rows with a torque beside the model that follows each drive's own position or acceleration: a spring or a
+  /// rotor, which no fault of a record is.
+  [[nodiscard]] Rows with_own_columns(Rows rows, const Eigen::MatrixXd& own) const {
     const auto n = static_cast<Index>(rows.drives.size());
     for (Index j = 0; j < n; ++j) {
       DriveRows& drive = rows.drives[static_cast<std::size_t>(j)];
       const Index before = drive.Y.cols();
       drive.Y.conservativeResize(Eigen::NoChange, before + n);
       drive.Y.rightCols(n).setZero();
-      drive.Y.col(before + j) = drive.of_points(points_.q.col(j));
+      drive.Y.col(before + j) = drive.of_points(own.col(j));
     }
     return rows;
   }
@@ -348,8 +352,8 @@ class Judge {
     std::vector<Explanation> out;
     if (least > kSoundWinner) return out;
     for (const Explanation& e : all_) {
-      // A factor or a zero of any size follows a spring's torque to some extent, too.
-      if (is_search(e.key) && with_springs_ < kSprings * e.residual) continue;
+      // A factor or a zero of any size follows the torque of a spring or rotor to some extent, too.
+      if (is_search(e.key) && std::min(with_springs_, with_rotors_) < kOwnTorque * e.residual) continue;
       if (e.residual < kAlike * least + 0.0005 && (e.residual < kWins * as_given || heals(e, as_given)) &&
           (!e.odd || e.residual < kSoundOdd))
         out.push_back(e);
@@ -383,7 +387,7 @@ class Judge {
   const BaseParameters& base_;
   const Points& points_;
   double unreachable_ = 0, alone_ = 0;
-  double with_springs_ = 1;  ///< residual of the log as given with a spring on every drive
+  double with_springs_ = 1, with_rotors_ = 1;  ///< residual of the log as given with one on every drive
   std::vector<Explanation> all_;
 };
 
