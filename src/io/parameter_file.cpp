@@ -210,17 +210,23 @@ void write_parameters(const std::string& path, const ParameterTable& table) {
 
 namespace {
 
-/// A body of which nothing is known would be counted as none at all.
-void require_every_body(const ParameterTable& table, const std::vector<std::string>& names,
-                        const std::vector<std::string>& missing) {
+/// Of another robot's file a body would be counted as none at all: one is missing, and one is nobody's. Base parameters
+/// may leave out a body that others carry along.
+void require_own_bodies(const ParameterTable& table, const std::vector<std::string>& names,
+                        const std::vector<std::string>& missing, const std::vector<const ParameterEntry*>& foreign) {
+  const auto is_mass = [](const ParameterEntry* entry) { return entry->name.ends_with(".m"); };
+  const auto stranger = std::ranges::find_if(foreign, is_mass);
+  if (stranger == foreign.end()) return;
   for (const std::string& name : missing) {
     if (!name.ends_with(".m")) continue;
     const std::string body = name.substr(0, name.size() - 1);
     const auto of_body = [&body](const std::string& other) { return other.starts_with(body); };
     if (std::ranges::count_if(missing, of_body) < std::ranges::count_if(names, of_body)) continue;
-    throw Error(fmt::format("the file has no value of {}, a body of this robot", name.substr(0, name.size() - 2)),
-                table.file,
-                "check that this is the parameter file of this robot; delta-model prior writes one with all names");
+    throw Error(
+        fmt::format("the file has no value of {}, a body of this robot, but {}, which is none of its parameters",
+                    name.substr(0, name.size() - 2), (*stranger)->name),
+        place(table.file, (*stranger)->line),
+        "check that this is the parameter file of this robot; delta-model prior writes one with all names");
   }
 }
 
@@ -258,8 +264,10 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()),
                 table.file, "check that this is the parameter file of this robot");
   }
+  std::vector<const ParameterEntry*> foreign;
   for (const ParameterEntry& entry : table.entries) {
     if (used.count(&entry) != 0 || is_extra(entry.name)) continue;
+    foreign.push_back(&entry);
     // Taking zero here, because the limbs' values have other names, would be a silent and gross error.
     if (const std::string shared = shared_name(entry.name);
         std::ranges::find(match.missing, shared) != match.missing.end()) {
@@ -270,7 +278,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     match.warnings.push_back(fmt::format("{}: {} is not a parameter of this robot and is not used",
                                          place(table.file, entry.line), entry.name));
   }
-  require_every_body(table, names, match.missing);
+  require_own_bodies(table, names, match.missing, foreign);
   if (!match.missing.empty())
     match.warnings.push_back(fmt::format("{}: not in the file and counted as 0 ({}): {}", table.file,
                                          match.missing.size(), fmt::join(match.missing, " ")));

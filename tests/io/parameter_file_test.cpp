@@ -107,16 +107,20 @@ TEST(ParameterFile, RefusesLimbValuesWhereTheSharedOneIsWanted) {
   EXPECT_THROW((void)values(table, {"platform.m"}), Error);
 }
 
-TEST(ParameterFile, RefusesAFileThatLacksABody) {
+TEST(ParameterFile, RefusesTheFileOfAnotherRobot) {
   const TemporaryFolder folder;
-  const ParameterTable table =
-      read_parameters(folder.write("p.csv", "name,value,unit\nstrut.m,1,kg\nhalf_plate.m,0.7,kg\n"));
-  EXPECT_NO_THROW((void)values(table, {"strut.m", "strut.mcx", "half_plate.m"}));  // a moment that is not given is 0
+  const std::vector<std::string> names = {"strut.m", "crossbar.m", "crossbar.Izz"};
+  const auto table = [&](const std::string& rows) {
+    return read_parameters(folder.write("p.csv", "name,value,unit\nstrut.m,1,kg\n" + rows));
+  };
+  EXPECT_NO_THROW((void)values(table("crossbar.m,0.7,kg\nplatform.m,1,kg\n"), names));  // the moment is 0
+  EXPECT_NO_THROW((void)values(table(""), names));  // base parameters may leave out a body
   try {
-    (void)values(table, {"strut.m", "crossbar.m", "crossbar.Izz", "half_plate.m"});
+    (void)values(table("platform.m,1,kg\n"), names);
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.problem(), HasSubstr("no value of crossbar"));
+    EXPECT_THAT(error.where(), HasSubstr("line 3"));
     EXPECT_EQ(error.code(), ExitCode::bad_input);
   }
 }

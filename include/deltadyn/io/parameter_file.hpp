@@ -66,8 +66,8 @@ struct ParameterMatch {
 /// Finds each name. A name of one limb ("upper_arm2.m", "strut3.Ixx") falls back on the shared name ("upper_arm.m").
 /// \param units  unit of each name, e.g. of Robot::parameter_units(); if empty, only plausibility was checked on
 ///               reading
-/// Throws Error(bad_input) if a unit differs, if no name at all or none of a body is found, or if the table holds only
-/// the limbs' own values where the shared one is wanted.
+/// Throws Error(bad_input) if a unit differs, no name at all is found, a whole body is missing and one is of another
+/// robot, or the table holds only the limbs' own values where the shared one is wanted.
 [[nodiscard]] ParameterMatch match_parameters(const ParameterTable& table, const std::vector<std::string>& names,
                                               const std::vector<std::string>& units = {});
 
