@@ -125,7 +125,7 @@ class Diagnose {
     options_.choose_cutoff = processing_.automatic_cutoff();
     options_.seed = run.seed;
     options_.identify = !params_out_.empty();
-    options_.prior = prior_of(table, *robot, match);
+    options_.prior = match.prior;
     tools::ProgressBar bar("diagnosing");
     options_.progress = [&bar](double share) { bar.update(share); };
     const Diagnosis result = diagnose(*robot, logs, holdout ? &*holdout : nullptr, match.value,
@@ -144,16 +144,6 @@ class Diagnose {
   GateResult check(const Robot& robot, const std::vector<std::string>& files, ToolRun& run) const {
     return gate_.run(robot, processing_.read_logs(files, robot.description()), {}, {}, false,
                      !processing_.options().filter, run.summary);
-  }
-
-  /// What delta-identify kept to, as its file says; of a file without priors the values.
-  static Eigen::VectorXd prior_of(const ParameterTable& table, const Robot& robot, const ParameterMatch& match) {
-    Eigen::VectorXd prior = match.value;
-    for (Eigen::Index k = 0; k < prior.size(); ++k) {
-      const ParameterEntry* entry = table.find(robot.parameter_names()[static_cast<std::size_t>(k)]);
-      if (entry != nullptr && std::isfinite(entry->prior)) prior(k) = entry->prior;
-    }
-    return prior;
   }
 
   /// Trust in it, as delta-identify has it.
@@ -304,6 +294,7 @@ class Diagnose {
     out.add("fact_holdout_gap", facts.holdout_gap);
     out.add("fact_holdout_left", facts.holdout_left);
     out.add("fact_gap_closed", facts.gap_closed);
+    out.add("fact_gap_closed_at_most", facts.gap_closed_at_most);
     out.add("fact_overt", facts.overt ? 1 : 0);
     out.add("fact_slow_drive", facts.slow_drive + 1);
     out.add("fact_missed_drive", facts.missed_drive + 1);
@@ -317,13 +308,7 @@ class Diagnose {
     const RobotDescription& description = robot.description();
     tell_known(description, options_.processing);
     tell_proof(description, result, run.summary);
-    if (std::isfinite(result.gap_shrink)) {
-      fmt::print(
-          "  On the hold-out log {:.1f} % of the gap between model and noise floor is closed (95 % interval {:.1f} to "
-          "{:.1f} "
-          "%).\n",
-          100 * result.gap_shrink, 100 * result.gap_low, 100 * result.gap_high);
-    }
+    if (const std::string gap = gap_text(result); !gap.empty()) fmt::print("  {}\n", gap);
     for (const std::string& line : text.next) fmt::print("next: {}\n", line);
     for (const std::string& note : text.notes) fmt::print("note: {}\n", note);
     if (!params_out_.empty() && !result.improved)

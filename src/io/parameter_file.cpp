@@ -239,7 +239,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
   }
   const auto count = static_cast<Eigen::Index>(names.size());
   ParameterMatch match;
-  match.value = Eigen::VectorXd::Zero(count);
+  match.value = match.prior = Eigen::VectorXd::Zero(count);
   match.std = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
   std::unordered_set<const ParameterEntry*> used;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -259,6 +259,7 @@ ParameterMatch match_parameters(const ParameterTable& table, const std::vector<s
     used.insert(&entry);
     match.value(i) = entry.value;
     match.std(i) = entry.std;
+    match.prior(i) = std::isfinite(entry.prior) ? entry.prior : entry.value;
   }
   if (used.empty() && !names.empty()) {
     throw Error(fmt::format("none of the robot's parameters is in the file (for example {})", names.front()),

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "deltadyn/io/robot_file.hpp"
+#include "deltadyn/runtime/articulated_plate.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
@@ -108,6 +109,15 @@ class Reader {
   }
 
   // --- drives -----------------------------------------------------------------------------------
+  /// The first of the drives' names that no moving joint on the base has.
+  [[nodiscard]] std::string missing_drive(const robot_file::Body& base) const {
+    std::size_t k = 0;
+    while (std::ranges::any_of(base.joints,
+                               [&](int index) { return tree_.joint(index).name == robot_file::drive_name(k); }))
+      ++k;
+    return robot_file::drive_name(k);
+  }
+
   void sort_drives() {
     const robot_file::Body& base = tree_.body(0);
     drives_.assign(base.joints.size(), nullptr);
@@ -119,9 +129,12 @@ class Reader {
       std::size_t k = 0;
       while (k < drives_.size() && j.name != robot_file::drive_name(k)) ++k;
       if (k == drives_.size())
-        refuse(fmt::format("a joint on the base is a drive, and the {} drives here are called drive1 to drive{}",
-                           drives_.size(), drives_.size()),
-               tree_.at(j), "rename the joint, or take the file of a CAD program by delta-model adopt");
+        refuse(fmt::format("a joint on the base is a drive, and the {0} drives here are called drive1 to drive{0}; "
+                           "{1} is none of those that move on the base",
+                           drives_.size(), missing_drive(base)),
+               tree_.at(j),
+               "rename the joint, mend that drive if its type is fixed or it hangs on another link, or take the file "
+               "of a CAD program by delta-model adopt");
       drives_[k] = &j;
       if (!j.mimics.empty()) refuse("a drive cannot mimic another joint", tree_.at(j), "remove the <mimic> element");
     }
@@ -173,10 +186,11 @@ class Reader {
              "call the limbs' drives drive1 to drive3");
     const bool telescope = limbs < drives_.size();
     if (declares_turning_plate() && limbs != 4)
-      refuse(fmt::format("an {} has four limbs, but {} found{}", tree_.declared_type, limbs,
+      refuse(fmt::format("the type {} has four limbs, but {} found{}", tree_.declared_type, limbs,
                          telescope ? " and a telescope bar" : ""),
              tree_.where,
-             "hang the missing limb on the base (a drive with two struts), or mend the type of <deltadyn>");
+             fmt::format("{} (a limb is a drive on the base with two struts), or mend the type of <deltadyn>",
+                         limbs < 4 ? "hang the missing limb on the base" : "take away what is too much on the base"));
     if (limbs != 3 && !(limbs == 4 && !telescope))
       refuse(fmt::format("three limbs expected, or four with an articulated plate, but {} found{}", limbs,
                          telescope ? " and a telescope bar" : ""),
@@ -198,6 +212,7 @@ class Reader {
              "use revolute drives (delta4)");
     if (limbs == 4) {
       robot_.set_plate(plate_shape());
+      articulated_plate::validate_shape(robot_, plate_element());
     } else {
       robot_.parts.emplace_back();
     }
@@ -223,16 +238,24 @@ class Reader {
   /// What joins the parts of the plate is not told by the limbs.
   [[nodiscard]] std::string type_of_four_limbs() const {
     if (!declares_turning_plate())
-      refuse("a robot with four limbs, but no word on how its plate is made", tree_.where,
+      refuse(tree_.declared_type.empty()
+                 ? std::string("a robot with four limbs, but no word on how its plate is made")
+                 : fmt::format("a robot with four limbs, but its type {} says nothing on how its plate is made",
+                               tree_.declared_type),
+             tree_.where,
              fmt::format("write its type (one of {}) into <deltadyn type=\"...\"> with a <plate> as delta-model create "
                          "does",
                          articulated_type_names()));
     return tree_.declared_type;
   }
 
+  [[nodiscard]] std::string plate_element() const {
+    return fmt::format("{}, line {}, <plate> of <deltadyn>", tree_.where,
+                       std::max(tree_.plate.line, tree_.extension_line));
+  }
+
   [[nodiscard]] PlateShape plate_shape() const {
-    const std::string where = fmt::format("{}, line {}, <plate> of <deltadyn>", tree_.where,
-                                          std::max(tree_.plate.line, tree_.extension_line));
+    const std::string where = plate_element();
     if (tree_.plate.line == 0)
       refuse("the lengths of the plate are missing", where, "write <plate> as delta-model create does");
     PlateShape shape;

@@ -82,6 +82,33 @@ void require_finite(const TrajectorySamples& samples, const Log& log, const Robo
   }
 }
 
+/// Where a file gives poses and drives, they must tell the same motion: a unit or an order that is wrong in one of them
+/// would else decide which motion is meant. Lengths of another robot file, some per cent off, pass.
+void require_one_motion(const Robot& robot, const CsvTable& table, const TrajectorySamples& samples) {
+  constexpr double kAngle = 0.1, kShareOfStrut = 0.05;  // [rad] and of a carriage, that the two may differ
+  const RobotDescription& description = robot.description();
+  if (samples.q.rows() != samples.z.rows()) return;
+  Eigen::VectorXd q(robot.drives());
+  for (Eigen::Index row = 0; row < samples.z.rows(); ++row) {
+    const std::size_t line = table.line(static_cast<std::size_t>(row));
+    const char* mend =
+        "mend the units, the zero or the order of the columns, or leave out those of the pose or of the "
+        "drives";
+    if (const Status status = robot.inverse_kinematics(samples.z.row(row).transpose(), q); status != Status::ok)
+      throw Error(
+          fmt::format("the drives' columns hold a pose, but that of the pose's columns is none: {}", message(status)),
+          place(samples.file, line, task_columns(description).front().z), mend);
+    for (int drive = 0; drive < robot.drives(); ++drive) {
+      const bool turns = description.kind_of_drive(drive) == DriveKind::revolute;
+      const double given = samples.q(row, drive), off = std::abs(given - q(drive));
+      if (off <= (turns ? kAngle : kShareOfStrut * description.limbs.front().strut)) continue;
+      const std::string column = drive_columns(description, drive).q;
+      throw Error(fmt::format("{} is {:.4g}, but the pose of the same row needs {:.4g}", column, given, q(drive)),
+                  place(samples.file, line, column), mend);
+    }
+  }
+}
+
 }  // namespace
 
 TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
@@ -118,6 +145,7 @@ TrajectorySamples read_trajectory(const std::string& path, const Robot& robot) {
     require_finite(samples, log, description);
     fill_derivatives(path, samples.t_s, samples.q, samples.qd, samples.qdd);
   }
+  if (has_drives && has_task) require_one_motion(robot, table, samples);
   if (!has_drives) complete_drives(robot, samples);
   if (!has_task) complete_task(robot, samples);
   return samples;

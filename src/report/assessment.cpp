@@ -270,8 +270,9 @@ Check check_reversals(const std::vector<DriveFigures>& drives) {
   if (!worse.empty()) {
     check.figure = larger(worse);
     check.meaning =
-        "Near standstill friction does not follow Coulomb's law: these rows are left out of all other figures, and in "
-        "the first instants after a reversal the model's torque is off by that much more.";
+        "Friction near standstill that does not follow Coulomb's law, or what is missing in another drive and shows in "
+        "these rows only. They are left out of all other figures; in the first instants after a reversal the model's "
+        "torque is off by that much more.";
   } else if (!used.empty()) {
     check.figure = larger(used);
     check.meaning =

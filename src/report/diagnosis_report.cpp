@@ -28,7 +28,7 @@ std::string p_text(double p) {
 }
 
 Verdict verdict_of(const Diagnosis& d) {
-  const bool proven = d.verdict == DiagnosisVerdict::named && !(d.gap_shrink <= 0.5);
+  const bool proven = d.verdict == DiagnosisVerdict::named && !(shows_gap(d) && d.gap_shrink <= 0.5);
   return d.verdict == DiagnosisVerdict::nothing_missing || proven ? Verdict::good : Verdict::caution;
 }
 
@@ -251,9 +251,7 @@ void step_5(HtmlReport& report, const Diagnosis& d, const Robot& robot) {
                  format_number(one.rms_floor, unit, 3)});
     }
     report.table(table, "Root mean square residual of the drives that the effect reaches, on " + held->file + ".");
-    report.paragraph(
-        fmt::format("Of the gap between model and floor, {:.1f} % is closed (95 % interval {:.1f} to {:.1f} %).",
-                    100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high));
+    report.paragraph(gap_text(d));
   } else {
     Table table({text_column("drive"), "residual", "floor"});
     for (std::size_t j = 0; j < d.drives.size(); ++j) {
@@ -304,7 +302,7 @@ std::string diagnosis_report(const Robot& robot, const Diagnosis& d, const Repor
   if (!d.named.empty()) {
     figures.push_back({"effect", d.named.front().name, "at " + d.named.front().joint});
     figures.push_back({"chance of so strong a sign on clean logs", p_text(d.named.front().p_value)});
-    if (std::isfinite(d.gap_shrink)) {
+    if (shows_gap(d)) {
       figures.push_back({"gap closed on the hold-out log", fmt::format("{:.1f} %", 100 * d.gap_shrink),
                          fmt::format("{:.1f} to {:.1f} %", 100 * d.gap_low, 100 * d.gap_high)});
     }

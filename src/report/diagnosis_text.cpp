@@ -230,6 +230,21 @@ void say_names(const Robot& robot, const Diagnosis& d, DiagnosisText& out) {
 
 }  // namespace
 
+bool shows_gap(const Diagnosis& d) {
+  return std::isfinite(d.gap_shrink) && d.gap_high - d.gap_low < 1;
+}
+
+std::string gap_text(const Diagnosis& d) {
+  if (!std::isfinite(d.gap_shrink)) return "";
+  if (!shows_gap(d))
+    return "In the rows of the hold-out log that the search uses the gap between the fitted model and the noise floor "
+           "is too small to say how much of it is closed.";
+  return fmt::format(
+      "On the hold-out log, in the rows that the search uses, {:.1f} % of the gap between the fitted "
+      "model and the noise floor is closed (95 % interval {:.1f} to {:.1f} %).",
+      100 * d.gap_shrink, 100 * d.gap_low, 100 * d.gap_high);
+}
+
 std::string region_text(const Robot& robot, const NamedEffect& one) {
   if (one.drives.empty()) return "";
   std::string names;

@@ -50,6 +50,9 @@ Check check_efficiency(const ExcitationReportInput& input) {
   if (efficiency < kGoodEfficiency)
     check.verdict = efficiency < kFairEfficiency && blind ? Verdict::bad : Verdict::caution;
   check.meaning = "That share of the information which any states inside these limits could give.";
+  if (check.verdict == Verdict::bad)
+    check.meaning += fmt::format(" Of {} base parameters {} will not be known to half of their size.",
+                                 input.base.count(), count_of(input, hardly));
   if (check.verdict != Verdict::good)
     check.meaning += " More time (--time-limit-s), a larger workspace or a wider --base-frequency-hz may give more.";
   const bool plate_is_free = std::ranges::any_of(input.excitation.segments, [](const Excitation::Segment& segment) {

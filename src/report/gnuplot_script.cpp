@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <span>
 
 #include "deltadyn/report/thinning.hpp"
 #include "deltadyn/runtime/error.hpp"
@@ -119,20 +120,37 @@ class Extent {
   double high_ = -std::numeric_limits<double>::infinity();
 };
 
-PlotRange common_x_range(const std::vector<PlotSpec>& panels) {
+/// Panels one below the other share the x axis as long as they call it the same.
+bool shares_axis_with_next(std::span<const PlotSpec> panels, std::size_t k) {
+  return k + 1 < panels.size() && panels[k].x_label == panels[k + 1].x_label;
+}
+
+/// Those that share the axis of panel k.
+std::span<const PlotSpec> sharing_axis(std::span<const PlotSpec> panels, std::size_t k) {
+  std::size_t first = k, last = k;
+  while (first > 0 && shares_axis_with_next(panels, first - 1)) --first;
+  while (shares_axis_with_next(panels, last)) ++last;
+  return panels.subspan(first, last - first + 1);
+}
+
+PlotRange common_x_range(std::span<const PlotSpec> panels) {
+  constexpr double kRoomForPoints = 0.02;
   const PlotSpec& last = panels.back();
   Extent extent(last.log_x);
+  double margin = 0;
   for (const PlotSpec& spec : panels) {
     if (spec.x_range) {
       extent.add(spec.x_range->low);
       extent.add(spec.x_range->high);
       continue;
     }
-    for (const Series& series : spec.series)
+    for (const Series& series : spec.series) {
       for (const double x : series.x) extent.add(x);
+      if (series.style == SeriesStyle::points) margin = kRoomForPoints;
+    }
     for (const PlotMarker& marker : spec.vertical_markers) extent.add(marker.at);
   }
-  if (last.x_tick_labels.empty()) return extent.range(0.0);
+  if (last.x_tick_labels.empty()) return extent.range(margin);
   extent.add(0.0);
   extent.add(static_cast<double>(last.x_tick_labels.size() - 1));
   const PlotRange range = extent.range(0.0);
@@ -233,15 +251,14 @@ class ScriptWriter {
   ScriptWriter(const std::vector<PlotSpec>& panels, GnuplotScript& script) : panels_(panels), script_(script) {}
 
   void write() {
-    x_range_ = common_x_range(panels_);
     const int area_width = panels_.back().width - kLeft - kRight;
     std::vector<Head> heads;
     script_.width = panels_.back().width;
     foot_ = foot_of(panels_.back(), area_width);
-    for (const PlotSpec& spec : panels_) {
-      const bool first = &spec == &panels_.front();
-      heads.push_back(head_of(spec, area_width, first || !same_legend(panels_.front(), spec)));
-      script_.height += spec.height - (&spec == &panels_.back() ? 0 : foot_.height - kBetweenPanels);
+    for (std::size_t k = 0; k < panels_.size(); ++k) {
+      const PlotSpec& spec = panels_[k];
+      heads.push_back(head_of(spec, area_width, k == 0 || !same_legend(panels_.front(), spec)));
+      script_.height += spec.height - (shares_axis_with_next(panels_, k) ? foot_.height - kBetweenPanels : 0);
       if (area_width < kMinArea || spec.height - heads.back().height() - foot_.height < kMinArea) {
         throw Error(fmt::format("{} x {} pixels leave no room for the axes", panels_.back().width, spec.height),
                     where(spec), "make the plot larger", ExitCode::usage);
@@ -257,11 +274,12 @@ class ScriptWriter {
     line("set pointintervalbox 0.01");  // no white ring around the point in a bar; 0 would mean the standard ring
     int top = 0;
     for (std::size_t k = 0; k < panels_.size(); ++k) {
-      const bool last = k + 1 == panels_.size();
+      const bool last = !shares_axis_with_next(panels_, k);
       const int area_top = top + heads[k].height();
       const int area_bottom = top + panels_[k].height - foot_.height;
+      x_range_ = common_x_range(sharing_axis(panels_, k));
       panel(panels_[k], k, heads[k], top, area_top, area_bottom, last);
-      top = area_bottom + kBetweenPanels;
+      top = area_bottom + (last ? foot_.height : kBetweenPanels);
     }
     line("unset multiplot");
   }
@@ -274,6 +292,7 @@ class ScriptWriter {
   [[nodiscard]] double screen_y(double pixel_from_top) const { return 1.0 - pixel_from_top / script_.height; }
   [[nodiscard]] double screen_x(double pixel) const { return pixel / script_.width; }
 
+  /// \param last  of those that share its x axis
   void panel(const PlotSpec& spec, std::size_t number, const Head& head, int top, int area_top, int area_bottom,
              bool last) {
     const int right = script_.width - kRight;
@@ -286,7 +305,7 @@ class ScriptWriter {
     if (spec.log_y) line("set logscale y");
     line(fmt::format("set xrange [{:.12g}:{:.12g}] noextend\nset yrange [{:.12g}:{:.12g}] noextend", x_range_.low,
                      x_range_.high, y.low, y.high));
-    x_tics(spec, last);
+    x_tics(spec, sharing_axis(panels_, number).back().x_tick_labels, last);
     line(fmt::format("set format y '{}'", number_format(y, spec.log_y)));
     line("set ylabel " + quote(spec.y_label) + " noenhanced textcolor rgb '#222222'");
     if (head.title) {
@@ -307,9 +326,8 @@ class ScriptWriter {
     curves(spec, number, PlotFrame{x_range_, y, spec.log_x, spec.log_y, right - kLeft, area_bottom - area_top});
   }
 
-  void x_tics(const PlotSpec& spec, bool last) {
+  void x_tics(const PlotSpec& spec, const std::vector<std::string>& texts, bool last) {
     line("set xlabel " + quote(last ? spec.x_label : "") + " noenhanced textcolor rgb '#222222'");
-    const std::vector<std::string>& texts = panels_.back().x_tick_labels;
     if (texts.empty()) {
       line(fmt::format("set format x '{}'", last ? number_format(x_range_, spec.log_x) : ""));
       return;

@@ -1,4 +1,4 @@
-#include "articulated_plate.hpp"
+#include "deltadyn/runtime/articulated_plate.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -52,8 +52,8 @@ void require_length(double length, const char* what, const std::string& where) {
 /// \param usual  of its type: which lengths it needs
 /// \param geared     the tool may have a gear
 /// \param on_a_half  its axis may stand on a half
-void validate_shape(const PlateShape& shape, const PlateShape& usual, bool geared, bool on_a_half,
-                    const std::string& where) {
+void require_shape(const PlateShape& shape, const PlateShape& usual, bool geared, bool on_a_half,
+                   const std::string& where) {
   if (!std::isfinite(shape.azimuth)) refuse("plate: the azimuth is not finite", where, "give an angle in radians");
   plausibility::require(plausibility::kAzimuth, shape.azimuth, "plate: the azimuth", where);
   const auto need = [&](double PlateShape::*length, const char* what) {
@@ -167,11 +167,15 @@ void require_theta_held(const RobotDescription& robot, const std::string& where)
 
 }  // namespace
 
-void validate(const RobotDescription& robot, const std::string& where) {
+void validate_shape(const RobotDescription& robot, const std::string& where) {
   with_robot_type(robot, [&](auto type) {
     using R = decltype(type);
-    if constexpr (R::kPlateTurns) validate_shape(*robot.plate, R::usual(), R::kGeared, R::kToolOnAHalf, where);
+    if constexpr (R::kPlateTurns) require_shape(*robot.plate, R::usual(), R::kGeared, R::kToolOnAHalf, where);
   });
+}
+
+void validate(const RobotDescription& robot, const std::string& where) {
+  validate_shape(robot, where);
   validate_limbs(robot, where);
   require_one_size(robot, where);
   require_theta_held(robot, where);

@@ -54,9 +54,11 @@ constexpr double kLever = 10;
 
 [[noreturn]] void refuse(const Rule& rule, double value, const std::string& what, const std::string& why,
                          const std::string& where, ExitCode code) {
+  constexpr double kFar = 1.2;  // over the limit; what is nearer is in no other unit
   std::string other, mend = fmt::format("give it in {}", rule.unit);
   const double meant = value * rule.other.si;
-  if (rule.other.name != nullptr && meant >= rule.lowest && meant <= rule.highest) {
+  const bool far = value > 0 ? value > kFar * rule.highest || kFar * value < rule.lowest : value < kFar * rule.lowest;
+  if (rule.other.name != nullptr && far && meant >= rule.lowest && meant <= rule.highest) {
     other = fmt::format("; it looks like {}", rule.other.name);
     mend += fmt::format(": {:.6g} {} are {:.4g} {}", value, rule.other.name, meant, rule.unit);
   }
@@ -182,7 +184,7 @@ const Rule kYawAcceleration{0, 3000, "rad/s^2", kDegrees, "no Delta turns its to
 const Rule kTilt{-kPi, kPi, "rad", kDegrees, "a tilt is half a turn at most"};
 const Rule kAzimuth{-2 * kPi, 2 * kPi, "rad", kDegrees, "an azimuth is once round at most"};
 const Rule kLimbTilt{-1.55, 1.55, "rad", kDegrees, "a drive's axis tilts by less than 90 deg"};
-const Rule kPlateTurn{1e-3, 2 * kPi, "rad", kDegrees, "no plate turns further than once round"};
+const Rule kPlateTurn{1e-3, 2 * kPi, "rad", kDegrees, "a plate turns by a milliradian at least and once round at most"};
 const Rule kGearRatio{0.05, 100, "turns a turn", kNone, "no gear or belt of a plate does that"};
 const Rule kShare{1e-6, 10, "times the value", {"per cent", 0.01}, "that says nothing about the value"};
 const Rule kYaw{-100, 100, "rad", kDegrees,

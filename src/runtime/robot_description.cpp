@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "deltadyn/runtime/articulated_plate.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/geometry_of.hpp"
 #include "deltadyn/runtime/plausibility.hpp"
-
-#include "articulated_plate.hpp"
 
 namespace deltadyn {
 namespace {

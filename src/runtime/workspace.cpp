@@ -5,11 +5,11 @@
 #include <limits>
 #include <numbers>
 
+#include "deltadyn/runtime/articulated_plate.hpp"
 #include "deltadyn/runtime/dense.hpp"
 #include "deltadyn/runtime/error.hpp"
 #include "deltadyn/runtime/random.hpp"
 
-#include "articulated_plate.hpp"
 #include "pose_check.hpp"
 
 namespace deltadyn {

@@ -65,7 +65,9 @@ Controller::Controller(const Robot& robot, const Eigen::VectorXd& p, const Contr
   Eigen::VectorXd inertia = Eigen::VectorXd::Ones(n);
   if (options.law != ControlLaw::computed_torque) {
     Eigen::MatrixXd M(n, n);
-    if (robot.mass_matrix(home, p, M) != Status::ok) throw Error("the motion starts out of reach", "controller", "");
+    if (robot.mass_matrix(home, p, M) != Status::ok)
+      throw Error("the motion starts out of reach or in a singular pose", "trajectory",
+                  "check the units of the trajectory, and that it was planned for this robot file");
     const bool by_default = options.kp.empty() || options.kd.empty();
     const double share = by_default ? least_inertia_share(robot, p) : kLeastShare;
     inertia = M.diagonal() * std::min(1.0, share / kLeastShare);

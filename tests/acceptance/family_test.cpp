@@ -190,6 +190,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"AllLimbsOneWay", kH4 + Words{"0.12", "--limb-azimuth-rad", "1,1,2,4"}, "could turn"},
         Wrong{"LimbsOnOneSide", kPar4 + Words{"0.06", "--limb-azimuth-rad", "0.2,0.6,1,1.4"},
               "all limbs stand on one side"},
+        Wrong{"OneAzimuth", kH4 + Words{"0.12", "--limb-azimuth-rad", "0.7"}, "give 4, one a limb"},
+        Wrong{"RangeOfNothing", kH4 + Words{"0.12", "--plate-range-rad", "1e-9"}, "by a milliradian at least"},
         Wrong{"FiveLimbs", kH4 + Words{"0.12", "--limb-azimuth-rad", "0,1,2,3,4"}, "--limb-azimuth-rad has 5"},
         Wrong{"ToolOnTheLeft", kPar4 + Words{"0.06", "--tool-on", "left"}, "--tool-on left is not known"},
         Wrong{"AttachmentsOfTheOtherHalf",

@@ -184,6 +184,15 @@ TEST(Info, DrawsTheWorkspace) {
   EXPECT_EQ(folder.files(), 1);
 }
 
+TEST(Info, RefusesPicturesThatAreNotPng) {
+  const testing_support::TemporaryFolder folder;
+  const ToolResult refused =
+      run({"delta-model", "info", installed("robots/delta3.urdf"), "--plot", folder.path("x.jpg")});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("end in .png"), std::string::npos) << refused.err;
+  EXPECT_EQ(folder.files(), 0);
+}
+
 TEST(Info, DoesNotDependOnThreads) {
   const Words words = {"delta-model", "info", installed("robots/delta3.urdf")};
   const std::string one = succeed(words + Words{"--threads", "1"}).out;

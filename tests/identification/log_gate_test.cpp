@@ -86,6 +86,18 @@ TEST_P(LogGate, CallsEveryFaultByItsName) {
   }
 }
 
+// A thousand is farther off than any gear: it must not be told as two gears one behind the other.
+TEST(LogGateUnits, PositionsOfCarriagesInMillimetresAreOneFault) {
+  const auto robot = make_robot(delta_description("linear-delta3"));
+  std::vector<Log> logs = recordings_of(*robot);
+  for (Log& log : logs) log.q *= 1000;
+  const GateResult result = examine(*robot, logs);
+  const LogFinding* finding = find(result, {"position_scale"}, FindingLevel::fault);
+  ASSERT_NE(finding, nullptr) << told(result);
+  EXPECT_NE(finding->text.find("all drives looks like millimetres"), std::string::npos) << finding->text;
+  EXPECT_EQ(finding->text.find("gear"), std::string::npos) << finding->text;
+}
+
 TEST_P(LogGate, LeavesSoundLogsAlone) {
   const auto robot = make_robot(delta_description(GetParam()));
   std::uint64_t seed = 3;

@@ -93,6 +93,14 @@ TEST(ParameterFile, MatchesSharedNamesAndTellsTheRest) {
   EXPECT_EQ(values(table, {"strut.Ixx"})(0), 0.1);
 }
 
+TEST(ParameterFile, ThePriorOfEachValueIsThatOfTheFile) {
+  const TemporaryFolder folder;
+  const ParameterTable table = read_parameters(
+      folder.write("p.csv", "name,value,unit,prior\nupper_arm.m,1.5,kg,1.2\nstrut.m,0.1,kg,\ntool.m,0.4,kg,0.3\n"));
+  EXPECT_EQ(match_parameters(table, {"upper_arm.m", "strut.m"}).prior, Eigen::Vector2d(1.2, 0.1));
+  EXPECT_EQ(match_parameters(table, {"upper_arm1.m", "tool.m"}).prior, Eigen::Vector2d(1.2, 0.3)) << "shared name";
+}
+
 TEST(ParameterFile, RefusesLimbValuesWhereTheSharedOneIsWanted) {
   const TemporaryFolder folder;
   const ParameterTable table =

@@ -1,5 +1,7 @@
 #include "../../src/io/plate_tree.hpp"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -77,9 +79,8 @@ TEST(TiltedDelta, TheFileHoldsTheTilt) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.limbs[i].tilt, robot.limbs[i].tilt, 1e-12);
 }
 
-/// The file of an H4 with one text in the place of another, and what is said of it.
-void expect_plate_refused(const std::string& from, const std::string& to, const std::string& words) {
-  std::string text = robot_to_urdf(four_limb_description("h4"));
+/// A file of a robot with one text in the place of another, and what is said of it.
+void expect_refused(std::string text, const std::string& from, const std::string& to, const std::string& words) {
   const auto at = text.find(from);
   ASSERT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
@@ -93,8 +94,12 @@ void expect_plate_refused(const std::string& from, const std::string& to, const 
   }
 }
 
+void expect_plate_refused(const std::string& from, const std::string& to, const std::string& words) {
+  expect_refused(robot_to_urdf(four_limb_description("h4")), from, to, words);
+}
+
 TEST(FourLimbFileFaults, EachIsNamed) {
-  expect_plate_refused("type=\"h4\"", "type=\"delta3\"", "how its plate is made");
+  expect_plate_refused("type=\"h4\"", "type=\"delta3\"", "its type delta3 says nothing on how its plate is made");
   expect_plate_refused("spacing_m=\"0.12\"", "spacing_m=\"0.2\"", "but the lengths in <plate> put it at");
   expect_plate_refused("spacing_m=\"0.12\"", "spacing_m=\"x\"", "which is not a finite number");
   expect_plate_refused("spacing_m=\"0.12\"", "width_m=\"0.12\"", "'width_m'");
@@ -109,10 +114,10 @@ TEST(FourLimbFileFaults, EachIsNamed) {
   expect_plate_refused("</deltadyn>", "</deltadyn><deltadny/>", "<deltadny> is not known");
 }
 
-/// One attribute of the joint that holds a link: the first of this name behind the joint's.
-std::string with_attribute(std::string text, const std::string& joint, const std::string& key,
+/// The first attribute of this name behind a text.
+std::string with_attribute(std::string text, const std::string& element, const std::string& key,
                            const std::string& value) {
-  const auto at = text.find(key + "=\"", text.find("\"" + joint + "\"")) + key.size() + 2;
+  const auto at = text.find(key + "=\"", text.find(element)) + key.size() + 2;
   return text.replace(at, text.find('"', at) - at, value);
 }
 
@@ -122,27 +127,42 @@ TEST(FourLimbFileFaults, AFixedPartOfThePlateInAnotherPlace) {
   for (const auto& [type, joint] : parts) {
     for (const DriveKind kind : {DriveKind::revolute, DriveKind::prismatic}) {
       const std::string text = robot_to_urdf(four_limb_description(type, kind));
-      ASSERT_NE(text.find(joint), std::string::npos) << type;
+      const std::string quoted = fmt::format("\"{}\"", joint);
+      ASSERT_NE(text.find(quoted), std::string::npos) << type;
       EXPECT_NO_THROW((void)robot_from_urdf(text, "memory"));
       for (const auto& [key, value] : {std::pair{"xyz", "0.05 0.02 0.1"}, std::pair{"rpy", "0 0 1"}})
-        EXPECT_THROW((void)robot_from_urdf(with_attribute(text, joint, key, value), "memory"), Error)
+        EXPECT_THROW((void)robot_from_urdf(with_attribute(text, quoted, key, value), "memory"), Error)
             << type << " " << joint << " " << key;
-      EXPECT_THROW((void)robot_from_urdf(with_attribute(text, joint, "parent link", "base"), "memory"), Error)
+      EXPECT_THROW((void)robot_from_urdf(with_attribute(text, quoted, "parent link", "base"), "memory"), Error)
           << type << " " << joint << " on the base";
     }
   }
 }
 
 TEST(FourLimbFileFaults, ThreeLimbsOfAnH4) {
-  std::string text = robot_to_urdf(testing_support::delta_description("delta3"));
-  const std::string type = "type=\"delta3\"";
-  text.replace(text.find(type), type.size(), "type=\"h4\"");
-  try {
-    (void)robot_from_urdf(text, "h4.urdf");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.problem(), HasSubstr("an h4 has four limbs, but 3 found"));
+  expect_refused(robot_to_urdf(testing_support::delta_description("delta3")), "type=\"delta3\"", "type=\"h4\"",
+                 "the type h4 has four limbs, but 3 found");
+}
+
+TEST(FourLimbFileFaults, LengthsOfThePlateAreToldWithTheirLine) {
+  const std::string text = robot_to_urdf(four_limb_description("h4"));
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("<plate ")), '\n');
+  for (const char* range : {"-2", "1e-9", "51", "1.5"}) {
+    try {
+      (void)robot_from_urdf(with_attribute(text, "<plate ", "range_rad", range), "h4.urdf");
+      FAIL() << "accepted: " << range;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where(), fmt::format("h4.urdf, line {}, <plate> of <deltadyn>", line)) << range;
+    }
   }
+}
+
+TEST(FourLimbFileFaults, ADriveThatDoesNotMove) {
+  const std::string text = robot_to_urdf(four_limb_description("h4"));
+  const std::string drive = "name=\"drive2\" type=\"";
+  const auto at = text.find(drive) + drive.size();
+  expect_refused(text, drive + text.substr(at, text.find('"', at) - at), drive + "fixed", "drive2 is none of those");
 }
 
 TEST(FourLimbFileFaults, ALimbOnAPartThatTurns) {

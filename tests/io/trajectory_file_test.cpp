@@ -105,6 +105,33 @@ TEST(TrajectoryFile, AnAxisAndLinearDrivesHaveTheirOwnColumns) {
   EXPECT_THAT(read_trajectory(folder.path("a.csv"), *axis).zdd, IsNear(written.zdd, 0.0));
 }
 
+TEST(TrajectoryFile, PoseAndDrivesMustTellOneMotion) {
+  const TemporaryFolder folder;
+  const auto robot = make_robot(delta_description("delta4"));
+  const TrajectorySamples good = motion(*robot);
+  const auto refusal = [&](const TrajectorySamples& samples) {
+    write_trajectory(folder.path("t.csv"), samples, robot->description());
+    try {
+      (void)read_trajectory(folder.path("t.csv"), *robot);
+      return std::string("accepted");
+    } catch (const Error& error) {
+      return error.where() + ": " + error.problem();
+    }
+  };
+  EXPECT_EQ(refusal(good), "accepted");
+  TrajectorySamples bad = good;
+  bad.q(5, 1) += 0.05;  // of a robot file whose lengths are a little off
+  EXPECT_EQ(refusal(bad), "accepted");
+  bad.q(5, 1) += 0.1;
+  EXPECT_THAT(refusal(bad), ::testing::AllOf(HasSubstr("line 7, column q2_rad"), HasSubstr("needs")));
+  bad = good;
+  bad.q.col(3) *= 57.3;  // degrees under the name of radians
+  EXPECT_THAT(refusal(bad), HasSubstr("q4_rad"));
+  bad = good;
+  bad.z.leftCols(3) *= 1000;
+  EXPECT_THAT(refusal(bad), HasSubstr("x_m"));
+}
+
 TEST(TrajectoryFile, RefusesWithFileLineAndColumn) {
   const TemporaryFolder folder;
   const auto robot = make_robot(delta_description("delta3"));

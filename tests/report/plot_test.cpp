@@ -229,6 +229,17 @@ TEST(RenderSvg, PanelsShareTheTimeAxisAndOneLegend) {
   EXPECT_THAT(texts(render_svg({upper, lower}), "text"), Contains("model"));
 }
 
+TEST(RenderSvg, PanelsWithAnotherAxisHaveTheirOwn) {
+  PlotSpec upper = simple(), lower = simple();
+  lower.x_label = "angle [rad]";
+  for (Series& series : lower.series) series.x = 1e3 * series.x;
+  const auto found = texts(render_svg({upper, lower}), "text");
+  EXPECT_EQ(std::ranges::count(found, "time [s]"), 1);
+  EXPECT_EQ(std::ranges::count(found, "angle [rad]"), 1);
+  const auto alone = texts(render_svg({upper}), "text");
+  for (const std::string& text : alone) EXPECT_THAT(found, Contains(text)) << "numbers of its axis";
+}
+
 TEST(RenderSvg, ContradictionsAreRefused) {
   const auto refused = [](const PlotSpec& spec) {
     try {

@@ -155,6 +155,17 @@ TEST(Plausibility, TheUnitThatWouldFitIsNamed) {
 }
 
 /// Every mass in grams is seen, for robots of every size; the same masses in kilograms pass.
+TEST(Plausibility, WhatIsHardlyTooLargeIsInNoOtherUnit) {
+  for (const auto& [tilt, words] : {std::pair(1.57, false), std::pair(-1.57, false), std::pair(30.0, true)}) {
+    try {
+      plausibility::require(plausibility::kLimbTilt, tilt, "the tilt", "a.urdf");
+      ADD_FAILURE() << tilt;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().find("looks like degrees") != std::string::npos, words) << error.problem();
+    }
+  }
+}
+
 TEST(Plausibility, GramsAreSeenAtEverySize) {
   for (const char* type : {"delta3", "linear-delta3", "delta4"})
     for (const double arm : {0.1, 0.3, 0.525, 1.0}) {

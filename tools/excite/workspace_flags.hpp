@@ -50,10 +50,43 @@ class WorkspaceFlags {
     region.height = height_.value_or(0);
     if (!size_.empty()) region.size = spread_vector(size_, 3, "--workspace-size-m");
     region.validate();
+    tell_of_reach(robot, region);
     return region;
   }
 
  private:
+  /// The search keeps to what the robot reaches; who asked for more should know.
+  static void tell_of_reach(const Robot& robot, const Region& region) {
+    constexpr int kGrid = 15;
+    constexpr double kWorthAWord = 0.02;
+    const RobotDescription& description = robot.description();
+    const auto reached = [&](const Eigen::VectorXd& z) {
+      Eigen::VectorXd q(robot.drives());
+      if (robot.inverse_kinematics(z, q) != Status::ok) return false;
+      for (std::size_t i = 0; i < description.limbs.size(); ++i) {
+        const auto drive = static_cast<Eigen::Index>(i);
+        if (q(drive) < description.limits[i].lower || q(drive) > description.limits[i].upper) return false;
+      }
+      return true;
+    };
+    int inside = 0, beyond = 0;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives());
+    for (int k = 0; k < kGrid * kGrid * kGrid; ++k) {
+      const Eigen::Array3d share =
+          Eigen::Array3d(k % kGrid + 0.5, k / kGrid % kGrid + 0.5, k / kGrid / kGrid + 0.5) / kGrid;
+      z.head<3>() = region.lower().array() + share * (region.upper() - region.lower()).array();
+      if (!region.contains(z.head<3>())) continue;
+      ++inside;
+      if (!reached(z)) ++beyond;
+    }
+    const double share = inside > 0 ? static_cast<double>(beyond) / inside : 0;
+    if (share > kWorthAWord)
+      fmt::print(stderr,
+                 "warning: {:.0f} % of the workspace ({}) are out of reach or beyond the drives' ranges; the motion "
+                 "stays in the rest\n",
+                 100 * share, region.text());
+  }
+
   [[nodiscard]] Region usual(const WorkspaceBall& ball) const {
     const bool other = radius_ || top_radius_ || height_ || !size_.empty() || !centre_.empty();
     if (other)

@@ -240,7 +240,10 @@ class Create {
     for (std::size_t i = 0; i < limbs; ++i)
       all.push_back(2 * std::numbers::pi / static_cast<double>(limbs) * static_cast<double>(i) +
                     (limbs == 4 ? std::numbers::pi / 4 : 0));
-    return azimuths_.empty() ? all : spread(azimuths_, limbs, "--limb-azimuth-rad");
+    if (azimuths_.empty()) return all;
+    if (azimuths_.size() == limbs) return azimuths_;
+    refuse_usage(fmt::format("--limb-azimuth-rad has {} values, but the robot has {} limbs", azimuths_.size(), limbs),
+                 fmt::format("give {}, one a limb", limbs));
   }
 
   /// Points x,y,z;x,y,z;... of each limb.

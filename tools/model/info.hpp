@@ -38,6 +38,9 @@ class Info {
 
  private:
   void execute(ToolRun& run) {
+    if (!plot_.empty() && !plot_.ends_with(".png"))
+      throw Error(fmt::format("--plot {}: pictures are written as PNG", plot_), "", "let the name end in .png",
+                  ExitCode::usage);
     run.check_files({plot_}, {robot_file_});
     const RobotDescription description = read_robot_file(robot_file_);
     const auto robot = make_robot(description, layout_.options(description));
@@ -48,19 +51,24 @@ class Info {
     parameters(*robot, run);
   }
 
+  /// To six digits; what rounding has left of a zero is written as one.
+  static std::string words(const Eigen::Vector3d& v) {
+    const auto number = [](double x) { return std::abs(x) < 1e-9 ? 0.0 : x; };
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", number(v.x()), number(v.y()), number(v.z()));
+  }
+
   static void geometry(const RobotDescription& robot, Summary& summary) {
     fmt::print("\ngeometry\n");
     for (std::size_t i = 0; i < robot.limbs.size(); ++i) {
       const auto& limb = robot.limbs[i];
       const auto name = [&](const char* key) { return fmt::format("limb{}_{}", i + 1, key); };
-      fmt::print("  limb {}: azimuth {:.6g} deg,{} drive at ({:.6g}, {:.6g}, {:.6g}) m", i + 1,
-                 limb.azimuth * 180 / std::numbers::pi,
+      fmt::print("  limb {}: azimuth {:.6g} deg,{} drive at {} m", i + 1, limb.azimuth * 180 / std::numbers::pi,
                  limb.tilt != 0 ? fmt::format(" tilt {:.6g} deg,", limb.tilt * 180 / std::numbers::pi) : "",
-                 limb.p_WD.x(), limb.p_WD.y(), limb.p_WD.z());
+                 words(limb.p_WD));
       summary.add(name("azimuth"), limb.azimuth, "rad");
       summary.add(name("base_radius"), limb.p_WD.head<2>().norm(), "m");
       if (robot.drive_kind == DriveKind::prismatic) {
-        fmt::print(", rail along ({:.6g}, {:.6g}, {:.6g})", limb.axis_L.x(), limb.axis_L.y(), limb.axis_L.z());
+        fmt::print(", rail along {}", words(limb.axis_L));
       } else {
         fmt::print(", upper arm {:.6g} m", limb.p_DE_0.norm());
         summary.add(name("upper_arm"), limb.p_DE_0.norm(), "m");
@@ -68,8 +76,7 @@ class Info {
       if (!robot.parts.empty()) {
         fmt::print(", struts {:.6g} m, {:.6g} m apart, ", limb.strut, limb.strut_spacing);
         if (robot.plate) {
-          fmt::print("on half plate {}, ({:.6g}, {:.6g}, {:.6g}) m from its origin", limb.part + 1, limb.p_BA.x(),
-                     limb.p_BA.y(), limb.p_BA.z());
+          fmt::print("on half plate {}, {} m from its origin", limb.part + 1, words(limb.p_BA));
           summary.add(name("half_plate"), limb.part + 1);
         } else {
           fmt::print("plate radius {:.6g} m", limb.p_BA.head<2>().norm());
@@ -90,13 +97,10 @@ class Info {
                  plate.azimuth * 180 / std::numbers::pi, plate.range * 180 / std::numbers::pi, plate.ratio);
     }
     if (robot.telescope) {
-      const auto& u = robot.telescope->p_WU;
-      const auto& v = robot.telescope->p_BV;
-      fmt::print(
-          "  telescope: from ({:.6g}, {:.6g}, {:.6g}) m on the base to ({:.6g}, {:.6g}, {:.6g}) m on the plate\n",
-          u.x(), u.y(), u.z(), v.x(), v.y(), v.z());
+      fmt::print("  telescope: from {} m on the base to {} m on the plate\n", words(robot.telescope->p_WU),
+                 words(robot.telescope->p_BV));
     }
-    fmt::print("  gravity ({:.6g}, {:.6g}, {:.6g}) m/s^2\n", robot.gravity.x(), robot.gravity.y(), robot.gravity.z());
+    fmt::print("  gravity {} m/s^2\n", words(robot.gravity));
     summary.add("gravity", robot.gravity.norm(), "m/s^2");
   }
 
@@ -126,17 +130,15 @@ class Info {
         "\nworkspace (poses of the plate's centre that are in reach, inside the drives' ranges, not singular; to "
         "{:.2g} m)\n",
         reach.cell);
-    fmt::print(
-        "  radius {:.3f} m, height {:.3f} to {:.3f} m, volume {:.3f} m^3, home pose ({:.3f}, {:.3f}, {:.3f}) m\n",
-        reach.radius, reach.lower.z(), reach.upper.z(), reach.volume, reach.home.x(), reach.home.y(), reach.home.z());
+    fmt::print("  radius {:.3f} m, height {:.3f} to {:.3f} m, volume {:.3f} m^3, home pose {} m\n", reach.radius,
+               reach.lower.z(), reach.upper.z(), reach.volume, words((1e3 * reach.home).array().round() / 1e3));
     fmt::print(
         "  condition number of the Jacobian: best {:.2f}, half of the workspace below {:.2f}, 95 % below {:.2f}\n",
         reach.condition_best, reach.condition_median, reach.condition_worst_of_95);
     if (const double range = robot.description().plate_yaw_range(); range > 0) {
       fmt::print(
           "  the plate turns the tool by {:.4g} deg to either side; with it turned that far {:.0f} % of this volume "
-          "are "
-          "left\n",
+          "are left\n",
           range * 180 / std::numbers::pi, 100 * reach.share_at_full_turn);
       Eigen::VectorXd z = Eigen::VectorXd::Zero(robot.drives()), q(robot.drives());
       z.head<3>() = reach.home;
@@ -215,8 +217,8 @@ class Info {
         const char* label;
         PlotColor color;
       } bands[] = {{0, 3, "condition below 3", PlotColor::green},
-                   {3, 8, "3 to 8", PlotColor::sky},
-                   {8, 1e9, "above 8", PlotColor::orange}};
+                   {3, 8, "condition 3 to 8", PlotColor::sky},
+                   {8, 1e9, "condition above 8", PlotColor::orange}};
       for (const auto& band : bands) {
         std::vector<double> x, y;
         for (Eigen::Index k = 0; k < reach.points.rows(); ++k) {

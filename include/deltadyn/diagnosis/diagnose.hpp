@@ -62,6 +62,7 @@ struct VerdictFacts {
   double holdout_gap = 1;         ///< rms over floor on the hold-out log, of the worst drive that the names reach
   double holdout_left = 1;        ///< rms with the names over what training makes one expect, of the worst of these
   double gap_closed = 1;          ///< share of that gap that the names close; 1 without names or hold-out log
+  double gap_closed_at_most = 1;  ///< upper end of its 95 % interval
   bool overt = false;             ///< without the names a drive stands plainly above its floor
   int slow_drive = -1;            ///< that bears a slow torque which nothing explains; -1: none
   int missed_drive = -1;          ///< whose hold-out log is missed where training shows nothing; -1: none

@@ -46,7 +46,7 @@ struct DiagnosisPolicy {
   double hardly_explained = 0.4;     ///< less says that a name is wrong even where the hold-out log does not show it
   double explained_by_many = 0.985;  ///< the same of several names, which together follow much that is none of them
   double closed = 0.5;               ///< of the gap on the hold-out log, that names must close
-  double closed_of_little = 0.25;    ///< the same where the gap is hardly larger than the floor
+  double closed_of_little = 0.25;    ///< the same of a gap hardly above the floor, or whose interval reaches `closed`
   double holdout_gap = 1.4;          ///< rms over floor from which a hold-out log contradicts a model without a name
   double overt_floor = 1.1;          ///< rms over floor of a drive, from which something is plainly missing
   double slow_torque = 175;          ///< residual over record noise, times residual over torque against other drives

@@ -59,6 +59,7 @@ void write_parameters(const std::string& path, const ParameterTable& table);
 /// The wanted parameters in order, with what is worth telling.
 struct ParameterMatch {
   Eigen::VectorXd value, std;         ///< std: NaN where not known
+  Eigen::VectorXd prior;              ///< what the identification kept to; the value where the file has no prior
   std::vector<std::string> missing;   ///< wanted names that the table lacks; their value is 0
   std::vector<std::string> warnings;  ///< rows of the table that nobody wanted, with their line
 };

@@ -26,6 +26,10 @@ struct DiagnosisText {
 [[nodiscard]] std::string ruling_text(const ConsideredEffect& one);
 /// Why one of a set is (not) told apart from the named effect.
 [[nodiscard]] std::string set_text(const NamedEffect& named, const EffectCandidate& other);
+/// Does the hold-out log show how much of its gap the names close? An interval wider than the gap itself says nothing.
+[[nodiscard]] bool shows_gap(const Diagnosis& diagnosis);
+/// How much of it they close; empty without names or hold-out log.
+[[nodiscard]] std::string gap_text(const Diagnosis& diagnosis);
 /// What speaks against adding an effect to the model; empty where nothing does.
 [[nodiscard]] std::string objection_text(const EffectCandidate& one);
 

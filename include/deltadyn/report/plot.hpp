@@ -69,10 +69,10 @@ struct PlotSpec {
   int height = 320;                             ///< [px]
 };
 
-/// Draws one plot, or several on top of each other with one common x axis, e.g. one a drive. The x label, the width,
-/// log_x and the tick labels are those of the last panel, the x range encloses all panels. Panels above the last give
-/// the space of their own x axis back, so that the areas keep the heights they have alone, and a panel with the same
-/// curves as the first leaves the legend to it.
+/// Draws one plot, or several on top of each other, e.g. one a drive. Neighbours with the same x label share the axis:
+/// label and tick labels are those of the last of them, the x range encloses all of them. Those above the last give
+/// the space of their own x axis back, so that the areas keep the heights they have alone. The width and log_x are
+/// those of the last panel, and a panel with the same curves as the first leaves the legend to it.
 /// \param id_prefix  put before every id in the SVG; plots that share one HTML page need different prefixes
 /// \return an <svg> element without XML declaration that scales with the width of the page
 /// \throws Error if the specification contradicts itself, gnuplot is missing, or gnuplot fails

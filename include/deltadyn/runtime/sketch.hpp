@@ -17,7 +17,8 @@ struct SketchLines {
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lines = {};
 };
 
-/// Base, arms or carriages on their rails, struts, parts of the plate, and the telescope bar, at drive coordinates q.
+/// Base, arms or carriages on their rails, struts, parts of the plate, its tool, and the telescope bar, at drive
+/// coordinates q.
 /// Throws deltadyn::Error if the pose is out of reach or singular.
 [[nodiscard]] std::vector<SketchLines> sketch_of(const Robot& robot, const Eigen::VectorXd& q);
 

@@ -266,6 +266,7 @@ void take_holdout(const SearchContext& context, const HoldoutProof& proof, Diagn
   if (touched.empty()) return;
   shrink_of(proof, *context.holdout, touched, context.options.seed, out);
   facts.gap_closed = out.gap_shrink;
+  facts.gap_closed_at_most = out.gap_high;
   facts.holdout_gap = facts.holdout_left = 0;
   for (const int j : touched) {
     facts.holdout_gap = std::max(facts.holdout_gap, proof.rms_before(j) / std::max(proof.floor(j), 1e-300));

@@ -215,10 +215,14 @@ std::vector<PositionFamily> position_families(const RobotDescription& robot) {
   std::vector<PositionFamily> out;
   if (robot.parts.empty()) return out;
   const std::vector<int> limbs = limbs_of(robot);
-  const auto scales = [](std::vector<int> drives, double step, double changes) -> PositionFamily {
+  const auto scales = [&robot](std::vector<int> drives, double step, double changes) -> PositionFamily {
+    constexpr double kFarthest = 400;  // of a gear; units may be farther off
     std::vector<double> factors;
-    for (double f = 1.0 / 400; f < 400; f *= 1 + step) {
+    for (double f = 1 / kFarthest; f < kFarthest; f *= 1 + step) {
       if (f < 0.8 || f > 1.25) factors.push_back(f);
+    }
+    for (const Unit& unit : units_of(robot, drives.front())) {
+      if (unit.factor < 1 / kFarthest || unit.factor > kFarthest) factors.push_back(unit.factor);
     }
     return {"position_scale", std::move(drives), factors, true, step, {}, changes};
   };

@@ -24,7 +24,7 @@ VerdictFacts one_name() {
   facts.names = 1;
   facts.explained_share = 0.99;
   facts.holdout_gap = 2;
-  facts.gap_closed = 0.98;
+  facts.gap_closed = facts.gap_closed_at_most = 0.98;
   facts.overt = true;
   facts.written = WrittenModelIs::better;
   return facts;
@@ -80,7 +80,7 @@ TEST(VerdictRules, StructureThatCountsNeedsNamesThatExplainIt) {
 
 TEST(VerdictRules, NamesThatDoNotHelpTheHoldOutLogAreNone) {
   VerdictFacts facts = one_name();
-  facts.gap_closed = 0.9 * kPolicy.closed;
+  facts.gap_closed = facts.gap_closed_at_most = 0.9 * kPolicy.closed;
   EXPECT_EQ(reason(facts), VerdictReason::holdout_contradicts_names);
   facts.overt = false;
   EXPECT_EQ(reason(facts), VerdictReason::nothing_counts);
@@ -88,6 +88,20 @@ TEST(VerdictRules, NamesThatDoNotHelpTheHoldOutLogAreNone) {
   EXPECT_EQ(reason(facts), VerdictReason::one_name_fits);
   facts.gap_closed = -0.1;
   EXPECT_EQ(reason(facts), VerdictReason::nothing_counts);
+}
+
+TEST(VerdictRules, AHoldOutLogThatCannotTellDoesNotContradict) {
+  VerdictFacts facts = one_name();
+  facts.holdout_gap = 1.06;
+  facts.gap_closed = 0.3;
+  facts.gap_closed_at_most = 0.9 * kPolicy.closed;
+  EXPECT_EQ(reason(facts), VerdictReason::holdout_contradicts_names);
+  facts.gap_closed_at_most = 1.4;
+  EXPECT_EQ(reason(facts), VerdictReason::one_name_fits) << "the proof of what is written decides";
+  facts.written = WrittenModelIs::no_better;
+  EXPECT_EQ(reason(facts), VerdictReason::written_model_refused);
+  facts.gap_closed = 0.9 * kPolicy.closed_of_little;
+  EXPECT_EQ(reason(facts), VerdictReason::holdout_contradicts_names);
 }
 
 TEST(VerdictRules, NamesThatLeaveTwiceAsMuchThereAsInTrainingMustCloseMostOfTheGap) {

@@ -22,6 +22,9 @@ inline constexpr double kParallel = 1e-6;
 
 namespace articulated_plate {
 
+/// The lengths of the plate itself, and its gear: what a robot file tells in one place.
+void validate_shape(const RobotDescription& robot, const std::string& where);
+
 /// Throws deltadyn::Error with the rule that is broken.
 void validate(const RobotDescription& robot, const std::string& where);
 
