@@ -259,7 +259,7 @@ class Identifier {
       // By about this share noise pulls an inertia down.
       const double best_known = (out_.base_estimate.std().array() / out_.base_estimate.value.array().abs()).minCoeff();
       if (out_.noise_share > kFeltNoise * best_known) {
-        bias_ = noise_bias(robot_, out_.base, logs_, out_.processing, rows_.keep, motion_.instrument);
+        bias_ = noise_bias(robot_, out_.base, logs_, out_.processing, rows_.keep, instrument_hz(best_known));
         out_.base_estimate = estimate_base_parameters(out_.base, folds, {}, &*bias_);
       }
     }
@@ -267,6 +267,15 @@ class Identifier {
     out_.base_estimate = estimate_base_parameters(out_.base, folds, correlation, bias_ ? &*bias_ : nullptr);
     if (!options_.robust && options_.processing.filter && !averages_periods(rows_.prepared))
       add_encoder_steps(correlation);
+  }
+
+  /// Band of the instruments in which their own noise is not felt, as its share falls with the fifth power of the band;
+  /// not so narrow that they lose the motion.
+  [[nodiscard]] double instrument_hz(double best_known) const {
+    constexpr double kNarrowest = 0.4;
+    const double full_hz = out_.processing.motion_over_pass * out_.processing.cutoff_hz;
+    const double quiet_hz = full_hz * std::pow(kFeltNoise * best_known / out_.noise_share, 0.2);
+    return std::clamp(quiet_hz, kNarrowest * motion_.instrument, motion_.instrument);
   }
 
   /// DriveNoise::correlation of each drive: mean over the logs, weighted by their rows.
