@@ -90,7 +90,7 @@ void require_one_motion(const Robot& robot, const CsvTable& table, const Traject
   if (samples.q.rows() != samples.z.rows()) return;
   Eigen::VectorXd q(robot.drives());
   for (Eigen::Index row = 0; row < samples.z.rows(); ++row) {
-    const std::size_t line = table.line(static_cast<std::size_t>(row));
+    const auto line = table.line(static_cast<std::size_t>(row));
     const char* mend =
         "mend the units, the zero or the order of the columns, or leave out those of the pose or of the "
         "drives";
