@@ -154,7 +154,6 @@ TEST(Plausibility, TheUnitThatWouldFitIsNamed) {
     EXPECT_THROW(plausibility::require(plausibility::kLength, bad, "a length", ""), Error) << bad;
 }
 
-/// Every mass in grams is seen, for robots of every size; the same masses in kilograms pass.
 TEST(Plausibility, WhatIsHardlyTooLargeIsInNoOtherUnit) {
   for (const auto& [tilt, words] : {std::pair(1.57, false), std::pair(-1.57, false), std::pair(30.0, true)}) {
     try {
@@ -166,6 +165,7 @@ TEST(Plausibility, WhatIsHardlyTooLargeIsInNoOtherUnit) {
   }
 }
 
+/// Every mass in grams is seen, for robots of every size; the same masses in kilograms pass.
 TEST(Plausibility, GramsAreSeenAtEverySize) {
   for (const char* type : {"delta3", "linear-delta3", "delta4"})
     for (const double arm : {0.1, 0.3, 0.525, 1.0}) {
